@@ -1,0 +1,2 @@
+//! The command `satisfice`.
+fn main() {}
