@@ -1,1 +1,12 @@
-//! satisfice-collision
+//! Mesh collision and self-collision detection: meshes, how they are read, made and moved, exact distances, broad
+//! phases, and the vertex-vertex problem of Eq. 1 for the search engines of `satisfice`.
+//!
+//! Points are plain `[f64; 3]`. "Size" means the longest extent of the bounding box everywhere.
+
+pub mod broad;
+pub mod distance;
+mod error;
+pub mod mesh;
+
+pub use error::{Element, Error};
+pub use mesh::{Aabb, Adjacency, Mesh};

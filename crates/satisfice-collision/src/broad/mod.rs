@@ -1,0 +1,1 @@
+//! Broad phases: which pairs of features can be closer than a threshold.

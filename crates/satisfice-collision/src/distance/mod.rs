@@ -1,0 +1,1 @@
+//! Distances between features: points, segments and triangles.

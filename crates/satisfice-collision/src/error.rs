@@ -1,0 +1,90 @@
+//! The one error type of this crate: data first, the sentence made from it.
+
+use std::fmt;
+
+/// What an index or a coordinate belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Element {
+    /// A point element (OBJ `p`).
+    Point,
+    /// An explicit edge (OBJ `l`).
+    Edge,
+    /// A triangle.
+    Triangle,
+    /// A face before it is cut into triangles.
+    Face,
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Point => "point",
+            Self::Edge => "edge",
+            Self::Triangle => "triangle",
+            Self::Face => "face",
+        })
+    }
+}
+
+/// What can be wrong with a mesh, its file, or a parameter. Serial numbers count from 0.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A body needs at least one vertex.
+    #[error("the mesh is empty: it has no vertex")]
+    EmptyMesh,
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has {axis} = {value}; coordinates must be finite")]
+    NonFiniteVertex {
+        /// Serial number of the vertex.
+        vertex: usize,
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// The offending value.
+        value: f64,
+    },
+    /// An element names a vertex that does not exist.
+    #[error("{element} {index} names vertex {vertex}, but the mesh has {vertices} vertices (0 to {})", vertices.saturating_sub(1))]
+    IndexOutOfRange {
+        /// The kind of the element.
+        element: Element,
+        /// Serial number of the element among its kind.
+        index: usize,
+        /// The vertex it names (negative if the file resolves to one before the first).
+        vertex: i64,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// Vertices are numbered by `u32`.
+    #[error("{vertices} vertices are too many: at most {} can be numbered", u32::MAX)]
+    TooManyVertices {
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A parameter lies outside what is allowed.
+    #[error("{parameter} = {value} is not allowed: {allowed}")]
+    Parameter {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// The value given, printed.
+        value: String,
+        /// What is allowed, in words.
+        allowed: &'static str,
+    },
+}
+
+impl Error {
+    /// [`Error::Parameter`] from anything printable.
+    pub(crate) fn parameter(
+        parameter: &'static str,
+        value: impl fmt::Display,
+        allowed: &'static str,
+    ) -> Self {
+        Self::Parameter {
+            parameter,
+            value: value.to_string(),
+            allowed,
+        }
+    }
+}

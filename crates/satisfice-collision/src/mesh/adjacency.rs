@@ -1,0 +1,102 @@
+//! Which vertices are joined: compressed rows, and rings of a chosen width.
+
+/// For every vertex the vertices it is joined to, in compressed sparse rows: sorted, symmetric, never itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Adjacency {
+    offsets: Vec<usize>,
+    targets: Vec<u32>,
+}
+
+impl Adjacency {
+    /// From unique undirected edges `[low, high]`, sorted, all below `vertices`. O(V + E).
+    pub(crate) fn from_edges(vertices: usize, edges: &[[u32; 2]]) -> Self {
+        let mut offsets = vec![0_usize; vertices + 1];
+        for &[a, b] in edges {
+            offsets[a as usize + 1] += 1;
+            offsets[b as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            offsets[v + 1] += offsets[v];
+        }
+        let mut next = offsets.clone();
+        let mut targets = vec![0_u32; offsets[vertices]];
+        // Two passes over sorted edges leave every row sorted: first the lower neighbours, then the higher ones.
+        for &[a, b] in edges {
+            targets[next[b as usize]] = a;
+            next[b as usize] += 1;
+        }
+        for &[a, b] in edges {
+            targets[next[a as usize]] = b;
+            next[a as usize] += 1;
+        }
+        Self { offsets, targets }
+    }
+
+    /// The number of vertices.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Whether there is no vertex.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The vertices joined to `v`, sorted; none if `v` is not a vertex.
+    #[must_use]
+    pub fn neighbours(&self, v: u32) -> &[u32] {
+        let v = v as usize;
+        if v < self.len() {
+            &self.targets[self.offsets[v]..self.offsets[v + 1]]
+        } else {
+            &[]
+        }
+    }
+
+    /// Whether `a` and `b` are joined. O(log degree).
+    #[must_use]
+    pub fn contains(&self, a: u32, b: u32) -> bool {
+        self.neighbours(a).binary_search(&b).is_ok()
+    }
+
+    /// The vertices at 1 to `width` edges from `v` (its rings), sorted; none for `width` 0. O(size of the answer,
+    /// times its degree and log).
+    #[must_use]
+    pub fn ring(&self, v: u32, width: usize) -> Vec<u32> {
+        let mut seen = vec![v];
+        let mut front = vec![v];
+        for _ in 0..width {
+            let mut next: Vec<u32> = front.iter().flat_map(|&u| self.neighbours(u)).copied().collect();
+            next.sort_unstable();
+            next.dedup();
+            next.retain(|u| seen.binary_search(u).is_err());
+            if next.is_empty() {
+                break;
+            }
+            seen.extend_from_slice(&next);
+            seen.sort_unstable();
+            front = next;
+        }
+        seen.retain(|&u| u != v);
+        seen
+    }
+
+    /// The adjacency of "at most `width` edges apart": [`Adjacency::ring`] of every vertex.
+    #[must_use]
+    pub fn rings(&self, width: usize) -> Self {
+        if width == 1 {
+            return self.clone();
+        }
+        let mut offsets = Vec::with_capacity(self.offsets.len());
+        let mut targets = Vec::new();
+        offsets.push(0);
+        for v in 0..self.len() {
+            // A mesh numbers its vertices by u32.
+            targets.extend(self.ring(v as u32, width));
+            offsets.push(targets.len());
+        }
+        Self { offsets, targets }
+    }
+}

@@ -1,0 +1,223 @@
+//! Indexed meshes: vertices, explicit edges and triangles, and what follows from them.
+
+mod aabb;
+mod adjacency;
+
+use std::sync::Arc;
+
+pub use aabb::Aabb;
+pub use adjacency::Adjacency;
+
+use crate::error::{Element, Error};
+
+const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// A body: vertices, explicit edges (the lines of an OBJ file) and triangles, all by vertex number.
+///
+/// A body of vertices alone, or of vertices and edges alone, is valid; degenerate triangles and edges are allowed.
+/// What a `Mesh` holds has been checked: every coordinate is finite, every index in range, at least one vertex.
+/// Which vertices are joined is shared between the posed copies of one body, so moving a mesh copies coordinates only.
+///
+/// ```
+/// use satisfice_collision::Mesh;
+/// let square = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = Mesh::new(square, vec![], vec![[0, 1, 2], [0, 2, 3]])?;
+/// assert_eq!(mesh.edges(), [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]]);
+/// assert_eq!(mesh.adjacency().neighbours(1), [0, 2]);
+/// assert_eq!(mesh.size(), 1.0);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    vertices: Vec<[f64; 3]>,
+    topology: Arc<Topology>,
+}
+
+#[derive(Debug, PartialEq)]
+struct Topology {
+    lines: Vec<[u32; 2]>,
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    adjacency: Adjacency,
+}
+
+impl Mesh {
+    /// Checks and indexes a body. `lines` are explicit edges; the sides of the triangles need not be among them.
+    ///
+    /// # Errors
+    /// [`Error::EmptyMesh`], [`Error::TooManyVertices`], [`Error::NonFiniteVertex`] or [`Error::IndexOutOfRange`],
+    /// naming the first offender.
+    ///
+    /// Cost: O(V + E log E).
+    pub fn new(
+        vertices: Vec<[f64; 3]>,
+        lines: Vec<[u32; 2]>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, Error> {
+        check_vertices(&vertices)?;
+        check_indices(Element::Edge, &lines, vertices.len())?;
+        check_indices(Element::Triangle, &triangles, vertices.len())?;
+        let edges = unique_edges(&lines, &triangles);
+        let adjacency = Adjacency::from_edges(vertices.len(), &edges);
+        let topology = Arc::new(Topology {
+            lines,
+            triangles,
+            edges,
+            adjacency,
+        });
+        Ok(Self { vertices, topology })
+    }
+
+    /// The same body with its vertices elsewhere, e.g. the next frame of a deforming cloth.
+    ///
+    /// # Errors
+    /// [`Error::NonFiniteVertex`], or [`Error::Parameter`] if the number of vertices differs.
+    pub fn with_vertices(&self, vertices: Vec<[f64; 3]>) -> Result<Self, Error> {
+        if vertices.len() != self.vertices.len() {
+            return Err(Error::parameter(
+                "number of vertices",
+                vertices.len(),
+                "a frame has as many vertices as its body",
+            ));
+        }
+        check_vertices(&vertices)?;
+        Ok(Self {
+            vertices,
+            topology: Arc::clone(&self.topology),
+        })
+    }
+
+    /// Positions by vertex number; never empty, all finite.
+    #[must_use]
+    pub fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices
+    }
+
+    /// Position of vertex `v`.
+    ///
+    /// # Panics
+    /// If `v` is not a vertex of this mesh.
+    #[must_use]
+    pub fn vertex(&self, v: u32) -> [f64; 3] {
+        self.vertices[v as usize]
+    }
+
+    /// The explicit edges as they were given.
+    #[must_use]
+    pub fn lines(&self) -> &[[u32; 2]] {
+        &self.topology.lines
+    }
+
+    /// The triangles as they were given; degenerate ones included.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.topology.triangles
+    }
+
+    /// Every undirected edge once: explicit edges and sides of triangles, each as `[low, high]` with `low < high`,
+    /// sorted. An edge from a vertex to itself is none.
+    #[must_use]
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.topology.edges
+    }
+
+    /// Which vertices are joined by an edge.
+    #[must_use]
+    pub fn adjacency(&self) -> &Adjacency {
+        &self.topology.adjacency
+    }
+
+    /// The corners of triangle `t`.
+    ///
+    /// # Panics
+    /// If `t` is not a triangle of this mesh.
+    #[must_use]
+    pub fn triangle(&self, t: usize) -> [[f64; 3]; 3] {
+        self.topology.triangles[t].map(|v| self.vertices[v as usize])
+    }
+
+    /// The bounding box.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        let mut bounds = Aabb::point(self.vertices[0]);
+        for &vertex in &self.vertices[1..] {
+            bounds.include(vertex);
+        }
+        bounds
+    }
+
+    /// The longest extent of the bounding box.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.bounds().size()
+    }
+
+    /// Whether both are poses or frames of one body and so share edges and triangles without comparing them.
+    #[must_use]
+    pub fn same_body(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.topology, &other.topology)
+    }
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices && (self.same_body(other) || self.topology == other.topology)
+    }
+}
+
+fn check_vertices(vertices: &[[f64; 3]]) -> Result<(), Error> {
+    if vertices.is_empty() {
+        return Err(Error::EmptyMesh);
+    }
+    if u32::try_from(vertices.len()).is_err() {
+        return Err(Error::TooManyVertices {
+            vertices: vertices.len(),
+        });
+    }
+    for (vertex, point) in vertices.iter().enumerate() {
+        if let Some(k) = point.iter().position(|c| !c.is_finite()) {
+            return Err(Error::NonFiniteVertex {
+                vertex,
+                axis: AXES[k],
+                value: point[k],
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check_indices<const N: usize>(
+    element: Element,
+    elements: &[[u32; N]],
+    vertices: usize,
+) -> Result<(), Error> {
+    for (index, corners) in elements.iter().enumerate() {
+        if let Some(&v) = corners.iter().find(|&&v| v as usize >= vertices) {
+            return Err(Error::IndexOutOfRange {
+                element,
+                index,
+                vertex: i64::from(v),
+                vertices,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn unique_edges(lines: &[[u32; 2]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut edges: Vec<[u32; 2]> = lines
+        .iter()
+        .copied()
+        .chain(sides)
+        .filter(|[a, b]| a != b)
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges.shrink_to_fit();
+    edges
+}
+
+#[cfg(test)]
+mod tests;
