@@ -6,7 +6,13 @@
 pub mod broad;
 pub mod distance;
 mod error;
+pub mod generate;
 pub mod mesh;
+pub mod order;
+mod placement;
+pub mod sampling;
 
 pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, Mesh};
+pub use order::VertexOrder;
+pub use placement::Placement;

@@ -2,11 +2,13 @@
 
 mod aabb;
 mod adjacency;
+mod weld;
 
 use std::sync::Arc;
 
 pub use aabb::Aabb;
 pub use adjacency::Adjacency;
+pub use weld::weld;
 
 use crate::error::{Element, Error};
 

@@ -111,6 +111,32 @@ fn all_distances(n: usize, edges: &[[u32; 2]]) -> Vec<Vec<usize>> {
 
 proptest! {
     #[test]
+    fn welding_agrees_with_comparing_all_pairs(
+        coarse in prop::collection::vec(prop::array::uniform3(-1_i32..=1), 0..40),
+        signs in any::<u64>(),
+    ) {
+        // Few distinct coordinates, zeros of both signs.
+        let points: Vec<[f64; 3]> = coarse
+            .iter()
+            .enumerate()
+            .map(|(i, p)| p.map(|c| if c == 0 && signs >> (i % 64) & 1 == 1 { -0.0 } else { f64::from(c) }))
+            .collect();
+        let (distinct, number) = weld(&points);
+        for (i, p) in points.iter().enumerate() {
+            prop_assert_eq!(*p, distinct[number[i]]);
+            for (j, q) in points.iter().enumerate() {
+                prop_assert_eq!(p == q, number[i] == number[j]);
+            }
+        }
+        let mut next = 0;
+        for n in number {
+            prop_assert!(n <= next);
+            next += usize::from(n == next);
+        }
+        prop_assert_eq!(next, distinct.len());
+    }
+
+    #[test]
     fn edges_and_rings_agree_with_naive_ones(
         n in 1_usize..12,
         raw in prop::collection::vec((0_u32..12, 0_u32..12, 0_u32..12), 0..14),
