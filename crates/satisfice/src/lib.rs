@@ -1,1 +1,37 @@
-//! satisfice
+#![doc = include_str!("../README.md")]
+
+pub mod archive;
+pub mod batch;
+pub mod budget;
+mod clock;
+pub mod context;
+pub mod engine;
+mod error;
+mod evaluate;
+pub mod identity;
+pub mod observer;
+pub mod parameter;
+pub mod problem;
+pub mod report;
+mod scalar;
+mod search;
+mod seed;
+pub mod space;
+pub mod state;
+mod view;
+
+pub use archive::{Archive, Hit};
+pub use batch::{Batch, Outcome};
+pub use budget::{Budget, Cancel, StopReason};
+pub use context::Context;
+pub use engine::{Engine, WarmStart};
+pub use error::Error;
+pub use identity::{Identity, Located};
+pub use observer::Observer;
+pub use parameter::{Parameter, Values};
+pub use problem::{Catalogued, Description, SatisficingProblem, from_fn};
+pub use report::{Completeness, Counts, Report, TracePoint};
+pub use scalar::Real;
+pub use search::Search;
+pub use seed::SearchRng;
+pub use space::{Axis, AxisKind, Boundary, Region, Space};

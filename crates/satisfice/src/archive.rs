@@ -1,0 +1,279 @@
+//! The set C: the distinct hits, in the order found.
+
+use hashbrown::HashTable;
+
+use crate::identity::Identity;
+
+/// Up to this many hits a filter of bits spares most look-ups in the table; beyond, it would no longer stay in the cache.
+const FILTERED: usize = 1 << 16;
+/// Bits of the filter for each hit it has room for: about one look-up in 16 is not spared.
+const BITS: usize = 16;
+
+/// The distinct hits, in the order found, each with the evaluation and the time that found it.
+///
+/// Memory, at rest and beyond the solutions: 12 bytes a hit and 5 bytes a slot of a table that is between 7/16 and 7/8 full,
+/// so between 17.7 and 23.5 bytes. A look-up that finds nothing costs a hash, a bit test and, seldom, a table look-up.
+#[derive(Debug, Clone)]
+pub struct Archive<T> {
+    solutions: Vec<T>,
+    evaluations: Vec<u64>,
+    seconds: Vec<f32>,
+    table: HashTable<u32>,
+    filter: Vec<u64>,
+}
+
+impl<T> Default for Archive<T> {
+    fn default() -> Self {
+        Self {
+            solutions: Vec::new(),
+            evaluations: Vec::new(),
+            seconds: Vec::new(),
+            table: HashTable::new(),
+            filter: Vec::new(),
+        }
+    }
+}
+
+/// One hit, as a report shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Hit<'a, T> {
+    /// The solution.
+    pub solution: &'a T,
+    /// The evaluation that found it, counted from 1.
+    pub evaluation: u64,
+    /// When, in seconds from the start of the slice.
+    pub seconds: f64,
+}
+
+impl<T> Archive<T> {
+    /// Number of hits.
+    #[inline]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.solutions.len()
+    }
+
+    /// Whether there is none.
+    #[inline]
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.solutions.is_empty()
+    }
+
+    /// Hit `index`, in the order found.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<Hit<'_, T>> {
+        Some(Hit {
+            solution: self.solutions.get(index)?,
+            evaluation: *self.evaluations.get(index)?,
+            seconds: f64::from(*self.seconds.get(index)?),
+        })
+    }
+
+    /// All hits, in the order found.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Hit<'_, T>> {
+        self.solutions
+            .iter()
+            .zip(&self.evaluations)
+            .zip(&self.seconds)
+            .map(|((solution, &evaluation), &seconds)| Hit {
+                solution,
+                evaluation,
+                seconds: f64::from(seconds),
+            })
+    }
+
+    /// The solutions alone, in the order found.
+    #[must_use]
+    pub fn solutions(&self) -> &[T] {
+        &self.solutions
+    }
+
+    /// How many hits had been found by an evaluation count. Cost: O(log n).
+    #[must_use]
+    pub fn found_by(&self, evaluation: u64) -> usize {
+        self.evaluations.partition_point(|&e| e <= evaluation)
+    }
+
+    /// Bytes beyond the solutions themselves.
+    #[must_use]
+    pub fn overhead_bytes(&self) -> usize {
+        self.evaluations.capacity() * 8
+            + self.seconds.capacity() * 4
+            + self.table.allocation_size()
+            + self.filter.capacity() * 8
+            + (self.solutions.capacity() - self.solutions.len()) * size_of::<T>()
+    }
+}
+
+impl<T: Identity> Archive<T> {
+    /// Whether a solution that is the same is here.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, solution: &T) -> bool {
+        if self.solutions.is_empty() {
+            return false;
+        }
+        solution.visit_keys(&mut |key| {
+            self.may_hold(key)
+                && self
+                    .table
+                    .find(key, |&i| self.solutions[i as usize].same(solution))
+                    .is_some()
+        })
+    }
+
+    /// Adds a solution unless one that is the same is here; returns whether it was new. Amortised cost: O(1).
+    ///
+    /// At 2^32 - 1 hits, the archive is full and takes no more.
+    pub fn insert(&mut self, solution: T, evaluation: u64, seconds: f64) -> bool {
+        let Ok(index) = u32::try_from(self.solutions.len()) else {
+            return false;
+        };
+        if self.contains(&solution) {
+            return false;
+        }
+        let key = solution.key();
+        self.solutions.push(solution);
+        self.evaluations.push(evaluation);
+        #[expect(clippy::cast_possible_truncation, reason = "7 digits of a time are plenty")]
+        self.seconds.push(seconds as f32);
+        let solutions = &self.solutions;
+        self.table
+            .insert_unique(key, index, |&i| solutions[i as usize].key());
+        self.note(key);
+        true
+    }
+
+    /// Gives back memory that is kept for growth and for speed.
+    pub fn rest(&mut self) {
+        self.solutions.shrink_to_fit();
+        self.evaluations.shrink_to_fit();
+        self.seconds.shrink_to_fit();
+        let solutions = &self.solutions;
+        self.table.shrink_to_fit(|&i| solutions[i as usize].key());
+        self.filter = Vec::new();
+    }
+
+    #[inline]
+    fn may_hold(&self, key: u64) -> bool {
+        // The table takes the key's lowest bits and its seven highest, the filter the ones between.
+        let bits = self.filter.len() * 64;
+        if bits == 0 {
+            return true;
+        }
+        let bit = (key >> 24) as usize & (bits - 1);
+        self.filter[bit / 64] >> (bit % 64) & 1 == 1
+    }
+
+    fn note(&mut self, key: u64) {
+        let hits = self.solutions.len();
+        if hits > FILTERED {
+            self.filter = Vec::new();
+            return;
+        }
+        if hits * BITS > self.filter.len() * 64 {
+            // Twice the room, filled anew.
+            self.filter.clear();
+            self.filter
+                .resize((2 * hits * BITS).next_power_of_two().max(1024) / 64, 0);
+            for i in 0..hits {
+                let key = self.solutions[i].key();
+                self.set(key);
+            }
+        } else {
+            self.set(key);
+        }
+    }
+
+    fn set(&mut self, key: u64) {
+        let bit = (key >> 24) as usize & (self.filter.len() * 64 - 1);
+        self.filter[bit / 64] |= 1 << (bit % 64);
+    }
+}
+
+#[cfg(feature = "serde")]
+mod as_list {
+    //! An archive is written as the list of its hits and read back in that order.
+
+    use super::{Archive, Identity};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Deserialize)]
+    struct Row<T> {
+        solution: T,
+        evaluation: u64,
+        seconds: f64,
+    }
+
+    impl<T: Serialize> Serialize for Archive<T> {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            serializer.collect_seq(self.iter())
+        }
+    }
+
+    impl<'de, T: Deserialize<'de> + Identity> Deserialize<'de> for Archive<T> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let rows = Vec::<Row<T>>::deserialize(deserializer)?;
+            let mut archive = Self::default();
+            for row in rows {
+                archive.insert(row.solution, row.evaluation, row.seconds);
+            }
+            Ok(archive)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::identity::Located;
+
+    #[test]
+    fn agrees_with_an_ordered_set() {
+        let mut rng = crate::SearchRng::new(3);
+        let (mut archive, mut set) = (Archive::default(), BTreeSet::new());
+        for n in 0..200_000_u64 {
+            let pair = [rng.below(600), rng.below(600)];
+            assert_eq!(archive.contains(&pair), set.contains(&pair));
+            if rng.uniform() < 0.6 {
+                assert_eq!(archive.insert(pair, n, 0.0), set.insert(pair));
+            }
+        }
+        assert_eq!(archive.len(), set.len());
+        assert!(archive.iter().all(|hit| set.contains(hit.solution)));
+        assert!(archive.len() > FILTERED, "both regimes of the filter are passed");
+    }
+
+    #[test]
+    fn located_solutions_agree_with_all_pairs() {
+        let mut rng = crate::SearchRng::new(4);
+        for dimension in [1, 2, 5] {
+            let mut archive = Archive::default();
+            for n in 0..3000 {
+                let point: Vec<f64> = (0..dimension).map(|_| rng.uniform() * 2.0 - 1.0).collect();
+                let located = Located::new(&point, 0.05);
+                let near = archive.solutions().iter().any(|other| located.same(other));
+                assert_eq!(archive.contains(&located), near);
+                assert_eq!(archive.insert(located, n, 0.0), !near);
+            }
+        }
+    }
+
+    #[test]
+    fn at_rest_it_stays_under_24_bytes_a_hit() {
+        for hits in [1_000_u32, 60_000, 200_000, 458_753] {
+            let mut archive = Archive::default();
+            for n in 0..hits {
+                archive.insert([n, n], u64::from(n), 0.0);
+            }
+            archive.rest();
+            let bytes = archive.overhead_bytes() as f64 / f64::from(hits);
+            assert!(bytes < 24.0, "{bytes} bytes a hit at {hits}");
+            assert!(archive.contains(&[hits - 1, hits - 1]) && !archive.contains(&[hits, hits]));
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! When to stop: time, evaluations, hits, cancellation, in any combination.
+
+use core::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::error::Error;
+
+/// What one time slice may spend. The first limit reached ends it.
+///
+/// ```
+/// use satisfice::Budget;
+/// use std::time::Duration;
+/// let budget = Budget::time(Duration::from_millis(100)).and_evaluations(1_000_000).and_hits(10);
+/// # let _ = budget;
+/// ```
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Budget {
+    /// Wall time, from the start of the slice.
+    pub time: Option<Duration>,
+    /// Candidates that reach the ledger, deleted ones included.
+    pub evaluations: Option<u64>,
+    /// Distinct hits.
+    pub hits: Option<u64>,
+    /// Evaluations to which schedules relate, where that is not the budget itself.
+    pub horizon: Option<u64>,
+    /// Somebody who may cancel.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub cancel: Option<Cancel>,
+}
+
+impl Budget {
+    /// A budget of wall time.
+    #[must_use]
+    pub fn time(time: Duration) -> Self {
+        Self {
+            time: Some(time),
+            ..Self::default()
+        }
+    }
+    /// A budget of evaluations: reproducible.
+    #[must_use]
+    pub fn evaluations(evaluations: u64) -> Self {
+        Self {
+            evaluations: Some(evaluations),
+            ..Self::default()
+        }
+    }
+    /// A budget of hits. Alone it may never end: add another limit where the number of hits is not known.
+    #[must_use]
+    pub fn hits(hits: u64) -> Self {
+        Self {
+            hits: Some(hits),
+            ..Self::default()
+        }
+    }
+    /// A budget that ends when somebody cancels.
+    #[must_use]
+    pub fn until(cancel: &Cancel) -> Self {
+        Self {
+            cancel: Some(cancel.clone()),
+            ..Self::default()
+        }
+    }
+    /// Limits wall time, too.
+    #[must_use]
+    pub fn and_time(mut self, time: Duration) -> Self {
+        self.time = Some(time);
+        self
+    }
+    /// Limits evaluations, too.
+    #[must_use]
+    pub fn and_evaluations(mut self, evaluations: u64) -> Self {
+        self.evaluations = Some(evaluations);
+        self
+    }
+    /// Limits hits, too.
+    #[must_use]
+    pub fn and_hits(mut self, hits: u64) -> Self {
+        self.hits = Some(hits);
+        self
+    }
+    /// May be cancelled, too.
+    #[must_use]
+    pub fn and_until(mut self, cancel: &Cancel) -> Self {
+        self.cancel = Some(cancel.clone());
+        self
+    }
+    /// Relates schedules to this many evaluations instead of to the budget, so that a short run is a prefix of a long one.
+    #[must_use]
+    pub fn with_horizon(mut self, evaluations: u64) -> Self {
+        self.horizon = Some(evaluations);
+        self
+    }
+
+    /// # Errors
+    /// [`Error::Budget`] where nothing limits the slice, or a limit is zero.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        if self.time.is_none() && self.evaluations.is_none() && self.hits.is_none() && self.cancel.is_none() {
+            return Err(Error::Budget(
+                "nothing limits it: give a time, a number of evaluations or of hits",
+            ));
+        }
+        if self.time == Some(Duration::ZERO) {
+            return Err(Error::Budget("the time is zero: give at least a microsecond"));
+        }
+        if self.evaluations == Some(0) {
+            return Err(Error::Budget(
+                "the number of evaluations is zero: give at least 1",
+            ));
+        }
+        if self.hits == Some(0) {
+            return Err(Error::Budget("the number of hits is zero: give at least 1"));
+        }
+        if self.horizon == Some(0) {
+            return Err(Error::Budget("the horizon is zero: give at least 1 evaluation"));
+        }
+        Ok(())
+    }
+
+    /// Share used, in `[0, 1]`.
+    #[expect(clippy::cast_precision_loss, reason = "a share needs no more than 53 bits")]
+    pub(crate) fn share(&self, evaluations: u64, elapsed: Duration) -> f64 {
+        let by_count = match self.horizon.or(self.evaluations) {
+            Some(limit) => evaluations as f64 / limit as f64,
+            None => 0.0,
+        };
+        let by_time = match self.time {
+            Some(limit) if self.horizon.is_none() => elapsed.as_secs_f64() / limit.as_secs_f64(),
+            _ => 0.0,
+        };
+        by_count.max(by_time).min(1.0)
+    }
+}
+
+/// A flag that ends a slice from another thread, a signal handler or an observer. Clones share it.
+#[derive(Debug, Clone, Default)]
+pub struct Cancel(Arc<AtomicBool>);
+
+impl Cancel {
+    /// A flag that is not raised.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+    /// Raises it. Nothing lowers it.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+    /// Whether it is raised.
+    #[inline]
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Why a slice ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum StopReason {
+    /// The time was up.
+    Time,
+    /// The evaluations were spent.
+    Evaluations,
+    /// Enough hits.
+    Hits,
+    /// [`Cancel::cancel`] was called.
+    Cancelled,
+    /// An observer asked to stop.
+    Observer,
+    /// The engine had nothing more to propose.
+    Exhausted,
+    /// The whole space was evaluated or excluded by bounds.
+    Covered,
+}

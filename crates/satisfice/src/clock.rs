@@ -1,0 +1,152 @@
+//! Time: the only file that asks what time it is.
+
+use core::time::Duration;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use crate::budget::Cancel;
+
+/// Between two looks at the clock about this much time may pass...
+const LOOK_EVERY: Duration = Duration::from_micros(20);
+/// ...and at most this many evaluations, so that a fitness that suddenly gets slow is noticed.
+const LOOK_AFTER: u64 = 4096;
+
+#[expect(clippy::disallowed_methods, reason = "this is clock.rs")]
+fn now() -> Instant {
+    Instant::now()
+}
+
+/// The clock of a slice: counts evaluations down to the next look, and adapts how many that are to what they cost.
+///
+/// A look costs some 25 ns. A fitness of 5 ns is looked at every 4,096 evaluations, one of 5 ms every time. Where a time is
+/// limited, an [`Alarm`] stands by for a fitness whose cost jumps.
+#[derive(Debug)]
+pub(crate) struct Clock {
+    start: Instant,
+    before: Duration,
+    last: Instant,
+    since: u64,
+    interval: u64,
+    cost: Duration,
+}
+
+impl Clock {
+    /// Starts; `before` has elapsed already, in a run that is resumed.
+    pub(crate) fn start(before: Duration) -> Self {
+        let start = now();
+        Self {
+            start,
+            before,
+            last: start,
+            since: 0,
+            interval: 1,
+            cost: Duration::ZERO,
+        }
+    }
+
+    /// Time since the start, as of the last look.
+    pub(crate) fn seen(&self) -> Duration {
+        self.before + (self.last - self.start)
+    }
+
+    /// Time since the start, exactly.
+    pub(crate) fn elapsed(&self) -> Duration {
+        self.before + self.start.elapsed()
+    }
+
+    /// How many evaluations may pass before the next look, at least 1.
+    #[inline]
+    pub(crate) fn until_look(&self) -> u64 {
+        self.interval.saturating_sub(self.since).max(1)
+    }
+
+    /// Says that `evaluations` have passed. Returns the time if this was a look.
+    #[inline]
+    pub(crate) fn pass(&mut self, evaluations: u64) -> Option<Duration> {
+        self.since += evaluations;
+        (self.since >= self.interval).then(|| self.look())
+    }
+
+    #[cold]
+    fn look(&mut self) -> Duration {
+        let now = now();
+        let passed = now - self.last;
+        self.cost = passed / u32::try_from(self.since.max(1)).unwrap_or(u32::MAX);
+        let fits = LOOK_EVERY.as_nanos() / self.cost.as_nanos().max(1);
+        self.interval = u64::try_from(fits)
+            .unwrap_or(LOOK_AFTER)
+            .clamp(1, (2 * self.interval).min(LOOK_AFTER));
+        self.last = now;
+        self.since = 0;
+        self.seen()
+    }
+
+    /// What an evaluation cost lately, with all that surrounds it: for scheduling, never for results.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn cost(&self) -> Duration {
+        self.cost
+    }
+
+    /// The moment at which a limit of time since the start is reached.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn deadline(&self, limit: Duration) -> Option<Instant> {
+        self.start.checked_add(limit.saturating_sub(self.before))
+    }
+}
+
+/// Whether a moment has come.
+#[cfg(feature = "rayon")]
+pub(crate) fn has_come(moment: Instant) -> bool {
+    now() >= moment
+}
+
+/// Raises a flag when its time has come, from a thread of its own; dropped, it goes away at once.
+#[derive(Debug)]
+pub(crate) struct Alarm {
+    rung: Cancel,
+    dismissed: Arc<(Mutex<bool>, Condvar)>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Alarm {
+    /// Rings in `time`. Where no thread can be had, it never rings and the clock's looks have to do.
+    pub(crate) fn set(time: Duration) -> Self {
+        let rung = Cancel::new();
+        let dismissed = Arc::new((Mutex::new(false), Condvar::new()));
+        let (flag, shared) = (rung.clone(), Arc::clone(&dismissed));
+        let thread = std::thread::Builder::new()
+            .name("satisfice-alarm".to_owned())
+            .spawn(move || {
+                let (lock, condition) = &*shared;
+                let guard = lock.lock().unwrap_or_else(PoisonError::into_inner);
+                let waited = condition.wait_timeout_while(guard, time, |dismissed| !*dismissed);
+                if waited.is_ok_and(|(_, timeout)| timeout.timed_out()) {
+                    flag.cancel();
+                }
+            });
+        Self {
+            rung,
+            dismissed,
+            thread: thread.ok(),
+        }
+    }
+
+    /// Whether it has rung.
+    #[inline]
+    pub(crate) fn has_rung(&self) -> bool {
+        self.rung.is_cancelled()
+    }
+}
+
+impl Drop for Alarm {
+    fn drop(&mut self) {
+        let (lock, condition) = &*self.dismissed;
+        *lock.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        condition.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // The thread cannot panic; if it did, there would be nothing to mend here.
+            drop(thread.join());
+        }
+    }
+}

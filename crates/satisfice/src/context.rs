@@ -1,0 +1,39 @@
+//! What an engine may ask while it searches, without ever seeing the problem.
+
+use crate::scalar::Real;
+use crate::space::{Region, Space};
+
+/// The engine's view of a run. All points are *positions*.
+pub trait Context<S: Real> {
+    /// The space.
+    fn space(&self) -> &Space<S>;
+
+    /// delta.
+    fn threshold(&self) -> S;
+
+    /// Share of the budget (or of its [horizon](crate::Budget::with_horizon)) that is used, in `[0, 1]`: what schedules
+    /// go by. 0 where nothing limits evaluations or time.
+    fn elapsed_share(&self) -> f64;
+
+    /// Number of candidates evaluated in this slice so far.
+    fn evaluations(&self) -> u64;
+
+    /// Number of hits in C so far.
+    fn hits(&self) -> usize;
+
+    /// Whether the solution at a position is in C. Cost: a hash look-up.
+    fn is_deleted(&self, position: &[S]) -> bool;
+
+    /// Visits positions next to `of`, in a fixed order: the problem's own neighbours; else the next lattice points along
+    /// each integer axis. `false`, without a visit, where there are none of either kind.
+    fn neighbours(&self, of: &[S], visit: &mut dyn FnMut(&[S])) -> bool;
+
+    /// The problem's lower bound of F in a region of values, if it offers one. Every call is counted.
+    fn lower_bound(&self, region: &Region<S>) -> Option<S>;
+
+    /// Number of hits of the slice before this one, C_prev.
+    fn previous_hits(&self) -> usize;
+
+    /// Writes the position of hit `index` of the slice before; `false` if there is none or the problem does not encode.
+    fn previous_hit(&self, index: usize, position: &mut [S]) -> bool;
+}

@@ -1,0 +1,124 @@
+//! The registry: what the command line, the docs, the conformance suite and the benches walk.
+
+use super::Engine;
+use crate::error::Error;
+use crate::parameter::{Parameter, Values};
+use crate::scalar::Real;
+
+/// What makes a boxed engine from its parameters.
+pub type Build<S> = fn(&Values) -> Result<Box<dyn Engine<S>>, Error>;
+
+/// One engine of the registry.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    /// Its name, in lower case with hyphens.
+    pub name: &'static str,
+    /// One line.
+    pub summary: &'static str,
+    /// Where it was published.
+    pub reference: &'static str,
+    /// Its parameters with defaults and ranges.
+    pub parameters: &'static [Parameter],
+    /// Whether a schedule follows the budget, so that a short run is no prefix of a long one unless both have one horizon.
+    pub scheduled: bool,
+    /// Builds it for `f32`.
+    pub build_f32: Build<f32>,
+    /// Builds it for `f64`.
+    pub build_f64: Build<f64>,
+}
+
+impl Entry {
+    /// The engine with parameters `(name, text)`, the others at their defaults.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] and [`Error::Parameter`] as in [`Values::with`].
+    pub fn build<'a, S: Real>(
+        &self,
+        settings: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Named<S>, Error> {
+        let values = Values::with(self.parameters, self.name, settings)?;
+        Ok(Named {
+            name: self.name.to_owned(),
+            parameters: values.texts(),
+            engine: S::build(self, &values)?,
+        })
+    }
+}
+
+/// An engine with the name and the parameters that a report repeats.
+pub struct Named<S> {
+    /// Its name.
+    pub name: String,
+    /// Its parameters as text.
+    pub parameters: Vec<(String, String)>,
+    /// The engine.
+    pub engine: Box<dyn Engine<S>>,
+}
+
+impl<S: Real> core::fmt::Debug for Named<S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Named")
+            .field("name", &self.name)
+            .field("parameters", &self.parameters)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<S: Real> Named<S> {
+    /// An engine of one's own, under the name that reports shall show.
+    #[must_use]
+    pub fn new(name: &str, engine: impl Engine<S> + 'static) -> Self {
+        Self {
+            name: name.to_owned(),
+            parameters: Vec::new(),
+            engine: Box::new(engine),
+        }
+    }
+}
+
+/// Every engine, in the order of the docs.
+#[must_use]
+pub fn all() -> &'static [Entry] {
+    ENGINES
+}
+
+/// An entry whose engine is built by `$engine::build` for either scalar, with the table `PARAMETERS` beside it.
+macro_rules! entry {
+    ($module:ident :: $engine:ident; $name:literal, $summary:literal, $reference:literal) => {
+        Entry {
+            name: $name,
+            summary: $summary,
+            reference: $reference,
+            parameters: super::$module::PARAMETERS,
+            scheduled: false,
+            build_f32: super::$module::$engine::build,
+            build_f64: super::$module::$engine::build,
+        }
+    };
+}
+
+static ENGINES: &[Entry] = &[
+    entry!(random::Random; "random", "uniform random sampling, the baseline", "none needed"),
+    entry!(latest_hit_qpso::LatestHitQpso; "latest-hit-qpso",
+        "the paper's swarm: quantum-behaved, attracted by the latest hit, hits deleted",
+        "Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539"),
+];
+
+/// The entry with this name.
+///
+/// # Errors
+/// [`Error::Unknown`] with the nearest name.
+pub fn find(name: &str) -> Result<&'static Entry, Error> {
+    all()
+        .iter()
+        .find(|entry| entry.name == name)
+        .ok_or_else(|| Error::unknown("engine", name, all().iter().map(|entry| entry.name)))
+}
+
+/// The engine with this name and its default parameters.
+///
+/// # Errors
+/// [`Error::Unknown`] with the nearest name.
+pub fn build<S: Real>(name: &str) -> Result<Named<S>, Error> {
+    find(name)?.build([])
+}

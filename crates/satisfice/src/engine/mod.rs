@@ -1,0 +1,90 @@
+//! Engines: how the next candidates are chosen. One file each, one line each in [`all`].
+
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::state::{Reader, State};
+
+mod entry;
+mod latest_hit_qpso;
+pub mod potential_well;
+mod random;
+
+pub use entry::{Build, Entry, Named, all, build, find};
+
+/// What an engine says after proposing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ask {
+    /// There is more to come.
+    More,
+    /// Nothing more to propose, though the space may hold more hits.
+    Exhausted,
+    /// Every point of the space has been proposed or excluded by bounds: the result is complete.
+    Covered,
+}
+
+/// How a slice makes use of the hits of the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum WarmStart {
+    /// Not at all.
+    Cold,
+    /// The engine's own rule, from [`Context::previous_hit`].
+    Engine,
+    /// All of them are evaluated anew, in order, before the engine is asked; it is told of them.
+    #[default]
+    Verify,
+}
+
+/// A search strategy that is asked for points and told what became of them.
+///
+/// One virtual call a batch: an engine whose next point depends on the last outcome asks for batches of one, and what that
+/// costs stands in `cargo bench --bench engine`.
+///
+/// Laws, checked for every registered engine by the conformance suite of [`crate::testing`]: numbers are drawn from `rng`
+/// in `ask` only; nothing depends on time, threads or addresses; NaN and infinite fitness do no harm; axes of width zero
+/// and a single axis are fine; a restored engine goes on as the saved one would have.
+pub trait Engine<S: Real>: Send {
+    /// A slice begins: the problem may have moved, C is empty, C_prev is at hand in `context`.
+    fn begin(&mut self, context: &dyn Context<S>);
+
+    /// Appends proposals to `out`, which is empty. [`Ask::More`] without a proposal is asked again, a thousand times at most.
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask;
+
+    /// Says what became of each point of `batch`, which holds the proposals as the boundary rule left them. Also called
+    /// with points that the engine has not proposed: hits found by exhaustion, and those of a warm start.
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin);
+
+    /// Whether found solutions are deleted from the space (F taken as infinite, not evaluated); if not, they are evaluated
+    /// again and come back as [`Outcome::Known`].
+    fn deletes(&self) -> bool {
+        true
+    }
+
+    /// How this engine wants to start a slice that has a predecessor.
+    fn warm_start(&self) -> WarmStart {
+        WarmStart::default()
+    }
+
+    /// Appends all that changes while the engine runs.
+    fn save(&self, state: &mut State);
+
+    /// Restores what [`Engine::save`] wrote, into an engine built with the same parameters.
+    ///
+    /// # Errors
+    /// [`Error::State`] where the state is not of such an engine.
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error>;
+}
+
+/// Who proposed a batch that an engine is told of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The engine itself: the points are those of its last `ask`, in order.
+    Engine,
+    /// The search: hits of the slice before, evaluated anew.
+    WarmStart,
+    /// The search: neighbours of a hit.
+    Exhaustion,
+}

@@ -1,0 +1,140 @@
+//! Every error of the framework, as data.
+
+/// What was wrong with an input of the framework.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A space without axes.
+    #[error("the space has no axis: give at least one")]
+    NoAxis,
+    /// An axis whose bounds are not usable.
+    #[error("axis {axis}: bounds [{lower}, {upper}] are not usable: {reason}")]
+    Bounds {
+        /// Index of the axis, from 0.
+        axis: usize,
+        /// The lower bound given.
+        lower: f64,
+        /// The upper bound given.
+        upper: f64,
+        /// What a usable bound would be.
+        reason: &'static str,
+    },
+    /// The problem's threshold is NaN.
+    #[error("the threshold is NaN: no fitness is below it")]
+    Threshold,
+    /// A number given by the user is outside what is allowed.
+    #[error("{parameter} = {value} is not allowed: {allowed}")]
+    Parameter {
+        /// Name of the parameter.
+        parameter: String,
+        /// The value given.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A name that nobody knows.
+    #[error("unknown {what} `{name}`{}; known: {}", suggestion(nearest.as_deref()), known.join(", "))]
+    Unknown {
+        /// What was named: `engine`, `problem`, `parameter of …`.
+        what: String,
+        /// The name given.
+        name: String,
+        /// The known name that is nearest to it, if any is near.
+        nearest: Option<String>,
+        /// Every known name.
+        known: Vec<String>,
+    },
+    /// A budget that would never end, or end before it began.
+    #[error("the budget is not usable: {0}")]
+    Budget(&'static str),
+    /// The problem's space is not the one this search has begun with.
+    #[error("the space changed from {before} to {now} axes between two slices: start a new search")]
+    SpaceChanged {
+        /// Number of axes of the first slice.
+        before: usize,
+        /// Number of axes now.
+        now: usize,
+    },
+    /// `tell` without a matching `ask`, or with another number of values.
+    #[error("tell got {got} fitness values, the last ask wanted {wanted}")]
+    Tell {
+        /// How many values were asked for.
+        wanted: usize,
+        /// How many were given.
+        got: usize,
+    },
+    /// A saved state that does not fit.
+    #[error("the saved state does not fit: {0}")]
+    State(String),
+    /// Threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were wanted.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
+}
+
+impl Error {
+    /// An [`Error::Unknown`] with the nearest of the known names, by Damerau-Levenshtein distance.
+    #[must_use]
+    pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
+        let known: Vec<String> = known.into_iter().map(str::to_owned).collect();
+        let lower = name.to_lowercase();
+        let nearest = known
+            .iter()
+            .map(|k| (strsim::damerau_levenshtein(&lower, k), k))
+            .chain(
+                known
+                    .iter()
+                    .filter(|k| lower.len() > 2 && k.contains(&lower))
+                    .map(|k| (1, k)),
+            )
+            .min()
+            .filter(|(distance, _)| *distance <= 2.max(name.chars().count() / 3))
+            .map(|(_, k)| k.clone());
+        Self::Unknown {
+            what: what.to_owned(),
+            name: name.to_owned(),
+            nearest,
+            known,
+        }
+    }
+
+    /// An [`Error::Parameter`].
+    #[must_use]
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a number or a text, by value or by reference"
+    )]
+    pub fn parameter(parameter: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
+        Self::Parameter {
+            parameter: parameter.into(),
+            value: value.to_string(),
+            allowed: allowed.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_name_gets_the_nearest_one() {
+        let error = Error::unknown("engine", "lastest-hit-qpso", ["pso", "qpso", "latest-hit-qpso"]);
+        assert_eq!(
+            error.to_string(),
+            "unknown engine `lastest-hit-qpso`, did you mean `latest-hit-qpso`?; known: pso, qpso, latest-hit-qpso"
+        );
+        let Error::Unknown { nearest, .. } = Error::unknown("engine", "zzzzzz", ["pso"]) else {
+            panic!("not an unknown name")
+        };
+        assert_eq!(nearest, None);
+    }
+}

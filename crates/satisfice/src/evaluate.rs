@@ -1,0 +1,504 @@
+//! The ledger: what reaches it is counted, evaluated, compared with the threshold, stamped and told in order.
+//!
+//! The only file that knows of threads. Numbers of a batch are computed on any number of them, but written by index and
+//! settled in order, so that threads change nothing but the time.
+
+use core::time::Duration;
+
+use num_traits::Float;
+
+use crate::archive::Archive;
+use crate::batch::{Batch, Outcome};
+use crate::budget::{Budget, StopReason};
+use crate::clock::{Alarm, Clock};
+use crate::error::Error;
+use crate::observer::Observer;
+use crate::problem::SatisficingProblem;
+use crate::report::{Counts, TracePoint};
+use crate::scalar::Real;
+
+/// Progress is reported to observers at most this often.
+const PROGRESS_EVERY: Duration = Duration::from_millis(10);
+
+/// Threads to evaluate on.
+#[derive(Debug, Default)]
+pub(crate) struct Threads {
+    #[cfg(feature = "rayon")]
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl Threads {
+    /// `threads` of them, 0 for as many as there are cores. Without the feature `rayon` always one.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn new(threads: usize) -> Result<Self, Error> {
+        let threads = match threads {
+            0 => std::thread::available_parallelism().map_or(1, core::num::NonZero::get),
+            threads => threads,
+        };
+        if threads == 1 {
+            return Ok(Self { pool: None });
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        Ok(Self {
+            pool: Some(pool.map_err(|e| Error::Threads {
+                threads,
+                reason: e.to_string(),
+            })?),
+        })
+    }
+
+    #[cfg(not(feature = "rayon"))]
+    #[expect(
+        clippy::unnecessary_wraps,
+        reason = "one signature with and without the feature"
+    )]
+    pub(crate) fn new(_threads: usize) -> Result<Self, Error> {
+        Ok(Self {})
+    }
+}
+
+/// The candidates of one batch between proposal and outcome. Memory is kept from batch to batch.
+#[derive(Debug)]
+pub(crate) struct Candidates<S, T> {
+    /// What to evaluate: the first `live` solutions; those behind are memory to be used again.
+    solutions: Vec<T>,
+    live: usize,
+    /// Their place in the batch.
+    places: Vec<u32>,
+    /// Their fitness, and whether it was computed.
+    fitness: Vec<S>,
+    done: Vec<bool>,
+    /// One for each point of the batch.
+    pub(crate) outcomes: Vec<Outcome<S>>,
+    values: Vec<S>,
+}
+
+impl<S: Real, T> Default for Candidates<S, T> {
+    fn default() -> Self {
+        Self {
+            solutions: Vec::new(),
+            live: 0,
+            places: Vec::new(),
+            fitness: Vec::new(),
+            done: Vec::new(),
+            outcomes: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+}
+
+impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
+    /// Brings the points inside, decodes the first `limit` of them and looks them up in C.
+    pub(crate) fn prepare<P: SatisficingProblem<Scalar = S, Solution = T>>(
+        &mut self,
+        problem: &P,
+        archive: &Archive<T>,
+        batch: &mut Batch<S>,
+        limit: usize,
+        deletes: bool,
+    ) {
+        let space = problem.space();
+        self.reset(batch.len());
+        self.values.resize(space.dimension(), S::zero());
+        for i in 0..batch.len().min(limit) {
+            let point = batch.point_mut(i);
+            space.keep_inside(point);
+            let values: &[S] = if space.has_integers() {
+                space.values(point, &mut self.values);
+                &self.values
+            } else {
+                point
+            };
+            match self.solutions.get_mut(self.live) {
+                Some(slot) => problem.decode_into(values, slot),
+                None => self.solutions.push(problem.decode(values)),
+            }
+            self.file(i, archive, deletes);
+        }
+        self.fitness.resize(self.live, S::zero());
+        self.done.resize(self.live, false);
+    }
+
+    /// The same for solutions that are known already, at the points of `batch`.
+    pub(crate) fn prepare_solutions<'a>(
+        &mut self,
+        solutions: impl ExactSizeIterator<Item = &'a T>,
+        archive: &Archive<T>,
+        limit: usize,
+    ) where
+        T: 'a,
+    {
+        self.reset(solutions.len());
+        for (i, solution) in solutions.take(limit).enumerate() {
+            match self.solutions.get_mut(self.live) {
+                Some(slot) => slot.clone_from(solution),
+                None => self.solutions.push(solution.clone()),
+            }
+            self.file(i, archive, true);
+        }
+        self.fitness.resize(self.live, S::zero());
+        self.done.resize(self.live, false);
+    }
+
+    fn reset(&mut self, points: usize) {
+        self.live = 0;
+        self.places.clear();
+        self.fitness.clear();
+        self.done.clear();
+        self.outcomes.clear();
+        self.outcomes.resize(points, Outcome::NotEvaluated);
+    }
+
+    /// Files the solution in slot `live` as point `i`.
+    #[inline]
+    fn file(&mut self, i: usize, archive: &Archive<T>, deletes: bool) {
+        if archive.contains(&self.solutions[self.live]) {
+            if deletes {
+                self.outcomes[i] = Outcome::Deleted;
+                return;
+            }
+            self.outcomes[i] = Outcome::Known(S::nan()); // its fitness is filled in by `settle`
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a batch of 2^32 points does not fit in memory"
+        )]
+        self.places.push(i as u32);
+        self.live += 1;
+    }
+
+    /// What has to be evaluated, in order.
+    pub(crate) fn live(&self) -> &[T] {
+        &self.solutions[..self.live]
+    }
+
+    /// Takes fitness values computed elsewhere.
+    pub(crate) fn take_fitness(&mut self, fitness: &[S]) -> Result<(), Error> {
+        if fitness.len() != self.live {
+            return Err(Error::Tell {
+                wanted: self.live,
+                got: fitness.len(),
+            });
+        }
+        self.fitness.copy_from_slice(fitness);
+        self.done.fill(true);
+        Ok(())
+    }
+}
+
+/// The books of one slice.
+#[derive(Debug)]
+pub(crate) struct Ledger {
+    pub(crate) budget: Budget,
+    pub(crate) counts: Counts,
+    pub(crate) trace: Vec<TracePoint>,
+    pub(crate) stop: Option<StopReason>,
+    pub(crate) clock: Clock,
+    alarm: Option<Alarm>,
+    next_count: u64,
+    next_time: Duration,
+    next_progress: Duration,
+}
+
+impl Ledger {
+    /// Opens the books; time runs from here.
+    pub(crate) fn open(budget: &Budget) -> Self {
+        Self {
+            budget: budget.clone(),
+            counts: Counts::default(),
+            trace: Vec::new(),
+            stop: None,
+            clock: Clock::start(Duration::ZERO),
+            alarm: budget.time.map(Alarm::set),
+            next_count: 1,
+            next_time: budget.time.map_or(Duration::MAX, |time| time / 100),
+            next_progress: PROGRESS_EVERY,
+        }
+    }
+
+    /// How many more evaluations the budget allows.
+    #[inline]
+    pub(crate) fn remaining(&self) -> usize {
+        let left = self
+            .budget
+            .evaluations
+            .map_or(u64::MAX, |limit| limit - self.counts.evaluations);
+        usize::try_from(left).unwrap_or(usize::MAX)
+    }
+
+    /// Share of the budget used, as of the last look at the clock.
+    #[inline]
+    pub(crate) fn share(&self) -> f64 {
+        self.budget.share(self.counts.evaluations, self.clock.seen())
+    }
+
+    /// Looks whether somebody has ended the slice from outside.
+    #[inline]
+    fn interrupted(&mut self) -> bool {
+        if self.alarm.as_ref().is_some_and(Alarm::has_rung) {
+            self.stop = Some(StopReason::Time);
+        } else if self
+            .budget
+            .cancel
+            .as_ref()
+            .is_some_and(crate::Cancel::is_cancelled)
+        {
+            self.stop = Some(StopReason::Cancelled);
+        }
+        self.stop.is_some()
+    }
+
+    #[inline]
+    fn pass(&mut self, evaluations: usize) {
+        if let Some(elapsed) = self.clock.pass(evaluations as u64)
+            && self.budget.time.is_some_and(|limit| elapsed >= limit)
+        {
+            self.stop = Some(StopReason::Time);
+        }
+    }
+
+    /// Looks at limits after an evaluation that happened elsewhere.
+    pub(crate) fn evaluated_elsewhere(&mut self, evaluations: usize) {
+        self.pass(evaluations);
+        let _ = self.interrupted();
+    }
+
+    /// Computes the fitness of what is live, until time is up.
+    pub(crate) fn evaluate<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, P::Solution>,
+        threads: &Threads,
+    ) {
+        // Proposals that need no evaluation take time as well.
+        self.pass(candidates.outcomes.len() - candidates.live);
+        #[cfg(feature = "rayon")]
+        if self.evaluate_in_parallel(problem, candidates, threads) {
+            return;
+        }
+        let _ = threads;
+        let mut from = 0;
+        while from < candidates.live && !self.interrupted() {
+            let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
+            let to = candidates.live.min(from.saturating_add(chunk));
+            problem.fitness_all(&candidates.solutions[from..to], &mut candidates.fitness[from..to]);
+            candidates.done[from..to].fill(true);
+            self.pass(to - from);
+            from = to;
+        }
+    }
+
+    /// Returns `false` where threads would not pay: then nothing was done.
+    #[cfg(feature = "rayon")]
+    fn evaluate_in_parallel<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, P::Solution>,
+        threads: &Threads,
+    ) -> bool {
+        use rayon::prelude::*;
+
+        /// Below this much work, handing it to threads costs more than it saves.
+        const WORTH: Duration = Duration::from_micros(30);
+
+        let Some(pool) = &threads.pool else { return false };
+        let live = candidates.live;
+        let work = self
+            .clock
+            .cost()
+            .saturating_mul(u32::try_from(live).unwrap_or(u32::MAX));
+        if live < 2 || work < WORTH || self.interrupted() {
+            return false;
+        }
+        let deadline = self.budget.time.and_then(|limit| self.clock.deadline(limit));
+        let cancel = self.budget.cancel.clone();
+        let over = || {
+            deadline.is_some_and(crate::clock::has_come)
+                || cancel.as_ref().is_some_and(crate::Cancel::is_cancelled)
+        };
+        let Candidates {
+            solutions,
+            fitness,
+            done,
+            ..
+        } = candidates;
+        pool.install(|| {
+            (&solutions[..live], &mut fitness[..live], &mut done[..live])
+                .into_par_iter()
+                .with_max_len(1)
+                .for_each(|(solution, fitness, done)| {
+                    if !over() {
+                        *fitness = problem.fitness(solution);
+                        *done = true;
+                    }
+                });
+        });
+        self.pass(live);
+        let _ = self.interrupted();
+        true
+    }
+
+    /// Enters what was computed, in order: counts, hits, trace, limits.
+    pub(crate) fn settle<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, P::Solution>,
+        archive: &mut Archive<P::Solution>,
+        observer: &mut dyn Observer<P::Solution>,
+    ) {
+        let threshold = problem.threshold();
+        let mut next = 0; // of the live ones
+        for i in 0..candidates.outcomes.len() {
+            let is_live = next < candidates.live && candidates.places[next] as usize == i;
+            if !is_live && candidates.outcomes[i] != Outcome::Deleted {
+                continue; // beyond the budget
+            }
+            let slot = next;
+            next += usize::from(is_live);
+            if self.stops_before_more() || (is_live && !candidates.done[slot]) {
+                candidates.outcomes[i] = Outcome::NotEvaluated;
+                continue;
+            }
+            self.counts.evaluations += 1;
+            if is_live {
+                candidates.outcomes[i] = self.judge(
+                    problem,
+                    candidates,
+                    slot,
+                    candidates.outcomes[i],
+                    threshold,
+                    archive,
+                    observer,
+                );
+            } else {
+                self.counts.duplicates += 1;
+            }
+            if self.counts.evaluations == self.next_count {
+                self.record(archive.len());
+                self.next_count = next_count(self.next_count);
+            }
+        }
+        if self.budget.evaluations == Some(self.counts.evaluations) && self.stop.is_none() {
+            self.stop = Some(StopReason::Evaluations);
+        }
+        let seen = self.clock.seen();
+        if seen >= self.next_time || seen >= self.next_progress {
+            self.tick(seen, archive.len(), observer);
+        }
+    }
+
+    /// Enough hits, or an observer's word: what comes later in the batch is not entered. Time that ran out in the middle of
+    /// a batch loses nothing that was computed.
+    fn stops_before_more(&self) -> bool {
+        matches!(self.stop, Some(StopReason::Hits | StopReason::Observer))
+    }
+
+    #[inline]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one step of `settle`, apart for its length"
+    )]
+    fn judge<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        candidates: &Candidates<P::Scalar, P::Solution>,
+        slot: usize,
+        before: Outcome<P::Scalar>,
+        threshold: P::Scalar,
+        archive: &mut Archive<P::Solution>,
+        observer: &mut dyn Observer<P::Solution>,
+    ) -> Outcome<P::Scalar> {
+        self.counts.fitness_calls += 1;
+        let fitness = candidates.fitness[slot];
+        let known = matches!(before, Outcome::Known(_));
+        self.counts.duplicates += u64::from(known);
+        if !fitness.is_finite() {
+            self.counts.non_finite += 1;
+            Outcome::NonFinite
+        } else if known {
+            Outcome::Known(fitness)
+        } else if fitness < threshold {
+            let solution = problem.canonical(candidates.solutions[slot].clone());
+            let seconds = self.clock.elapsed().as_secs_f64();
+            if !archive.insert(solution, self.counts.evaluations, seconds) {
+                // The same as an earlier one of this batch, or its representative is known.
+                self.counts.duplicates += 1;
+                return Outcome::Deleted;
+            }
+            self.greet(archive, observer);
+            Outcome::Hit(fitness)
+        } else {
+            Outcome::Miss(fitness)
+        }
+    }
+
+    #[cold]
+    fn greet<T>(&mut self, archive: &Archive<T>, observer: &mut dyn Observer<T>) {
+        let count = archive.len();
+        if let Some(hit) = archive.get(count - 1)
+            && observer.hit(hit, count).is_break()
+        {
+            self.stop = Some(StopReason::Observer);
+        }
+        if self.budget.hits.is_some_and(|limit| count as u64 >= limit) {
+            self.stop = Some(StopReason::Hits);
+        }
+    }
+
+    #[cold]
+    fn tick<T>(&mut self, seen: Duration, hits: usize, observer: &mut dyn Observer<T>) {
+        if seen >= self.next_time {
+            self.record(hits);
+            let step = self.budget.time.unwrap_or(Duration::MAX) / 100;
+            while self.next_time <= seen {
+                self.next_time += step.max(Duration::from_nanos(1));
+            }
+        }
+        if seen >= self.next_progress {
+            self.next_progress = seen + PROGRESS_EVERY;
+            let now = self.point(seen, hits);
+            if observer.progress(now, self.share()).is_break() {
+                self.stop.get_or_insert(StopReason::Observer);
+            }
+        }
+    }
+
+    fn point(&self, elapsed: Duration, hits: usize) -> TracePoint {
+        TracePoint {
+            evaluations: self.counts.evaluations,
+            elapsed_seconds: elapsed.as_secs_f64(),
+            hits: hits as u64,
+        }
+    }
+
+    #[cold]
+    fn record(&mut self, hits: usize) {
+        let point = self.point(self.clock.elapsed(), hits);
+        self.trace.push(point);
+    }
+
+    /// Closes the books: the last point of the trace, the time taken and the overshoot.
+    pub(crate) fn close(&mut self, hits: usize) -> (Duration, Duration) {
+        self.alarm = None;
+        let elapsed = self.clock.elapsed();
+        if self
+            .trace
+            .last()
+            .is_none_or(|last| last.evaluations < self.counts.evaluations)
+        {
+            let point = self.point(elapsed, hits);
+            self.trace.push(point);
+        }
+        (
+            elapsed,
+            self.budget
+                .time
+                .map_or(Duration::ZERO, |limit| elapsed.saturating_sub(limit)),
+        )
+    }
+}
+
+/// The next evaluation count of the trace: 1, 2, 3, …, 10, 12, 15, 19, 24, …, some ten a decade and the same in every run.
+fn next_count(count: u64) -> u64 {
+    count + (count / 4).max(1)
+}

@@ -1,0 +1,221 @@
+//! The problem: what a candidate means, how good it is, and when it is good enough.
+
+use crate::error::Error;
+use crate::identity::{Identity, Located};
+use crate::parameter::{Parameter, Values};
+use crate::scalar::Real;
+use crate::space::{Region, Space};
+
+/// A problem whose answers are all candidates with F(x) < delta.
+///
+/// Four methods say what the problem is; the others are capabilities that a problem may offer and that every engine runs
+/// without. Methods get *values* (integers on integer axes), never the real positions that engines move.
+///
+/// All of them must be pure: the same arguments give the same result, from any thread, until the problem is changed
+/// between two slices.
+///
+/// ```
+/// use satisfice::{Axis, SatisficingProblem, Space};
+///
+/// /// Pairs of numbers below 100 whose sum of squares is a square.
+/// struct Pythagoras(Space<f64>);
+///
+/// impl SatisficingProblem for Pythagoras {
+///     type Scalar = f64;
+///     type Solution = [u32; 2];
+///     fn space(&self) -> &Space<f64> { &self.0 }
+///     fn decode(&self, values: &[f64]) -> [u32; 2] { [values[0] as u32, values[1] as u32] }
+///     fn fitness(&self, &[a, b]: &[u32; 2]) -> f64 {
+///         let root = f64::from(a * a + b * b).sqrt();
+///         root - root.floor()
+///     }
+///     fn threshold(&self) -> f64 { 1e-9 }
+/// }
+/// # Pythagoras(Space::new([Axis::integer(1, 99), Axis::integer(1, 99)])?);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+pub trait SatisficingProblem: Sync {
+    /// `f32` or `f64`.
+    type Scalar: Real;
+    /// What a point decodes to, and what counts once.
+    type Solution: Identity + Clone + Send + Sync;
+
+    /// The box that is searched. Its number of axes must not change during a search.
+    fn space(&self) -> &Space<Self::Scalar>;
+
+    /// The solution at `values`, one per axis, each inside its bounds and whole on integer axes.
+    fn decode(&self, values: &[Self::Scalar]) -> Self::Solution;
+
+    /// F: smaller is better. A fitness that is NaN or infinite is never a hit.
+    fn fitness(&self, solution: &Self::Solution) -> Self::Scalar;
+
+    /// delta: a hit is F < delta, strictly. Any value but NaN, 0 and negative ones included.
+    fn threshold(&self) -> Self::Scalar;
+
+    /// Decodes into a solution that exists already; worth writing where a solution owns memory.
+    #[inline]
+    fn decode_into(&self, values: &[Self::Scalar], solution: &mut Self::Solution) {
+        *solution = self.decode(values);
+    }
+
+    /// F of many solutions at once, into `fitness` of the same length; worth writing where F vectorises.
+    #[inline]
+    fn fitness_all(&self, solutions: &[Self::Solution], fitness: &mut [Self::Scalar]) {
+        for (solution, fitness) in solutions.iter().zip(fitness) {
+            *fitness = self.fitness(solution);
+        }
+    }
+
+    /// Writes values that decode to `solution`; `false` where that is not offered or not possible.
+    fn encode(&self, _solution: &Self::Solution, _values: &mut [Self::Scalar]) -> bool {
+        false
+    }
+
+    /// Visits the solutions next to `of`, in a fixed order; `false` where that is not offered. Needs [`encode`].
+    ///
+    /// Where a problem offers none, engines use the next lattice points on integer axes and shrinking steps on
+    /// continuous ones.
+    ///
+    /// [`encode`]: SatisficingProblem::encode
+    fn neighbours(&self, _of: &Self::Solution, _visit: &mut dyn FnMut(Self::Solution)) -> bool {
+        false
+    }
+
+    /// A value that F exceeds or equals everywhere in `region`, `None` where no bound is known. Soundness is the
+    /// problem's duty: a bound that is too high loses hits.
+    fn lower_bound(&self, _region: &Region<Self::Scalar>) -> Option<Self::Scalar> {
+        None
+    }
+
+    /// The representative of a hit, for instance a root polished; called for hits only. Two hits with the same
+    /// representative count once.
+    fn canonical(&self, hit: Self::Solution) -> Self::Solution {
+        hit
+    }
+
+    /// Name and parameters, for the report.
+    fn description(&self) -> Description {
+        Description::default()
+    }
+}
+
+/// What a report says of its problem.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Description {
+    /// Its name, `"unnamed"` by default.
+    pub name: String,
+    /// Its parameters as text, in a fixed order.
+    pub parameters: Vec<(String, String)>,
+}
+
+impl Default for Description {
+    fn default() -> Self {
+        Self {
+            name: "unnamed".to_owned(),
+            parameters: Vec::new(),
+        }
+    }
+}
+
+/// A problem that can be named on a command line: it is made from a table of parameters.
+pub trait Catalogued: SatisficingProblem + Sized {
+    /// Its name, in lower case with hyphens.
+    const NAME: &'static str;
+    /// One line.
+    const SUMMARY: &'static str;
+    /// Where it comes from.
+    const SOURCE: &'static str;
+    /// Its parameters with defaults and ranges.
+    const PARAMETERS: &'static [Parameter];
+
+    /// The problem with these parameters; values are within their ranges already.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where values do not fit each other.
+    fn from_values(values: &Values) -> Result<Self, Error>;
+
+    /// How many distinct hits there are, where that is known or can be enumerated in seconds. May take long.
+    fn reference_hits(&self) -> Option<u64> {
+        None
+    }
+}
+
+/// The problem made by [`from_fn`].
+#[derive(Debug, Clone)]
+pub struct FnProblem<S, F> {
+    space: Space<S>,
+    threshold: S,
+    separation: S,
+    fitness: F,
+}
+
+/// A problem from a closure: all points of `space` with `fitness(values) < threshold`.
+///
+/// On an all-integer space, different values are different answers. With a continuous axis, points within a separation
+/// radius count once: 1 % of the longest axis unless [`FnProblem::separation`] says otherwise.
+///
+/// ```
+/// use satisfice::{engine, from_fn, Budget, Search, Space};
+/// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| ((x[0] - 50.0).powi(2) + (x[1] - 20.0).powi(2)).sqrt());
+/// let report = Search::new(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(100_000))?;
+/// assert_eq!(report.hit_count(), 21); // the lattice points of a disc of radius 2.5
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
+    space: Space<S>,
+    threshold: S,
+    fitness: F,
+) -> FnProblem<S, F> {
+    let continuous = space.axes().iter().filter(|axis| !axis.is_integer());
+    let longest = continuous.fold(S::zero(), |longest, axis| longest.max(axis.width()));
+    FnProblem {
+        space,
+        threshold,
+        separation: longest * S::of(0.01),
+        fitness,
+    }
+}
+
+impl<S: Real, F> FnProblem<S, F> {
+    /// The same problem with another radius within which two points are one answer, in units of the space; 0 lets only
+    /// equal points be one. A negative radius or NaN counts as 0.
+    #[must_use]
+    pub fn separation(mut self, radius: S) -> Self {
+        self.separation = radius.max(S::zero());
+        self
+    }
+}
+
+impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
+    type Scalar = S;
+    type Solution = Located<S>;
+
+    fn space(&self) -> &Space<S> {
+        &self.space
+    }
+    fn decode(&self, values: &[S]) -> Located<S> {
+        Located::new(values, self.separation)
+    }
+    fn decode_into(&self, values: &[S], solution: &mut Located<S>) {
+        solution.coordinates.clear();
+        solution.coordinates.extend_from_slice(values);
+    }
+    #[inline]
+    fn fitness(&self, solution: &Located<S>) -> S {
+        (self.fitness)(&solution.coordinates)
+    }
+    fn threshold(&self) -> S {
+        self.threshold
+    }
+    fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
+        values.copy_from_slice(&solution.coordinates);
+        true
+    }
+    fn description(&self) -> Description {
+        Description {
+            name: "closure".to_owned(),
+            parameters: Vec::new(),
+        }
+    }
+}

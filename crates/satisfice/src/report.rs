@@ -1,0 +1,132 @@
+//! What a slice found, and all that is needed to replay it.
+
+use core::time::Duration;
+use std::sync::Arc;
+
+use crate::archive::{Archive, Hit};
+use crate::budget::{Budget, StopReason};
+use crate::problem::Description;
+
+/// How complete the hits are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Completeness {
+    /// All hits of the space are listed: it was covered, or excluded by bounds.
+    Proved,
+    /// There may be more. No hits does not mean that there are none.
+    Unknown,
+}
+
+/// One point of the curve |C| against evaluations and time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TracePoint {
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// Seconds since the start of the slice.
+    pub elapsed_seconds: f64,
+    /// |C|.
+    pub hits: u64,
+}
+
+/// What the ledger counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Counts {
+    /// Candidates that reached the ledger.
+    pub evaluations: u64,
+    /// Calls of the fitness.
+    pub fitness_calls: u64,
+    /// Candidates whose solution was in C already, before or after their fitness was called.
+    pub duplicates: u64,
+    /// Fitness values that were NaN or infinite.
+    pub non_finite: u64,
+    /// Hits of the slice before that were evaluated anew at the start of this one.
+    pub verified: u64,
+    /// Calls of the problem's neighbours.
+    pub neighbour_calls: u64,
+    /// Calls of the problem's bounds.
+    pub bound_calls: u64,
+}
+
+/// A name with parameters as text.
+pub use crate::problem::Description as Described;
+
+/// The result of one time slice: plain data.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de> + crate::Identity"
+    ))
+)]
+pub struct Report<T> {
+    /// The problem and its parameters.
+    pub problem: Description,
+    /// The engine and all its parameters.
+    pub engine: Description,
+    /// `f32` or `f64`.
+    pub scalar: String,
+    /// The seed.
+    pub seed: u64,
+    /// Which slice of the search this was, from 0.
+    pub slice: u64,
+    /// The budget.
+    pub budget: Budget,
+    /// Why it ended.
+    pub stop_reason: StopReason,
+    /// What was counted.
+    pub counts: Counts,
+    /// Wall time of the slice.
+    pub elapsed: Duration,
+    /// How much longer than the time budget it took.
+    pub overshoot: Duration,
+    /// Whether all hits are known to be listed.
+    pub completeness: Completeness,
+    /// |C| at fixed evaluation counts (some ten a decade) and, under a time budget, at each hundredth of it.
+    pub trace: Vec<TracePoint>,
+    /// The version of this crate.
+    pub version: String,
+    /// C.
+    pub archive: Arc<Archive<T>>,
+}
+
+impl<T> Report<T> {
+    /// The hits, in the order found.
+    pub fn hits(&self) -> impl ExactSizeIterator<Item = Hit<'_, T>> {
+        self.archive.iter()
+    }
+
+    /// |C|.
+    #[must_use]
+    pub fn hit_count(&self) -> usize {
+        self.archive.len()
+    }
+
+    /// Share of `reference` hits that were found, `None` for a reference of 0.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    pub fn recall(&self, reference: u64) -> Option<f64> {
+        (reference > 0).then(|| self.archive.len() as f64 / reference as f64)
+    }
+}
+
+impl<T> core::fmt::Display for Report<T> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(
+            f,
+            "{} hits in {} evaluations ({} duplicates) and {:.3} s by {} on {}, seed {}; stopped by {:?}; completeness {:?}",
+            self.archive.len(),
+            self.counts.evaluations,
+            self.counts.duplicates,
+            self.elapsed.as_secs_f64(),
+            self.engine.name,
+            self.problem.name,
+            self.seed,
+            self.stop_reason,
+            self.completeness,
+        )
+    }
+}

@@ -1,0 +1,107 @@
+//! The floating-point type a search runs in: `f32` or `f64`.
+
+use core::fmt::{Debug, Display, LowerExp};
+
+use num_traits::{Float, FloatConst};
+
+use crate::engine::{Engine, Entry};
+use crate::error::Error;
+use crate::parameter::Values;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// `f32` or `f64`, over [`num_traits::Float`].
+///
+/// Sealed: state is saved bit by bit and the registry builds every engine for exactly these two types.
+pub trait Real:
+    Float
+    + FloatConst
+    + crate::state::Saved
+    + Default
+    + Debug
+    + Display
+    + LowerExp
+    + Send
+    + Sync
+    + sealed::Sealed
+    + 'static
+{
+    /// The name of the type, `"f32"` or `"f64"`.
+    const NAME: &'static str;
+    /// The largest `n` such that every whole number of magnitude up to `n` is representable: 2^24 or 2^53.
+    const MAX_INTEGER: i64;
+
+    /// The nearest value of this type; overflow gives an infinity.
+    #[must_use]
+    fn of(value: f64) -> Self;
+    /// The same value as `f64`, exactly.
+    #[must_use]
+    fn f64(self) -> f64;
+    /// The bits, widened to 64; [`Real::from_word`] is its inverse.
+    #[must_use]
+    fn to_word(self) -> u64;
+    /// The value with these bits, the upper half ignored for `f32`.
+    #[must_use]
+    fn from_word(word: u64) -> Self;
+    #[doc(hidden)]
+    fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error>;
+}
+
+impl Real for f32 {
+    const NAME: &'static str = "f32";
+    const MAX_INTEGER: i64 = 1 << 24;
+
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounding to f32 is what is asked for"
+    )]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+    #[inline]
+    fn f64(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline]
+    fn to_word(self) -> u64 {
+        u64::from(self.to_bits())
+    }
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "the upper half is not used")]
+    fn from_word(word: u64) -> Self {
+        Self::from_bits(word as u32)
+    }
+    fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
+        (entry.build_f32)(values)
+    }
+}
+
+impl Real for f64 {
+    const NAME: &'static str = "f64";
+    const MAX_INTEGER: i64 = 1 << 53;
+
+    #[inline]
+    fn of(value: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn f64(self) -> f64 {
+        self
+    }
+    #[inline]
+    fn to_word(self) -> u64 {
+        self.to_bits()
+    }
+    #[inline]
+    fn from_word(word: u64) -> Self {
+        Self::from_bits(word)
+    }
+    fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
+        (entry.build_f64)(values)
+    }
+}

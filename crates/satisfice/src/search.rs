@@ -1,0 +1,432 @@
+//! The loop: engine, ledger, archive, slice after slice.
+
+use core::cell::Cell;
+use std::sync::Arc;
+
+use crate::archive::Archive;
+use crate::batch::Batch;
+use crate::budget::{Budget, StopReason};
+use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
+use crate::error::Error;
+use crate::evaluate::{Candidates, Ledger, Threads};
+use crate::identity::Identity;
+use crate::observer::Observer;
+use crate::problem::{Description, SatisficingProblem};
+use crate::report::{Completeness, Report};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::view::{Calls, View};
+
+/// An engine that asks for more this often without proposing anything has nothing to propose.
+const EMPTY_ASKS: usize = 1000;
+/// Hits of the slice before are verified in batches of this size.
+const VERIFY_BATCH: usize = 64;
+
+/// A search: engine, settings and the set C, for one problem or for one that moves from slice to slice.
+///
+/// It borrows no problem: [`Search::run`] is given one for each time slice. A second call goes on with the next slice,
+/// warm from the hits of the last one, whose C it replaces.
+///
+/// ```
+/// use satisfice::{engine, from_fn, Budget, Search, Space};
+///
+/// // All x in [-2, 2]^2 near the unit circle, a new answer every 0.2.
+/// let problem = from_fn(Space::cube(2, -2.0, 2.0)?, 0.01, |x: &[f64]| (x[0].hypot(x[1]) - 1.0).abs())
+///     .separation(0.2);
+/// let mut search = Search::new(engine::build("latest-hit-qpso")?).seed(7);
+/// let report = search.run(&problem, &Budget::evaluations(20_000))?;
+/// println!("{report}");
+/// assert!(report.hit_count() >= 15);
+/// for hit in report.hits().take(3) {
+///     println!("{:?} at evaluation {}", hit.solution.coordinates, hit.evaluation);
+/// }
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+pub struct Search<S, T> {
+    engine: Box<dyn Engine<S>>,
+    description: Description,
+    seed: u64,
+    threads: usize,
+    warm_start: Option<WarmStart>,
+    rng: SearchRng,
+    slices: u64,
+    dimension: Option<usize>,
+    previous: Arc<Archive<T>>,
+    pool: Option<Threads>,
+    slice: Option<Slice<S, T>>,
+}
+
+/// A slice that has begun.
+struct Slice<S, T> {
+    ledger: Ledger,
+    archive: Archive<T>,
+    batch: Batch<S>,
+    candidates: Candidates<S, T>,
+    origin: Origin,
+    /// How many hits of the slice before have been verified, or all of them where none is to be.
+    verified: usize,
+    /// What the engine's last `ask` said.
+    last: Ask,
+    calls: Calls,
+    scratch: Cell<Vec<S>>,
+    outstanding: bool,
+}
+
+impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
+    /// A search by this engine: one [by name](crate::engine::build), or [one's own](Named::new).
+    #[must_use]
+    pub fn new(engine: Named<S>) -> Self {
+        let Named {
+            name,
+            parameters,
+            engine,
+        } = engine;
+        Self {
+            engine,
+            description: Description { name, parameters },
+            seed: 0,
+            threads: 1,
+            warm_start: None,
+            rng: SearchRng::new(0),
+            slices: 0,
+            dimension: None,
+            previous: Arc::default(),
+            pool: None,
+            slice: None,
+        }
+    }
+
+    /// The seed, 0 by default. Setting it begins the sequence of random numbers anew.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self.rng = SearchRng::new(seed);
+        self
+    }
+
+    /// How many threads evaluate, 1 by default, 0 for as many as there are cores. Needs the feature `rayon`; without it one
+    /// thread works. Reports under an evaluation budget do not depend on it.
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = threads;
+        self.pool = None;
+        self
+    }
+
+    /// How slices after the first make use of the hits before; by default as the engine wants it.
+    #[must_use]
+    pub fn warm_start(mut self, rule: WarmStart) -> Self {
+        self.warm_start = Some(rule);
+        self
+    }
+
+    /// Forgets the hits so far: the next slice starts cold.
+    pub fn clear(&mut self) {
+        self.previous = Arc::default();
+    }
+
+    /// Runs one time slice on `problem`.
+    ///
+    /// # Errors
+    /// [`Error::Budget`] for a budget that is empty or zero, [`Error::Threshold`] for a threshold of NaN,
+    /// [`Error::SpaceChanged`] if the number of axes is another than in the slice before, [`Error::Threads`].
+    pub fn run<P>(&mut self, problem: &P, budget: &Budget) -> Result<Report<T>, Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        self.run_observed(problem, budget, &mut ())
+    }
+
+    /// The same while somebody watches.
+    ///
+    /// # Errors
+    /// As [`Search::run`].
+    pub fn run_observed<P>(
+        &mut self,
+        problem: &P,
+        budget: &Budget,
+        observer: &mut dyn Observer<T>,
+    ) -> Result<Report<T>, Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        if self.pool.is_none() {
+            self.pool = Some(Threads::new(self.threads)?);
+        }
+        self.begin(problem, budget)?;
+        while self.propose(problem) {
+            if let (Some(slice), Some(pool)) = (&mut self.slice, &self.pool) {
+                slice.ledger.evaluate(problem, &mut slice.candidates, pool);
+            }
+            self.settle(problem, observer);
+        }
+        self.finish(problem)
+    }
+
+    /// Begins a slice that is driven by hand: then [`ask`](Search::ask), evaluate, [`tell`](Search::tell) until `ask` gives
+    /// nothing, then [`finish`](Search::finish). A slice that has begun before and was not finished is dropped.
+    ///
+    /// ```
+    /// # use satisfice::{engine, from_fn, Budget, SatisficingProblem, Search, Space};
+    /// # let problem = from_fn(Space::lattice(2, 50)?, 3.0, |x: &[f64]| x[0] + x[1]);
+    /// let mut search = Search::new(engine::build("random")?);
+    /// search.begin(&problem, &Budget::evaluations(5000))?;
+    /// loop {
+    ///     let candidates = search.ask(&problem)?;
+    ///     if candidates.is_empty() {
+    ///         break;
+    ///     }
+    ///     // On a cluster, in a simulator, in another language:
+    ///     let fitness: Vec<f64> = candidates.iter().map(|c| problem.fitness(c)).collect();
+    ///     search.tell(&problem, &fitness)?;
+    /// }
+    /// let report = search.finish(&problem)?;
+    /// assert_eq!(report.hit_count(), 6);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Search::run`].
+    pub fn begin<P>(&mut self, problem: &P, budget: &Budget) -> Result<(), Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        budget.check()?;
+        if problem.threshold().is_nan() {
+            return Err(Error::Threshold);
+        }
+        let now = problem.space().dimension();
+        match self.dimension {
+            Some(before) if before != now => return Err(Error::SpaceChanged { before, now }),
+            _ => self.dimension = Some(now),
+        }
+        let rule = self.warm_start.unwrap_or_else(|| self.engine.warm_start());
+        if rule == WarmStart::Cold {
+            self.clear();
+        }
+        let slice = self.slice.insert(Slice {
+            ledger: Ledger::open(budget),
+            archive: Archive::default(),
+            batch: Batch::new(now),
+            candidates: Candidates::default(),
+            origin: Origin::Engine,
+            verified: if rule == WarmStart::Verify {
+                0
+            } else {
+                self.previous.len()
+            },
+            last: Ask::More,
+            calls: Calls::default(),
+            scratch: Cell::default(),
+            outstanding: false,
+        });
+        self.engine.begin(&slice.view(problem, &self.previous));
+        Ok(())
+    }
+
+    /// The next solutions to evaluate, none of them in C; none at all when the slice is over.
+    ///
+    /// # Errors
+    /// [`Error::Tell`] where the last ones have not been told.
+    pub fn ask<P>(&mut self, problem: &P) -> Result<&[T], Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        if let Some(slice) = self.slice.as_ref().filter(|slice| slice.outstanding) {
+            return Err(Error::Tell {
+                wanted: slice.candidates.live().len(),
+                got: 0,
+            });
+        }
+        while self.propose(problem) {
+            match &mut self.slice {
+                Some(slice) if !slice.candidates.live().is_empty() => {
+                    slice.outstanding = true;
+                    break;
+                }
+                // All of them are in C: that is settled without anybody's help.
+                _ => self.settle(problem, &mut ()),
+            }
+        }
+        Ok(match &self.slice {
+            Some(slice) if slice.outstanding => slice.candidates.live(),
+            _ => &[],
+        })
+    }
+
+    /// Tells the fitness of what [`ask`](Search::ask) gave, in its order.
+    ///
+    /// # Errors
+    /// [`Error::Tell`] where the number of values is another.
+    pub fn tell<P>(&mut self, problem: &P, fitness: &[S]) -> Result<(), Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        match &mut self.slice {
+            Some(slice) if slice.outstanding => {
+                slice.candidates.take_fitness(fitness)?;
+                slice.outstanding = false;
+                slice.ledger.evaluated_elsewhere(fitness.len());
+            }
+            _ => {
+                return Err(Error::Tell {
+                    wanted: 0,
+                    got: fitness.len(),
+                });
+            }
+        }
+        self.settle(problem, &mut ());
+        Ok(())
+    }
+
+    /// Ends the slice and reports. One that is not over counts as cancelled.
+    ///
+    /// # Errors
+    /// [`Error::State`] where no slice has begun.
+    pub fn finish<P>(&mut self, problem: &P) -> Result<Report<T>, Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        let mut slice = self
+            .slice
+            .take()
+            .ok_or_else(|| Error::State("no slice has begun".to_owned()))?;
+        let (elapsed, overshoot) = slice.ledger.close(slice.archive.len());
+        let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
+        slice.ledger.counts.neighbour_calls = slice.calls.neighbours.get();
+        slice.ledger.counts.bound_calls = slice.calls.bounds.get();
+        slice.archive.rest();
+        self.previous = Arc::new(slice.archive);
+        self.slices += 1;
+        Ok(Report {
+            problem: problem.description(),
+            engine: self.description.clone(),
+            scalar: S::NAME.to_owned(),
+            seed: self.seed,
+            slice: self.slices - 1,
+            budget: slice.ledger.budget,
+            stop_reason,
+            counts: slice.ledger.counts,
+            elapsed,
+            overshoot,
+            completeness: if stop_reason == StopReason::Covered {
+                Completeness::Proved
+            } else {
+                Completeness::Unknown
+            },
+            trace: slice.ledger.trace,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            archive: Arc::clone(&self.previous),
+        })
+    }
+
+    /// Fills the batch and prepares its candidates; `false` when the slice is over.
+    #[inline]
+    fn propose<P>(&mut self, problem: &P) -> bool
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        let Some(slice) = &mut self.slice else {
+            return false;
+        };
+        if slice.ledger.stop.is_some() {
+            return false;
+        }
+        let limit = slice.ledger.remaining();
+        if slice.verified < self.previous.len() {
+            slice.propose_previous(problem, &self.previous, limit);
+            return true;
+        }
+        slice.origin = Origin::Engine;
+        for _ in 0..EMPTY_ASKS {
+            if slice.last != Ask::More {
+                break;
+            }
+            let mut batch = core::mem::replace(&mut slice.batch, Batch::new(1));
+            batch.clear();
+            slice.last = self
+                .engine
+                .ask(&slice.view(problem, &self.previous), &mut self.rng, &mut batch);
+            slice.batch = batch;
+            if !slice.batch.is_empty() {
+                let deletes = self.engine.deletes();
+                slice
+                    .candidates
+                    .prepare(problem, &slice.archive, &mut slice.batch, limit, deletes);
+                return true;
+            }
+        }
+        let covered = slice.last == Ask::Covered;
+        slice.ledger.stop = Some(if covered {
+            StopReason::Covered
+        } else {
+            StopReason::Exhausted
+        });
+        false
+    }
+
+    /// Settles the batch and tells the engine.
+    #[inline]
+    fn settle<P>(&mut self, problem: &P, observer: &mut dyn Observer<T>)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        let Some(slice) = &mut self.slice else { return };
+        slice
+            .ledger
+            .settle(problem, &mut slice.candidates, &mut slice.archive, observer);
+        if slice.origin == Origin::WarmStart {
+            slice.ledger.counts.verified = slice.verified as u64;
+            if slice.batch.is_empty() {
+                return; // a problem that does not encode: the engine has nothing to see
+            }
+        }
+        let view = slice.view(problem, &self.previous);
+        self.engine
+            .tell(&view, &slice.batch, &slice.candidates.outcomes, slice.origin);
+    }
+}
+
+impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
+    #[inline]
+    fn view<'a, P>(&'a self, problem: &'a P, previous: &'a Archive<T>) -> View<'a, P>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        View {
+            problem,
+            archive: &self.archive,
+            previous,
+            evaluations: self.ledger.counts.evaluations,
+            share: self.ledger.share(),
+            calls: &self.calls,
+            scratch: &self.scratch,
+        }
+    }
+
+    /// The next hits of the slice before, to be evaluated anew.
+    fn propose_previous<P>(&mut self, problem: &P, previous: &Archive<T>, limit: usize)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        let space = problem.space();
+        let next = &previous.solutions()[self.verified..];
+        let next = &next[..next.len().min(VERIFY_BATCH).min(limit)];
+        self.batch.clear();
+        for solution in next {
+            let mut encoded = true;
+            self.batch.push_with(|position| {
+                encoded = problem.encode(solution, position);
+                space.positions(position);
+            });
+            if !encoded {
+                self.batch.clear();
+                break;
+            }
+        }
+        self.origin = Origin::WarmStart;
+        self.verified += next.len();
+        self.candidates
+            .prepare_solutions(next.iter(), &self.archive, limit);
+    }
+}
