@@ -1,6 +1,8 @@
 //! The one error type of this crate: data first, the sentence made from it.
 
 use std::fmt;
+use std::io;
+use std::path::PathBuf;
 
 /// What an index or a coordinate belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +64,54 @@ pub enum Error {
         /// How many there are.
         vertices: usize,
     },
+    /// A file can not be opened or read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A file can not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The extension of a file names no known format.
+    #[error("{}: unknown mesh format; the known extensions are {known}", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// The known extensions, separated by commas.
+        known: &'static str,
+    },
+    /// A file does not follow its format.
+    #[error("not a valid {format} file: {reason}")]
+    Malformed {
+        /// The format.
+        format: &'static str,
+        /// What is wrong, in one line.
+        reason: String,
+    },
+    /// What is wrong with a line of a file; lines count from 1.
+    #[error("line {line}: {source}")]
+    AtLine {
+        /// Number of the line.
+        line: usize,
+        /// What is wrong.
+        source: Box<Error>,
+    },
+    /// What is wrong with a file.
+    #[error("{}: {source}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<Error>,
+    },
     /// A parameter lies outside what is allowed.
     #[error("{parameter} = {value} is not allowed: {allowed}")]
     Parameter {
@@ -75,6 +125,39 @@ pub enum Error {
 }
 
 impl Error {
+    /// The error itself, without the file and the line it was found in.
+    #[must_use]
+    pub fn root(&self) -> &Self {
+        match self {
+            Self::AtLine { source, .. } | Self::InFile { source, .. } => source.root(),
+            other => other,
+        }
+    }
+
+    pub(crate) fn at_line(self, line: usize) -> Self {
+        Self::AtLine {
+            line,
+            source: Box::new(self),
+        }
+    }
+
+    /// [`Error::Malformed`] with the reason squeezed into one short line, whatever a library says in how many.
+    pub(crate) fn malformed(format: &'static str, reason: impl fmt::Display) -> Self {
+        const LONGEST: usize = 160;
+        let words: Vec<String> = reason
+            .to_string()
+            .split(|c: char| c.is_whitespace() || c.is_control())
+            .filter(|word| !word.is_empty())
+            .map(str::to_owned)
+            .collect();
+        let mut reason = words.join(" ");
+        if let Some((end, _)) = reason.char_indices().nth(LONGEST) {
+            reason.truncate(end);
+            reason.push_str(" ...");
+        }
+        Self::Malformed { format, reason }
+    }
+
     /// [`Error::Parameter`] from anything printable.
     pub(crate) fn parameter(
         parameter: &'static str,

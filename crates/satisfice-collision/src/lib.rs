@@ -7,6 +7,7 @@ pub mod broad;
 pub mod distance;
 mod error;
 pub mod generate;
+pub mod io;
 pub mod mesh;
 pub mod order;
 mod placement;

@@ -1,0 +1,128 @@
+//! Tests of the OBJ reader and writer.
+
+use proptest::prelude::*;
+
+use super::{SQUARE, message};
+use crate::Mesh;
+use crate::io::{Format, parse, write_obj};
+
+fn obj(text: &str) -> Mesh {
+    parse(Format::Obj, text.as_bytes()).unwrap()
+}
+
+#[test]
+fn obj_keeps_every_vertex_in_the_order_of_the_file() {
+    let mesh = obj("v 0 0 0\nv 9 9 9\nv 1 0 0\nv 0 1 0\nf 4 1 3\n");
+    assert_eq!(
+        mesh.vertices(),
+        [[0.0; 3], [9.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    );
+    assert_eq!(mesh.triangles(), [[3, 0, 2]]);
+    assert_eq!(obj("v 1 2 3\nv 4 5 6").vertices().len(), 2);
+}
+
+#[test]
+fn obj_points_lines_and_polylines() {
+    let mesh = obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\np 1 2\nl 1 2 3\nl -1 -2\nf 1 2\n");
+    assert_eq!(mesh.lines(), [[0, 1], [1, 2], [3, 2], [0, 1]]);
+    assert!(mesh.triangles().is_empty());
+}
+
+#[test]
+fn obj_polygons_become_fans_about_their_first_corner() {
+    let mesh = obj("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\nf 2 3 4 5");
+    assert_eq!(
+        mesh.triangles(),
+        [[0, 1, 2], [0, 2, 3], [0, 3, 4], [1, 2, 3], [1, 3, 4]]
+    );
+}
+
+#[test]
+fn obj_of_the_wild() {
+    // A byte order mark, carriage returns, texture and normal indices (out of range, too), objects and materials that
+    // share vertices, colours on some vertices only, a weight, a continued line, comments, an index before its vertex.
+    let mesh = obj(
+        "\u{feff}# made by hand\r\nmtllib missing.mtl\r\no one\r\nv 0 0 0 0.5 0.5 0.5\r\nv 2 0 0 2\r\n\
+         v 1 1 0\r\nvt 0 0\r\nvn 0 0 1\r\ng a b\r\nusemtl red\r\nf 1/1/1 2//9 \\\r\n 3/7\r\no two # again\r\n\
+         f 1 2 4 # forward\r\nv 0 1 0 0.1 0.2 0.3 0.4\r\ns off\r\n",
+    );
+    assert_eq!(mesh.vertices(), SQUARE);
+    assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 1, 3]]);
+    // Latin-1 in a comment.
+    assert!(parse(Format::Obj, b"# caf\xe9\nv 0 0 0\n").is_ok());
+}
+
+#[test]
+fn obj_is_read_in_double_precision() {
+    let mesh = obj("v 0.1 1e-300 123456789.123456789");
+    assert_eq!(mesh.vertex(0), [0.1, 1e-300, 123_456_789.123_456_79]);
+}
+
+#[test]
+fn obj_errors_name_the_line_and_the_element() {
+    let say = |text: &str| message(Format::Obj, text);
+    assert_eq!(say(""), "the mesh is empty: it has no vertex");
+    assert_eq!(
+        say("# nothing\nvn 0 0 1\n"),
+        "the mesh is empty: it has no vertex"
+    );
+    assert_eq!(
+        say("v 0 0 0\nv 1 0 0\nf 1 2 3\n"),
+        "line 3: face 0 names vertex 2, but the mesh has 2 vertices (0 to 1)"
+    );
+    assert_eq!(
+        say("v 0 0 0\nl 1 1\nl 1 0"),
+        "line 3: edge 1 names vertex -1, but the mesh has 1 vertices (0 to 0)"
+    );
+    assert_eq!(
+        say("v 0 0 0\np -2"),
+        "line 2: point 0 names vertex -1, but the mesh has 1 vertices (0 to 0)"
+    );
+    assert_eq!(
+        say("v 0 0 0\nf 1 x 1"),
+        "line 2: not a valid OBJ file: face 0 has the vertex index \"x\""
+    );
+    assert_eq!(
+        say("v 0 0 0\nf"),
+        "line 2: not a valid OBJ file: a face without vertices"
+    );
+    assert_eq!(
+        say("v 0 0 0\n\nv 1 2\nv 1 1 1"),
+        "line 3: not a valid OBJ file: position parse error"
+    );
+    assert_eq!(
+        say("v 1 1 1 0"),
+        "line 1: not a valid OBJ file: scaling (w) by zero"
+    );
+    assert_eq!(
+        say("v 0 0 0\nv 0 -inf 0"),
+        "vertex 1 has y = -inf; coordinates must be finite"
+    );
+    let huge = "v 0 0 0\nf 99999999999999999999 1 1";
+    assert!(say(huge).contains("the vertex index \"99999999999999999999\""));
+    assert!(say("v 0 0 0\nf 9223372036854775807 1 1").contains("names vertex 9223372036854775806"));
+    assert!(say("v 0 0 0\nf -9223372036854775808 1 1").contains("face 0 names vertex"));
+}
+
+proptest! {
+    #[test]
+    fn obj_written_and_read_is_the_same_to_the_bit(
+        bits in prop::collection::vec(prop::array::uniform3(any::<f64>()), 1..20),
+        raw_lines in prop::collection::vec(prop::array::uniform2(any::<u32>()), 0..8),
+        raw_triangles in prop::collection::vec(prop::array::uniform3(any::<u32>()), 0..8),
+    ) {
+        let vertices: Vec<[f64; 3]> =
+            bits.iter().map(|p| p.map(|c| if c.is_finite() { c } else { -0.0 })).collect();
+        let n = vertices.len() as u32;
+        let lines = raw_lines.iter().map(|l| l.map(|v| v % n)).collect();
+        let triangles = raw_triangles.iter().map(|t| t.map(|v| v % n)).collect();
+        let mesh = Mesh::new(vertices, lines, triangles).unwrap();
+        let mut file = Vec::new();
+        write_obj(&mesh, &mut file).unwrap();
+        let back = parse(Format::Obj, &file).unwrap();
+        prop_assert_eq!(&back, &mesh);
+        for (a, b) in back.vertices().iter().zip(mesh.vertices()) {
+            prop_assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits));
+        }
+    }
+}
