@@ -1,1 +1,110 @@
-//! Distances between features: points, segments and triangles.
+//! Exact proximity of feature pairs: vertices, edges and triangles as points, segments and triangles of `[f64; 3]`.
+//!
+//! Two questions, both about the numbers exactly as given (each coordinate and delta is the rational number it is):
+//!
+//! * **Decision** `distance < delta`: right for every finite input. Three stages, each giving an answer only where it
+//!   has proved it: a floating-point filter (`frame`), the same certificates in double-double (`extended`), and integers
+//!   of any size (`exact`). [`DecidedBy`] says which one spoke.
+//! * **Proximity**: distance, closest points, the features they lie on. The distance is within one unit in the last
+//!   place of the true one, always; 0 is returned exactly if and only if the features meet (or the true distance is
+//!   below half the least denormal).
+//!
+//! A triangle with collinear or coinciding vertices is the segment or the point it geometrically is, likewise an edge.
+//! No absolute epsilon occurs anywhere.
+//!
+//! ```
+//! use satisfice_collision::distance::{triangle_triangle, Threshold};
+//! let floor = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+//! let above = floor.map(|[x, y, _]| [x, y, 0.25]);
+//! assert!(!triangle_triangle::within(&floor, &above, Threshold::new(0.25)?));
+//! assert!(triangle_triangle::within(&floor, &above, Threshold::new(0.25_f64.next_up())?));
+//! assert_eq!(triangle_triangle::proximity(&floor, &above).distance, 0.25);
+//! # Ok::<(), satisfice_collision::Error>(())
+//! ```
+
+mod candidates;
+pub mod edge_edge;
+pub mod edge_triangle;
+mod exact;
+mod extended;
+mod frame;
+mod gjk;
+mod kind;
+mod resolve;
+mod threshold;
+pub mod triangle_triangle;
+mod vector;
+pub mod vertex_edge;
+pub mod vertex_triangle;
+pub mod vertex_vertex;
+
+pub use edge_edge::EdgeEdge;
+pub use edge_triangle::EdgeTriangle;
+pub use kind::{FeaturePair, PairKind};
+pub use threshold::Threshold;
+pub use triangle_triangle::TriangleTriangle;
+pub use vertex_edge::VertexEdge;
+pub use vertex_triangle::VertexTriangle;
+pub use vertex_vertex::VertexVertex;
+
+/// A point, in the unit of the mesh.
+pub type Point = [f64; 3];
+/// A segment by its two ends; equal ends make it a point.
+pub type Segment = [Point; 2];
+/// A triangle by its three vertices, in any order.
+pub type Triangle = [Point; 3];
+
+/// The stage that proved an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DecidedBy {
+    /// Double precision with a proved error bound.
+    Filter,
+    /// Double-double precision with a proved error bound.
+    Extended,
+    /// Integer arithmetic without rounding.
+    Exact,
+    /// A coordinate is NaN or infinite, so there is no answer: a decision is then never a hit, a distance is NaN.
+    NotFinite,
+}
+
+/// Whether a pair is within the threshold, and how that is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Decision {
+    /// `distance < delta`.
+    pub within: bool,
+    /// The stage that proved it.
+    pub by: DecidedBy,
+}
+
+/// The part of a vertex, edge or triangle in whose relative interior a closest point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Feature {
+    /// The vertex with this number.
+    Vertex(u8),
+    /// The edge from the vertex with this number to the next one, cyclically.
+    Edge(u8),
+    /// The inside of the triangle.
+    Face,
+}
+
+/// Distance and closest points of a feature pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Proximity {
+    /// The distance, within one unit in the last place; NaN if a coordinate is not finite; infinite if it exceeds
+    /// `f64::MAX`.
+    pub distance: f64,
+    /// A closest point of the first feature (one of them, if there are several), rounded.
+    pub point_a: Point,
+    /// A closest point of the second feature, rounded.
+    pub point_b: Point,
+    /// Barycentric weights of `point_a`; entries beyond the feature's vertices are 0.
+    pub weights_a: [f64; 3],
+    /// Barycentric weights of `point_b`.
+    pub weights_b: [f64; 3],
+    /// Where `point_a` lies.
+    pub feature_a: Feature,
+    /// Where `point_b` lies.
+    pub feature_b: Feature,
+    /// The stage that proved `distance`.
+    pub by: DecidedBy,
+}

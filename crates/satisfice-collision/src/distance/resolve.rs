@@ -1,0 +1,200 @@
+//! The way of a pair: filter, extended precision, integers; and a distance put together from what was proved.
+
+use super::candidates::{self, edges};
+use super::extended::Pair;
+use super::frame::{self, Frame, Limits, NoFrame, Verdict};
+use super::vector::{add, ldexp, scale, sub};
+use super::{DecidedBy, Decision, Feature, Point, Proximity, Threshold, exact};
+
+/// A kind of pair as convex hulls of `M` and `N` points, with its own fast filter.
+pub(super) trait Hulls<const M: usize, const N: usize> {
+    fn filter(frame: &Frame<M, N>, limits: &Limits) -> Verdict;
+}
+
+#[inline(always)]
+pub(super) fn decide<H: Hulls<M, N>, const M: usize, const N: usize>(
+    a: &[Point; M],
+    b: &[Point; N],
+    threshold: Threshold,
+) -> Decision {
+    let frame = match Frame::new(a, b) {
+        Ok(frame) => frame,
+        Err(NoFrame::Coincident) => {
+            return Decision {
+                within: true,
+                by: DecidedBy::Filter,
+            };
+        }
+        Err(NoFrame::NotFinite) => {
+            return Decision {
+                within: false,
+                by: DecidedBy::NotFinite,
+            };
+        }
+    };
+    let limits = frame.limits(threshold);
+    match H::filter(&frame, &limits) {
+        Verdict::Within => Decision {
+            within: true,
+            by: DecidedBy::Filter,
+        },
+        Verdict::Apart => Decision {
+            within: false,
+            by: DecidedBy::Filter,
+        },
+        Verdict::Unknown => decide_in_band(a, b, &frame, &limits, threshold),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn decide_in_band<const M: usize, const N: usize>(
+    a: &[Point; M],
+    b: &[Point; N],
+    frame: &Frame<M, N>,
+    limits: &Limits,
+    threshold: Threshold,
+) -> Decision {
+    if pierced(frame).is_some() {
+        return Decision {
+            within: true,
+            by: DecidedBy::Filter,
+        };
+    }
+    let guess = candidates::nearest(&frame.a, &frame.b);
+    let verdict = Pair::new(a, b, frame, &guess).map_or(Verdict::Unknown, |pair| pair.judge(limits));
+    match verdict {
+        Verdict::Within => Decision {
+            within: true,
+            by: DecidedBy::Extended,
+        },
+        Verdict::Apart => Decision {
+            within: false,
+            by: DecidedBy::Extended,
+        },
+        Verdict::Unknown => Decision {
+            within: exact::is_within(a, b, threshold.get()),
+            by: DecidedBy::Exact,
+        },
+    }
+}
+
+pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Proximity {
+    let frame = match Frame::new(a, b) {
+        Ok(frame) => frame,
+        Err(NoFrame::Coincident) => {
+            return assemble(a, b, 0.0, [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], DecidedBy::Filter);
+        }
+        Err(NoFrame::NotFinite) => {
+            return assemble(
+                a,
+                b,
+                f64::NAN,
+                [1.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                DecidedBy::NotFinite,
+            );
+        }
+    };
+    if let Some((weights_a, weights_b)) = pierced(&frame) {
+        return assemble(a, b, 0.0, weights_a, weights_b, DecidedBy::Filter);
+    }
+    let guess = candidates::nearest(&frame.a, &frame.b);
+    if let Some(pair) = Pair::new(a, b, &frame, &guess)
+        && let Some(distance) = pair.distance()
+    {
+        let distance = ldexp(distance, frame.exponent);
+        return assemble(
+            a,
+            b,
+            distance,
+            pair.weights_a,
+            pair.weights_b,
+            DecidedBy::Extended,
+        );
+    }
+    let nearest = exact::nearest(a, b);
+    assemble(
+        a,
+        b,
+        nearest.distance,
+        nearest.weights_a,
+        nearest.weights_b,
+        DecidedBy::Exact,
+    )
+}
+
+/// Weights of a common point, if an edge of one provably passes through the face of the other.
+fn pierced<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Option<([f64; 3], [f64; 3])> {
+    if let Ok(&face) = <&[Point; 3]>::try_from(&frame.b[..]) {
+        for &[i, k] in edges(M) {
+            if frame::pierces(frame.a[i], frame.a[k], &face, frame.rho) {
+                let (edge, face) = frame::crossing(frame.a[i], frame.a[k], &face);
+                return Some((on_edge(i, k, edge), face));
+            }
+        }
+    }
+    if let Ok(&face) = <&[Point; 3]>::try_from(&frame.a[..]) {
+        for &[j, k] in edges(N) {
+            if frame::pierces(frame.b[j], frame.b[k], &face, frame.rho) {
+                let (edge, face) = frame::crossing(frame.b[j], frame.b[k], &face);
+                return Some((face, on_edge(j, k, edge)));
+            }
+        }
+    }
+    None
+}
+
+fn on_edge(from: usize, to: usize, t: f64) -> [f64; 3] {
+    let mut weights = [0.0; 3];
+    weights[from] = 1.0 - t;
+    weights[to] = t;
+    weights
+}
+
+fn assemble<const M: usize, const N: usize>(
+    a: &[Point; M],
+    b: &[Point; N],
+    distance: f64,
+    weights_a: [f64; 3],
+    weights_b: [f64; 3],
+    by: DecidedBy,
+) -> Proximity {
+    Proximity {
+        distance,
+        point_a: point(a, weights_a),
+        point_b: point(b, weights_b),
+        weights_a,
+        weights_b,
+        feature_a: feature(weights_a, M),
+        feature_b: feature(weights_b, N),
+        by,
+    }
+}
+
+/// The weighted point, measured from the heaviest vertex, so that a vertex comes back unchanged and offsets cost nothing.
+fn point(points: &[Point], weights: [f64; 3]) -> Point {
+    let heaviest = (0..points.len()).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
+    let base = points[heaviest];
+    let mut sum = [0.0; 3];
+    for (k, &p) in points.iter().enumerate() {
+        if k != heaviest && weights[k] != 0.0 {
+            // Halves, so that a difference of two huge coordinates stays finite.
+            sum = add(sum, scale(sub(scale(p, 0.5), scale(base, 0.5)), weights[k]));
+        }
+    }
+    [0, 1, 2].map(|k| base[k] + 2.0 * sum[k])
+}
+
+fn feature(weights: [f64; 3], vertices: usize) -> Feature {
+    let used = [0, 1, 2].map(|k: usize| k < vertices && weights[k] > 0.0);
+    match used {
+        [true, true, true] => Feature::Face,
+        [true, true, false] => Feature::Edge(0),
+        [false, true, true] => Feature::Edge(1),
+        [true, false, true] => Feature::Edge(2),
+        [false, true, false] => Feature::Vertex(1),
+        [false, false, true] => Feature::Vertex(2),
+        [_, false, false] => Feature::Vertex(0),
+    }
+}
