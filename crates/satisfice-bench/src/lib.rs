@@ -1,1 +1,32 @@
-//! satisfice-bench
+//! Runs any engine on any problem by name: the catalogue of problems, records of runs as JSON, their verification, plots.
+//!
+//! A problem is generic and inlines on the hot path; here it is behind one [`Instance`], whose inside stays monomorphic:
+//! only the call of a whole run is virtual.
+//!
+//! ```
+//! use satisfice::Budget;
+//! use satisfice_bench::{Request, catalogue};
+//! # if catalogue::all().is_empty() { return Ok(()); }
+//! let problem = catalogue::all()[0].build([])?;
+//! let request = Request::new("random", Budget::evaluations(1000)).seed(7);
+//! let record = problem.run(&request, &mut |_| {})?;
+//! assert_eq!(record.counts.evaluations, 1000);
+//! println!("{}", serde_json::to_string_pretty(&record)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod catalogue;
+mod error;
+mod instance;
+pub mod listing;
+pub mod record;
+pub mod run;
+pub mod settings;
+pub mod verify;
+
+pub use error::Error;
+pub use instance::Instance;
+pub use record::Record;
+pub use run::{Progress, Request, search};
+pub use settings::Settings;
+pub use verify::Mismatch;

@@ -1,0 +1,80 @@
+//! A problem with its parameters set, behind one virtual call a run.
+
+use satisfice::{Catalogued, Values};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::Error;
+use crate::record::Record;
+use crate::run::{Progress, Request, search};
+use crate::settings::Settings;
+use crate::verify::{self, Mismatch};
+
+/// A problem of the catalogue with its parameters set. Built once, run as often as wanted, from any thread.
+pub trait Instance: Send + Sync {
+    /// Name of the problem.
+    fn name(&self) -> &'static str;
+    /// All its parameters.
+    fn parameters(&self) -> &Settings;
+    /// Runs an engine on it; as [`search`], which see. The reference count is left open.
+    ///
+    /// # Errors
+    /// As [`search`].
+    fn run(&self, request: &Request, watch: &mut dyn FnMut(&Progress)) -> Result<Record, Error>;
+    /// How many distinct hits there are, where that is known. May take long: call it outside any clock.
+    fn reference_hits(&self) -> Option<u64>;
+    /// Evaluates every solution of a record anew and checks its books; what does not fit, in the order of the record.
+    /// `reference` is [`Instance::reference_hits`].
+    fn verify(&self, record: &Record, reference: Option<u64>) -> Vec<Mismatch>;
+}
+
+/// The instance of a problem type.
+struct Built<P> {
+    problem: P,
+    parameters: Settings,
+}
+
+/// Builds the instance with these values.
+pub(crate) fn build<P>(values: &Values) -> Result<Box<dyn Instance>, Error>
+where
+    P: Catalogued + Send + 'static,
+    P::Solution: Serialize + DeserializeOwned,
+{
+    Ok(Box::new(Built {
+        problem: P::from_values(values)?,
+        parameters: Settings::typed(&values.texts(), P::PARAMETERS),
+    }))
+}
+
+impl<P> Instance for Built<P>
+where
+    P: Catalogued + Send,
+    P::Solution: Serialize + DeserializeOwned,
+{
+    fn name(&self) -> &'static str {
+        P::NAME
+    }
+
+    fn parameters(&self) -> &Settings {
+        &self.parameters
+    }
+
+    fn run(&self, request: &Request, watch: &mut dyn FnMut(&Progress)) -> Result<Record, Error> {
+        Ok(Record {
+            problem: P::NAME.to_owned(),
+            problem_parameters: self.parameters.clone(),
+            ..search(&self.problem, request, watch)?
+        })
+    }
+
+    fn reference_hits(&self) -> Option<u64> {
+        self.problem.reference_hits()
+    }
+
+    fn verify(&self, record: &Record, reference: Option<u64>) -> Vec<Mismatch> {
+        let mut mismatches = verify::books(record);
+        mismatches.extend(verify::solutions(&self.problem, record));
+        mismatches.extend(verify::reference(record, reference));
+        mismatches
+    }
+}

@@ -1,0 +1,119 @@
+//! Engines and problems with their parameters, as data: what `list --json` prints.
+
+use satisfice::parameter::Kind;
+use satisfice::{Parameter, engine};
+use serde::Serialize;
+
+use crate::catalogue;
+
+/// Everything that has a name.
+#[derive(Debug, Clone, Serialize)]
+pub struct Listing {
+    /// The engines.
+    pub engines: Vec<Item>,
+    /// The problems.
+    pub problems: Vec<Item>,
+}
+
+/// An engine or a problem.
+#[derive(Debug, Clone, Serialize)]
+pub struct Item {
+    /// Its name.
+    pub name: &'static str,
+    /// One line.
+    pub summary: &'static str,
+    /// Where it comes from.
+    pub reference: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<Row>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does.
+    pub summary: &'static str,
+    /// Its values.
+    #[serde(flatten)]
+    pub values: Range,
+}
+
+/// What values a parameter takes, and its default.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum Range {
+    /// A whole number.
+    Integer {
+        /// Default.
+        default: i64,
+        /// Least.
+        min: i64,
+        /// Greatest.
+        max: i64,
+    },
+    /// A real number.
+    Real {
+        /// Default.
+        default: f64,
+        /// Least.
+        min: f64,
+        /// Greatest.
+        max: f64,
+    },
+    /// One of these words.
+    Choice {
+        /// Default.
+        default: &'static str,
+        /// The words.
+        of: &'static [&'static str],
+    },
+    /// Any text.
+    Text {
+        /// Default.
+        default: &'static str,
+    },
+}
+
+impl From<&Parameter> for Row {
+    fn from(parameter: &Parameter) -> Self {
+        let values = match parameter.kind {
+            Kind::Integer { min, max, default } => Range::Integer { default, min, max },
+            Kind::Real { min, max, default } => Range::Real { default, min, max },
+            Kind::Choice { of, default } => Range::Choice { default, of },
+            Kind::Text { default } => Range::Text { default },
+        };
+        Self {
+            name: parameter.name,
+            summary: parameter.summary,
+            values,
+        }
+    }
+}
+
+/// All engines and problems.
+#[must_use]
+pub fn listing() -> Listing {
+    let rows = |parameters: &[Parameter]| parameters.iter().map(Row::from).collect();
+    Listing {
+        engines: engine::all()
+            .iter()
+            .map(|entry| Item {
+                name: entry.name,
+                summary: entry.summary,
+                reference: entry.reference,
+                parameters: rows(entry.parameters),
+            })
+            .collect(),
+        problems: catalogue::all()
+            .iter()
+            .map(|entry| Item {
+                name: entry.name,
+                summary: entry.summary,
+                reference: entry.source,
+                parameters: rows(entry.parameters),
+            })
+            .collect(),
+    }
+}
