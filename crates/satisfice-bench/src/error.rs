@@ -1,5 +1,7 @@
 //! Every error of this crate, as data.
 
+use std::path::PathBuf;
+
 /// What was wrong with a request, a record or a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -13,4 +15,10 @@ pub enum Error {
     /// No slice was asked for.
     #[error("0 slices leave nothing to run: give at least 1")]
     NoSlices,
+    /// A chart whose file has another extension than those that can be drawn.
+    #[error("cannot draw {}: a chart is an .svg or a .png file", .0.display())]
+    ChartFormat(PathBuf),
+    /// A chart that could not be encoded.
+    #[error("cannot encode the chart: {0}")]
+    Chart(String),
 }

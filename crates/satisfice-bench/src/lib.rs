@@ -19,6 +19,7 @@ pub mod catalogue;
 mod error;
 mod instance;
 pub mod listing;
+pub mod plot;
 pub mod record;
 pub mod run;
 pub mod settings;

@@ -1,0 +1,153 @@
+//! How a chart becomes a picture: the only file that knows the plotting library.
+
+use kuva::backend::png::PngBackend;
+use kuva::backend::svg::SvgBackend;
+use kuva::plot::{LinePlot, LineStyle};
+use kuva::render::annotations::ReferenceLine;
+use kuva::render::figure::Figure;
+use kuva::render::layout::Layout;
+use kuva::render::plots::Plot;
+
+use satisfice::Identity;
+
+use super::{Chart, Format, Panel};
+use crate::error::Error;
+
+/// Size of a panel in units; a PNG has two pixels a unit.
+const PANEL: (f64, f64) = (480.0, 360.0);
+
+/// Okabe and Ito's colours, told apart by the colour-blind, without their yellow, which is faint on white
+/// (<https://jfly.uni-koeln.de/color/>).
+const COLOURS: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+];
+/// Told apart in black and white; 7 colours and 4 styles make 28 different curves.
+const STYLES: [LineStyle; 4] = [
+    LineStyle::Solid,
+    LineStyle::Dashed,
+    LineStyle::Dotted,
+    LineStyle::DashDot,
+];
+
+/// Draws a chart. The same chart gives the same bytes.
+///
+/// # Errors
+/// [`Error::Chart`] where the picture cannot be encoded.
+pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
+    let (plots, layouts): (Vec<_>, Vec<_>) = chart.panels.iter().map(panel).unzip();
+    let scene = Figure::new(1, chart.panels.len().max(1))
+        .with_title(chart.title.clone())
+        .with_title_size(16)
+        .with_plots(plots)
+        .with_layouts(layouts)
+        .with_cell_size(PANEL.0, PANEL.1)
+        .render();
+    match format {
+        Format::Svg => Ok(own_ids(&SvgBackend::new().render_scene(&scene)).into_bytes()),
+        Format::Png => PngBackend::new().render_scene(&scene).map_err(Error::Chart),
+    }
+}
+
+/// The library numbers clip paths over all pictures of a process. Numbered within the picture, under a name made from its
+/// contents, they make the same picture the same bytes, and several pictures fit on one page.
+fn own_ids(svg: &str) -> String {
+    const PREFIX: &str = "kuva-clip-";
+    let mut pieces = svg.split(PREFIX);
+    let mut text = vec![pieces.next().unwrap_or_default()];
+    let (mut seen, mut numbers) = (Vec::new(), Vec::new());
+    for piece in pieces {
+        let digits = piece.len() - piece.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let (number, rest) = piece.split_at(digits);
+        let index = seen.iter().position(|&known| known == number);
+        numbers.push(index.unwrap_or_else(|| {
+            seen.push(number);
+            seen.len() - 1
+        }));
+        text.push(rest);
+    }
+    let picture = (text.concat(), &numbers).key();
+    let mut svg = text[0].to_owned();
+    for (number, rest) in numbers.iter().zip(&text[1..]) {
+        svg.push_str(&format!("clip-{picture:016x}-{number}{rest}"));
+    }
+    svg
+}
+
+fn panel(panel: &Panel) -> (Vec<Plot>, Layout) {
+    let visible = |x: f64, y: f64| {
+        x.is_finite() && y.is_finite() && (!panel.log_x || x > 0.0) && (!panel.log_y || y > 0.0)
+    };
+    let mut plots = Vec::new();
+    let (mut least, mut greatest) = ((f64::INFINITY, f64::INFINITY), (0.0_f64, 0.0_f64));
+    for (index, curve) in panel.curves.iter().enumerate() {
+        let banded = curve.band.len() == curve.points.len();
+        let points = || curve.points.iter().enumerate();
+        let shown: Vec<usize> = points()
+            .filter(|&(i, &(x, y))| {
+                visible(x, y) && (!banded || (visible(x, curve.band[i].0) && visible(x, curve.band[i].1)))
+            })
+            .map(|(i, _)| i)
+            .collect();
+        if shown.is_empty() {
+            continue;
+        }
+        for &i in &shown {
+            let (x, y) = curve.points[i];
+            let (low, high) = if banded { curve.band[i] } else { (y, y) };
+            least = (least.0.min(x), least.1.min(low));
+            greatest = (greatest.0.max(x), greatest.1.max(high));
+        }
+        let mut line = LinePlot::new()
+            .with_data(shown.iter().map(|&i| curve.points[i]))
+            .with_color(COLOURS[index % COLOURS.len()])
+            .with_line_style(STYLES[index % STYLES.len()].clone())
+            .with_stroke_width(2.0);
+        if banded {
+            line = line.with_band(
+                shown.iter().map(|&i| curve.band[i].0),
+                shown.iter().map(|&i| curve.band[i].1),
+            );
+        }
+        if let Some(label) = &curve.label {
+            line = line.with_legend(label.clone());
+        }
+        plots.push(Plot::Line(line));
+    }
+    if plots.is_empty() {
+        // Nothing to show is shown as empty axes.
+        plots.push(Plot::Line(LinePlot::new().with_data([(1.0, 1.0)])));
+        (least, greatest) = ((1.0, 1.0), (10.0, 1.0));
+    }
+    if let Some((value, _)) = &panel.mark {
+        greatest.1 = greatest.1.max(*value);
+    }
+    let mut layout = Layout::auto_from_plots(&plots)
+        .with_x_label(panel.x_label.clone())
+        .with_y_label(panel.y_label.clone())
+        .with_x_axis_max(if greatest.0 > least.0 {
+            greatest.0
+        } else {
+            10.0 * greatest.0.max(0.1)
+        });
+    if panel.log_x {
+        layout = layout.with_log_x();
+    } else {
+        layout = layout.with_x_axis_min(least.0.min(0.0));
+    }
+    if panel.log_y {
+        layout = layout.with_log_y();
+    } else {
+        layout = layout
+            .with_y_axis_min(0.0)
+            .with_y_axis_max(1.08 * greatest.1.max(1.0));
+    }
+    if let Some((value, label)) = &panel.mark {
+        layout = layout.with_reference_line(
+            ReferenceLine::horizontal(*value)
+                .with_label(label.clone())
+                .with_color("#555555")
+                .with_dasharray("5 4"),
+        );
+    }
+    (plots, layout)
+}

@@ -1,0 +1,72 @@
+//! Charts: curves over two axes, drawn as SVG or PNG.
+
+mod draw;
+mod record;
+
+use std::path::Path;
+
+pub use draw::draw;
+pub use record::chart;
+
+use crate::error::Error;
+
+/// One or more panels side by side, under a title.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Chart {
+    /// What it shows.
+    pub title: String,
+    /// The panels, left to right.
+    pub panels: Vec<Panel>,
+}
+
+/// Curves over a pair of axes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Panel {
+    /// Label of the horizontal axis, with its unit.
+    pub x_label: String,
+    /// Label of the vertical axis, with its unit.
+    pub y_label: String,
+    /// Whether the horizontal axis is logarithmic; points with x <= 0 are left out then.
+    pub log_x: bool,
+    /// Whether the vertical axis is logarithmic; points with y <= 0 are left out then.
+    pub log_y: bool,
+    /// The curves.
+    pub curves: Vec<Curve>,
+    /// A value of y that is marked by a dashed line, with its label.
+    pub mark: Option<(f64, String)>,
+}
+
+/// One curve.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Curve {
+    /// Its name in the legend; none where it is the only one.
+    pub label: Option<String>,
+    /// Its points; those that are not finite are left out.
+    pub points: Vec<(f64, f64)>,
+    /// For each point the least and the greatest y of a band around it; empty where there is none.
+    pub band: Vec<(f64, f64)>,
+}
+
+/// File format of a chart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Scalable vector graphics.
+    Svg,
+    /// Portable network graphics, two pixels a unit.
+    Png,
+}
+
+impl Format {
+    /// By the extension of a path.
+    ///
+    /// # Errors
+    /// [`Error::ChartFormat`] for any other than `svg` and `png`.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Error::ChartFormat(path.to_owned())),
+        }
+    }
+}
