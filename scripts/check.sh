@@ -21,7 +21,7 @@ step "docs without warnings"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --all-features --quiet
 
 step "feature matrix: none, each alone; the tests are the same, so the results are"
-for features in "" rayon serde; do
+for features in "" rayon serde interval; do
   echo "-- satisfice with features: ${features:-none}"
   cargo test -p satisfice --quiet --no-default-features --features "$features" --lib --tests
 done

@@ -9,6 +9,8 @@ pub mod engine;
 mod error;
 mod evaluate;
 pub mod identity;
+#[cfg(feature = "interval")]
+pub mod interval;
 pub mod observer;
 pub mod parameter;
 pub mod problem;

@@ -47,6 +47,9 @@ pub trait Real:
     /// The value with these bits, the upper half ignored for `f32`.
     #[must_use]
     fn from_word(word: u64) -> Self;
+    /// The next value below.
+    #[must_use]
+    fn below(self) -> Self;
     #[doc(hidden)]
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error>;
 }
@@ -76,6 +79,10 @@ impl Real for f32 {
     fn from_word(word: u64) -> Self {
         Self::from_bits(word as u32)
     }
+    #[inline]
+    fn below(self) -> Self {
+        self.next_down()
+    }
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f32)(values)
     }
@@ -100,6 +107,10 @@ impl Real for f64 {
     #[inline]
     fn from_word(word: u64) -> Self {
         Self::from_bits(word)
+    }
+    #[inline]
+    fn below(self) -> Self {
+        self.next_down()
     }
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f64)(values)
