@@ -115,7 +115,7 @@ saved_real!(f32, f64);
 
 impl<T: Saved> Saved for Vec<T> {
     fn save(&self, state: &mut State) {
-        self.len().save(state);
+        Saved::save(&self.len(), state);
         for item in self {
             item.save(state);
         }
@@ -133,19 +133,19 @@ impl<T: Saved> Saved for Vec<T> {
 
 impl<T: Saved> Saved for std::collections::VecDeque<T> {
     fn save(&self, state: &mut State) {
-        self.len().save(state);
+        Saved::save(&self.len(), state);
         for item in self {
             item.save(state);
         }
     }
     fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        Vec::restore(from).map(Self::from)
+        from.read::<Vec<T>>().map(Self::from)
     }
 }
 
 impl<T: Saved> Saved for Option<T> {
     fn save(&self, state: &mut State) {
-        self.is_some().save(state);
+        Saved::save(&self.is_some(), state);
         if let Some(item) = self {
             item.save(state);
         }
@@ -173,18 +173,43 @@ impl<T: Saved, const N: usize> Saved for [T; N] {
     }
 }
 
-/// Writes `save` and `restore` of [`Engine`](crate::Engine) for the named fields of an engine: the ones that change while
+/// What is saved and restored in place, into a value that has the same settings: everything that is [`Saved`], and parts of
+/// engines by [`saved_fields!`](crate::saved_fields).
+pub trait Part {
+    /// Appends all that changes.
+    fn save(&self, state: &mut State);
+    /// Reads it back.
+    ///
+    /// # Errors
+    /// [`Error::State`] where the next words do not fit.
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error>;
+}
+
+impl<T: Saved> Part for T {
+    fn save(&self, state: &mut State) {
+        Saved::save(self, state);
+    }
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        *self = from.read()?;
+        Ok(())
+    }
+}
+
+/// Writes `save` and `restore` of [`Engine`](crate::Engine) or of [`Part`] for the named fields: the ones that change while
 /// it runs. Every field of that kind has to be named; the conformance suite finds a forgotten one.
+///
+/// With `; check` behind the fields, `self.check()?` says whether restored fields fit each other.
 #[macro_export]
 macro_rules! saved_fields {
-    ($($field:ident),* $(,)?) => {
+    ($($field:ident),* $(,)? $(; $check:ident)?) => {
         fn save(&self, state: &mut $crate::state::State) {
             let _ = &state;
-            $($crate::state::Saved::save(&self.$field, state);)*
+            $($crate::state::Part::save(&self.$field, state);)*
         }
         fn restore(&mut self, from: &mut $crate::state::Reader<'_>) -> Result<(), $crate::Error> {
             let _ = &from;
-            $(self.$field = from.read()?;)*
+            $($crate::state::Part::restore(&mut self.$field, from)?;)*
+            $(self.$check()?;)?
             Ok(())
         }
     };

@@ -1,6 +1,6 @@
 //! The registry: what the command line, the docs, the conformance suite and the benches walk.
 
-use super::Engine;
+use super::{Engine, pso_inertia, qpso};
 use crate::error::Error;
 use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
@@ -19,8 +19,9 @@ pub struct Entry {
     pub reference: &'static str,
     /// Its parameters with defaults and ranges.
     pub parameters: &'static [Parameter],
-    /// Whether a schedule follows the budget, so that a short run is no prefix of a long one unless both have one horizon.
-    pub scheduled: bool,
+    /// Whether, with these parameters, a schedule follows the budget, so that a short run is no prefix of a long one unless
+    /// both have one [horizon](crate::Budget::with_horizon).
+    pub scheduled: fn(&Values) -> bool,
     /// Builds it for `f32`.
     pub build_f32: Build<f32>,
     /// Builds it for `f64`.
@@ -82,26 +83,99 @@ pub fn all() -> &'static [Entry] {
     ENGINES
 }
 
-/// An entry whose engine is built by `$engine::build` for either scalar, with the table `PARAMETERS` beside it.
+/// An entry whose engine is built by `$module::build` for either scalar, with the table `PARAMETERS` beside it.
 macro_rules! entry {
-    ($module:ident :: $engine:ident; $name:literal, $summary:literal, $reference:literal) => {
+    ($module:ident, $name:literal, $summary:literal, $reference:literal) => {
+        entry!($module, $name, $summary, $reference, |_| false)
+    };
+    ($module:ident, $name:literal, $summary:literal, $reference:literal, $scheduled:expr) => {
         Entry {
             name: $name,
             summary: $summary,
             reference: $reference,
             parameters: super::$module::PARAMETERS,
-            scheduled: false,
-            build_f32: super::$module::$engine::build,
-            build_f64: super::$module::$engine::build,
+            scheduled: $scheduled,
+            build_f32: super::$module::build,
+            build_f64: super::$module::build,
         }
     };
 }
 
 static ENGINES: &[Entry] = &[
-    entry!(random::Random; "random", "uniform random sampling, the baseline", "none needed"),
-    entry!(latest_hit_qpso::LatestHitQpso; "latest-hit-qpso",
+    entry!(
+        random,
+        "random",
+        "uniform random sampling, the baseline",
+        "none needed"
+    ),
+    entry!(
+        walk,
+        "walk",
+        "random walk from the latest hit, steps of log-uniform length, a tenth uniform",
+        "none"
+    ),
+    entry!(
+        descent,
+        "descent",
+        "greedy descent over neighbours, restarted at uniform points",
+        "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV"
+    ),
+    entry!(
+        descent_flood,
+        "descent-flood",
+        "restarted descent, then breadth-first exhaustion of every hit's neighbourhood",
+        "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV"
+    ),
+    entry!(
+        pso_1995,
+        "pso-1995",
+        "the first particle swarm, without inertia weight",
+        "Kennedy, Eberhart 1995, doi 10.1109/ICNN.1995.488968"
+    ),
+    entry!(
+        pso_inertia,
+        "pso-inertia",
+        "particle swarm with an inertia weight that falls",
+        "Shi, Eberhart 1998, doi 10.1109/ICEC.1998.699146",
+        pso_inertia::is_scheduled
+    ),
+    entry!(
+        pso,
+        "pso",
+        "particle swarm with constriction, attracted by the best",
+        "Clerc, Kennedy 2002, doi 10.1109/4235.985692"
+    ),
+    entry!(
+        pso_latest_hit,
+        "pso-latest-hit",
+        "particle swarm with constriction, attracted by the latest hit, hits deleted",
+        "Clerc, Kennedy 2002, doi 10.1109/4235.985692; Chen et al. 2012, doi 10.3923/itj.2012.536.539"
+    ),
+    entry!(
+        spso_2011,
+        "spso-2011",
+        "Standard PSO 2011: rotation-invariant, random topology",
+        "Zambrano-Bigiarini, Clerc, Rojas 2013, doi 10.1109/CEC.2013.6557848"
+    ),
+    entry!(
+        qpso,
+        "qpso",
+        "quantum-behaved swarm, attracted by the best, nothing deleted",
+        "Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875",
+        qpso::is_scheduled
+    ),
+    entry!(
+        qpso_deletion,
+        "qpso-deletion",
+        "quantum-behaved swarm, attracted by the best, hits deleted",
+        "Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875"
+    ),
+    entry!(
+        latest_hit_qpso,
+        "latest-hit-qpso",
         "the paper's swarm: quantum-behaved, attracted by the latest hit, hits deleted",
-        "Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539"),
+        "Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539"
+    ),
 ];
 
 /// The entry with this name.

@@ -7,10 +7,26 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
 
+mod descent;
+mod descent_flood;
 mod entry;
+mod flood;
+mod informants;
 mod latest_hit_qpso;
 pub mod potential_well;
+mod pso;
+mod pso_1995;
+mod pso_inertia;
+mod pso_latest_hit;
+mod qpso;
+mod qpso_deletion;
+mod quantum_swarm;
 mod random;
+mod schedule;
+mod spso_2011;
+mod swarm;
+mod velocity_swarm;
+mod walk;
 
 pub use entry::{Build, Entry, Named, all, build, find};
 

@@ -22,12 +22,10 @@ pub(super) struct Random {
     batch: usize,
 }
 
-impl Random {
-    pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
-        Ok(Box::new(Self {
-            batch: values.count("batch"),
-        }))
-    }
+pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+    Ok(Box::new(Random {
+        batch: values.count("batch"),
+    }))
 }
 
 impl<S: Real> Engine<S> for Random {

@@ -1,0 +1,95 @@
+//! The machinery of quantum-behaved swarms: Eq. 2 of the paper, particle after particle.
+
+use super::potential_well::{mean_best, step};
+use super::schedule::Schedule;
+use super::swarm::{Attractor, Swarm};
+use super::{Ask, Engine, Origin, WarmStart};
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::error::Error;
+use crate::parameter::{Parameter, Values};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+/// The row for alpha.
+pub(super) const ALPHA: Parameter = Parameter::real(
+    "alpha",
+    "contraction-expansion coefficient; bounded below 1.781",
+    1.0,
+    0.0,
+    10.0,
+);
+
+/// A swarm whose particles are drawn from delta potential wells.
+///
+/// Each particle in turn moves by
+///
+/// ```text
+/// X_i := phi P_i + (1 - phi) G ± alpha |mbest - X_i| ln(1/u),   phi ~ U(0, 1), u ~ U(0, 1], fair sign, per axis
+/// ```
+///
+/// where mbest is the mean of the P at the start of the sweep. With a batch of 1 (asynchronously) an attractor found is in
+/// force for the next particle of the same sweep: measured 580 hits of 975 at a million evaluations against 592 once a
+/// sweep, but 40 against 21 at ten thousand.
+#[derive(Debug)]
+pub(super) struct QuantumSwarm<S> {
+    swarm: Swarm<S>,
+    alpha: Schedule<S>,
+    mean: Vec<S>,
+}
+
+impl<S: Real> QuantumSwarm<S> {
+    pub(super) fn new(values: &Values, alpha: Schedule<S>, attractor: Attractor, deletes: bool) -> Self {
+        Self {
+            swarm: Swarm::new(values, attractor, deletes),
+            alpha,
+            mean: Vec::new(),
+        }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        self.swarm.fits("the mean", self.mean.len(), 1)
+    }
+}
+
+impl<S: Real> Engine<S> for QuantumSwarm<S> {
+    fn begin(&mut self, context: &dyn Context<S>) {
+        let dimension = context.space().dimension();
+        self.swarm.begin(dimension);
+        self.mean.clear();
+        self.mean.resize(dimension, S::zero());
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        let swarm = &self.swarm;
+        if !swarm.has_started() {
+            swarm.propose_start(context, rng, out);
+            return Ask::More;
+        }
+        if swarm.begins_sweep() {
+            mean_best(swarm.bests(), &mut self.mean);
+        }
+        let alpha = self.alpha.at(|| context.elapsed_share());
+        for (place, i) in swarm.due().enumerate() {
+            out.push(swarm.position(i));
+            let position = out.point_mut(place);
+            step(rng, alpha, position, swarm.best(i), swarm.attractor(), &self.mean);
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        self.swarm.tell(batch, outcomes, origin);
+    }
+
+    fn deletes(&self) -> bool {
+        self.swarm.deletes()
+    }
+
+    /// The paper's own rule, for all swarms alike.
+    fn warm_start(&self) -> WarmStart {
+        WarmStart::Engine
+    }
+
+    crate::saved_fields!(swarm, mean; check);
+}

@@ -1,0 +1,206 @@
+//! Standard PSO 2011: rotation-invariant moves, a random topology that changes when it does not help.
+
+use super::informants::Informants;
+use super::swarm::{self, Attractor, Swarm};
+use super::{Ask, Engine, Origin, WarmStart};
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::error::Error;
+use crate::parameter::{Parameter, Values};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::Boundary;
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    swarm::particles(40),
+    Parameter::real(
+        "w",
+        "inertia weight, 1 / (2 ln 2)",
+        0.721_347_520_444_481_7,
+        0.0,
+        2.0,
+    ),
+    Parameter::real(
+        "c",
+        "acceleration, 1/2 + ln 2",
+        1.193_147_180_559_945_3,
+        0.0,
+        10.0,
+    ),
+    Parameter::integer(
+        "informed",
+        "particles K that each particle informs, beside itself",
+        3,
+        0,
+        1000,
+    ),
+    swarm::BATCH,
+    swarm::DELETION,
+];
+
+/// SPSO-2011. Each particle in turn draws a point from a ball round a centre of gravity:
+///
+/// ```text
+/// g  = (X + (X + c (P - X)) + (X + c (L - X))) / 3,   g = (X + (X + c (P - X))) / 2 if L = P
+/// x' = g + U(0, 1) |g - X| e,                         e a uniform direction
+/// V := w V + x' - X;   X := X + V;   where X leaves the box: on the bound, V := -V / 2
+/// ```
+///
+/// with L the best personal best among the particle's informants. Each particle informs itself and K random ones, drawn anew
+/// after every sweep that has not improved the best of all. Lengths are in units of the axes. On a periodic space, nothing
+/// is put on the bound.
+///
+/// Clerc 2012, "Standard Particle Swarm Optimisation", hal-00764996; Zambrano-Bigiarini, Clerc, Rojas 2013,
+/// doi 10.1109/CEC.2013.6557848. Differs from the paper in nothing but the periodic case.
+#[derive(Debug)]
+pub(super) struct Spso2011<S> {
+    swarm: Swarm<S>,
+    inertia: S,
+    acceleration: S,
+    informants: Informants,
+    velocities: Vec<S>,
+    /// The least f_i when the sweep before began.
+    least_before: S,
+    /// Memory for a direction.
+    direction: Vec<S>,
+}
+
+pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+    let deletes = values.text("deletion") == "yes";
+    Ok(Box::new(Spso2011 {
+        swarm: Swarm::new(values, Attractor::Best, deletes),
+        inertia: S::of(values.real("w")),
+        acceleration: S::of(values.real("c")),
+        informants: Informants::new(values.count("particles"), values.count("informed")),
+        velocities: Vec::new(),
+        least_before: S::infinity(),
+        direction: Vec::new(),
+    }))
+}
+
+impl<S: Real> Spso2011<S> {
+    fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
+        self.swarm.propose_start(context, rng, out);
+        for position in out.points() {
+            for (axis, &x) in context.space().axes().iter().zip(position) {
+                self.velocities.push(axis.at(rng.uniform()) - x);
+            }
+        }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        self.swarm.fits_rows("the velocities", self.velocities.len())?;
+        self.swarm.fits("the direction", self.direction.len(), 1)
+    }
+
+    /// Writes a uniform direction of length one.
+    fn draw_direction(direction: &mut [S], rng: &mut SearchRng) {
+        let mut square = 0.0;
+        for e in direction.iter_mut() {
+            let normal = rng.normal();
+            square += normal * normal;
+            *e = S::of(normal);
+        }
+        let scale = S::of(1.0 / square.sqrt().max(f64::MIN_POSITIVE));
+        for e in direction {
+            *e = *e * scale;
+        }
+    }
+}
+
+/// Lengths are measured in these: the width of an axis, 1 where it has none.
+#[inline]
+fn unit<S: Real>(axis: &crate::space::Axis<S>) -> S {
+    let width = axis.width();
+    if width > S::zero() { width } else { S::one() }
+}
+
+impl<S: Real> Engine<S> for Spso2011<S> {
+    fn begin(&mut self, context: &dyn Context<S>) {
+        let dimension = context.space().dimension();
+        self.swarm.begin(dimension);
+        self.informants.clear();
+        self.velocities.clear();
+        self.least_before = S::infinity();
+        self.direction.clear();
+        self.direction.resize(dimension, S::zero());
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        if !self.swarm.has_started() {
+            self.start(context, rng, out);
+            return Ask::More;
+        }
+        let swarm = &self.swarm;
+        if swarm.begins_sweep() {
+            let least = swarm.least_fitness();
+            if least >= self.least_before || self.informants.is_empty() {
+                self.informants.draw(rng);
+            }
+            self.least_before = least;
+        }
+        let axes = context.space().axes();
+        let confined = context.space().boundary() != Boundary::Wrap;
+        let c = self.acceleration;
+        let (two, three) = (S::of(2.0), S::of(3.0));
+        for (place, i) in swarm.due().enumerate() {
+            let informant = self.informants.of(i).fold(i, |best, j| {
+                if swarm.fitness(j) < swarm.fitness(best) {
+                    j
+                } else {
+                    best
+                }
+            });
+            let (own, local, row) = (swarm.best(i), swarm.best(informant), swarm.row(i));
+            Self::draw_direction(&mut self.direction, rng);
+            let share = S::of(rng.uniform());
+            out.push(swarm.position(i));
+            let position = out.point_mut(place);
+            // g - X, from which the radius follows.
+            let pull = |j: usize, x: S| {
+                if informant == i {
+                    c * (own[j] - x) / two
+                } else {
+                    c * (own[j] - x) / three + c * (local[j] - x) / three
+                }
+            };
+            let mut square = S::zero();
+            for (j, axis) in axes.iter().enumerate() {
+                let length = pull(j, position[j]) / unit(axis);
+                square = square + length * length;
+            }
+            let radius = share * square.sqrt();
+            for (j, axis) in axes.iter().enumerate() {
+                let (x, v) = (&mut position[j], &mut self.velocities[row.start + j]);
+                let to_draw = pull(j, *x) + radius * self.direction[j] * axis.width();
+                *v = self.inertia * *v + to_draw;
+                *x = *x + *v;
+                let outside = !(axis.lower() <= *x && *x <= axis.end());
+                if outside && confined {
+                    *x = x.max(axis.lower()).min(axis.end());
+                    *v = -*v / two;
+                }
+                // A sum that has overflown must not stay.
+                if !v.is_finite() {
+                    *v = S::zero();
+                }
+            }
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        self.swarm.tell(batch, outcomes, origin);
+    }
+
+    fn deletes(&self) -> bool {
+        self.swarm.deletes()
+    }
+
+    /// The paper's rule, for all swarms alike.
+    fn warm_start(&self) -> WarmStart {
+        WarmStart::Engine
+    }
+
+    crate::saved_fields!(swarm, informants, velocities, least_before, direction; check);
+}
