@@ -1,0 +1,332 @@
+//! Points sorted into the cells of a uniform grid by counting, structure of arrays.
+
+use super::clip::{Part, Placed, greater, lesser};
+
+/// Cells along one axis at most: the cell of a coordinate then stays exact enough to be useful, and no index overflows.
+const PER_AXIS: usize = 1 << 15;
+/// Points up to which one pass sorts; more are first dealt out to groups of layers, each small enough for the cache.
+const ONE_PASS: usize = 1 << 15;
+
+/// 2^23: added to a number from 0 to 2^22, it leaves the nearest whole number in the lowest bits of the sum.
+const WHOLE: f32 = 8_388_608.0;
+
+/// The nearest whole number of a number clamped to `0..=last`; monotone, branch-free and fit for vectors.
+#[inline(always)]
+pub(crate) fn whole(real: f32, last: f32) -> usize {
+    ((lesser(greater(real, 0.0), last) + WHOLE).to_bits() & 0x7f_ffff) as usize
+}
+
+/// A uniform grid in a frame. `cell` is monotone in the coordinate, whatever is rounded on the way: the cells between those
+/// of a - r and a + r hold every point within r of a.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cells {
+    lower: [f32; 3],
+    inverse: f32,
+    count: [usize; 3],
+    last: [f32; 3],
+}
+
+/// Points a cell has on average where there are any; measured: between 4 and 12 there is little difference.
+const OCCUPANCY: f32 = 6.0;
+/// Points looked at to learn how they are distributed.
+const SAMPLE: usize = 512;
+
+impl Cells {
+    /// The grid for these points, none of whose cells is much narrower than `reach`.
+    pub(crate) fn fit(parts: &[Part], reach: f32) -> Self {
+        let n = parts.iter().map(|part| part.points.len()).sum::<usize>();
+        let min: [f32; 3] =
+            std::array::from_fn(|k| parts.iter().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
+        let max: [f32; 3] = std::array::from_fn(|k| {
+            parts
+                .iter()
+                .map(|part| part.max[k])
+                .fold(f32::NEG_INFINITY, greater)
+        });
+        let volume: f32 = (0..3).map(|k| greater(max[k] - min[k], reach)).product();
+        let mut edge = greater((volume * OCCUPANCY / n as f32).cbrt(), reach);
+        if edge > reach && n > 4 * SAMPLE {
+            // points on surfaces fill few cells; a sample tells how many share one
+            for _ in 0..3 {
+                let crowd = crowd(parts, n, &Self::new(min, max, edge, usize::MAX));
+                if crowd < 2.0 * OCCUPANCY || edge <= reach {
+                    break;
+                }
+                edge = greater(edge * (OCCUPANCY / crowd).sqrt(), reach);
+            }
+        }
+        Self::new(min, max, edge, 2 * n + 64)
+    }
+
+    /// The grid over `min..=max` with cells of edge `edge` or longer, as needed to have at most `limit` of them.
+    pub(crate) fn new(min: [f32; 3], max: [f32; 3], mut edge: f32, limit: usize) -> Self {
+        loop {
+            let count: [usize; 3] =
+                std::array::from_fn(|k| ((max[k] - min[k]) / edge + 0.5).clamp(0.0, 1e9) as usize + 1);
+            let total = count.iter().map(|&n| n as f64).product::<f64>();
+            if count.iter().all(|&n| n <= PER_AXIS) && (total <= limit.max(1) as f64 || total <= 1.0) {
+                return Self {
+                    lower: min,
+                    inverse: 1.0 / edge,
+                    count,
+                    last: count.map(|n| (n - 1) as f32),
+                };
+            }
+            edge *= 1.25;
+        }
+    }
+
+    /// Cells along each axis.
+    pub(crate) fn count(&self) -> [usize; 3] {
+        self.count
+    }
+
+    /// The cell along `axis` of a coordinate; what lies outside belongs to the outermost cells.
+    #[inline(always)]
+    pub(crate) fn cell(&self, axis: usize, c: f32) -> usize {
+        whole((c - self.lower[axis]) * self.inverse, self.last[axis])
+    }
+
+    /// The serial number of a point's cell: x runs fastest, z slowest.
+    #[inline(always)]
+    pub(crate) fn index(&self, q: &[f32; 3]) -> usize {
+        (self.cell(2, q[2]) * self.count[1] + self.cell(1, q[1])) * self.count[0] + self.cell(0, q[0])
+    }
+
+    /// Cells in one layer of equal z.
+    pub(crate) fn layer(&self) -> usize {
+        self.count[0] * self.count[1]
+    }
+}
+
+/// How many points, on average over the points, share a point's cell, estimated from a sample.
+fn crowd(parts: &[Part], n: usize, cells: &Cells) -> f32 {
+    let stride = n.div_ceil(SAMPLE);
+    let points = parts.iter().flat_map(|part| part.points.iter().step_by(stride));
+    let mut sample: Vec<usize> = points.map(|point| cells.index(&point.q)).collect();
+    sample.sort_unstable();
+    let pairs: usize = sample
+        .chunk_by(|a, b| a == b)
+        .map(|same| same.len() * (same.len() - 1))
+        .sum();
+    1.0 + pairs as f32 / sample.len() as f32 * (n as f32 / sample.len() as f32)
+}
+
+/// Points in the order of their cells, and where each cell starts.
+#[derive(Debug, Default)]
+pub(crate) struct Sorted {
+    pub(crate) c: [Vec<f32>; 3],
+    pub(crate) id: Vec<u32>,
+    /// One entry a cell and one for the end.
+    pub(crate) start: Vec<u32>,
+    grouped: Vec<Vec<Placed>>,
+    offsets: Vec<Vec<u32>>,
+}
+
+/// Behind the last point, so that eight lanes can be read from any point on.
+pub(crate) const PADDING: usize = 8;
+
+impl Sorted {
+    /// Sorts the points of `parts`; those of one cell keep their order.
+    pub(crate) fn sort(&mut self, parts: &[Part], cells: &Cells, threads: usize) {
+        let n: usize = parts.iter().map(|part| part.points.len()).sum();
+        let total = cells.layer() * cells.count[2];
+        for axis in &mut self.c {
+            axis.resize(n + PADDING, f32::INFINITY);
+        }
+        self.id.resize(n + PADDING, 0);
+        self.start.clear();
+        self.start.resize(total + 1, 0);
+        self.start[total] = n as u32;
+        if n <= ONE_PASS || cells.count[2] == 1 {
+            let [x, y, z] = &mut self.c;
+            let mut group = Group {
+                x,
+                y,
+                z,
+                id: &mut self.id,
+                start: &mut self.start[..total],
+                base: 0,
+                first: 0,
+            };
+            group.sort(parts.iter().map(|part| part.points.as_slice()), cells);
+            return;
+        }
+        self.deal(parts, cells, threads);
+        self.sort_groups(cells, n, threads);
+    }
+
+    /// First pass: every part's points dealt out to groups of layers.
+    fn deal(&mut self, parts: &[Part], cells: &Cells, threads: usize) {
+        self.grouped.resize_with(parts.len(), Vec::new);
+        self.offsets.resize_with(parts.len(), Vec::new);
+        let layers = cells.count[2];
+        let deal =
+            |(Part { points: part, .. }, (grouped, offsets)): (&Part, (&mut Vec<Placed>, &mut Vec<u32>))| {
+                offsets.clear();
+                offsets.resize(layers + 1, 0);
+                for point in part {
+                    offsets[cells.cell(2, point.q[2])] += 1;
+                }
+                let mut end = 0;
+                for offset in offsets.iter_mut() {
+                    end += *offset;
+                    *offset = end;
+                }
+                grouped.resize(part.len(), Placed::default());
+                for point in part.iter().rev() {
+                    let at = &mut offsets[cells.cell(2, point.q[2])];
+                    *at -= 1;
+                    grouped[*at as usize] = *point;
+                }
+            };
+        if threads < 2 {
+            parts
+                .iter()
+                .zip(self.grouped.iter_mut().zip(&mut self.offsets))
+                .for_each(deal);
+        } else {
+            use rayon::prelude::*;
+            parts
+                .par_iter()
+                .zip(self.grouped.par_iter_mut().zip(&mut self.offsets))
+                .for_each(deal);
+        }
+    }
+
+    /// Second pass: the points of each layer into its cells.
+    fn sort_groups(&mut self, cells: &Cells, n: usize, threads: usize) {
+        let Self {
+            c: [x, y, z],
+            id,
+            start,
+            grouped,
+            offsets,
+        } = self;
+        let (grouped, offsets) = (&*grouped, &*offsets);
+        let layers = cells.count[2];
+        let points_before = |layer: usize| offsets.iter().map(|o| o[layer] as usize).sum::<usize>();
+        let sort_layers = |slab: &mut Slab<'_>| {
+            for layer in slab.layers.clone() {
+                let (from, to) = (
+                    points_before(layer) - slab.base,
+                    points_before(layer + 1) - slab.base,
+                );
+                let cell = (layer - slab.layers.start) * cells.layer();
+                let mut group = Group {
+                    x: &mut slab.x[from..to],
+                    y: &mut slab.y[from..to],
+                    z: &mut slab.z[from..to],
+                    id: &mut slab.id[from..to],
+                    start: &mut slab.start[cell..cell + cells.layer()],
+                    base: (slab.base + from) as u32,
+                    first: layer * cells.layer(),
+                };
+                let segments = grouped
+                    .iter()
+                    .zip(offsets)
+                    .map(|(part, o)| &part[o[layer] as usize..o[layer + 1] as usize]);
+                group.sort(segments, cells);
+            }
+        };
+        let (mut x, mut y, mut z, mut id) = (&mut x[..], &mut y[..], &mut z[..], &mut id[..]);
+        let mut start = &mut start[..];
+        if threads < 2 {
+            sort_layers(&mut Slab {
+                layers: 0..layers,
+                base: 0,
+                x,
+                y,
+                z,
+                id,
+                start,
+            });
+            return;
+        }
+        let tasks = threads * 8;
+        let mut slabs = Vec::with_capacity(tasks + 1);
+        let mut first = 0;
+        let mut base = 0;
+        while first < layers {
+            let mut last = first + 1;
+            while last < layers && points_before(last) - base < n / tasks {
+                last += 1;
+            }
+            let points = points_before(last) - base;
+            slabs.push(Slab {
+                layers: first..last,
+                base,
+                x: x.split_off_mut(..points).unwrap_or_default(),
+                y: y.split_off_mut(..points).unwrap_or_default(),
+                z: z.split_off_mut(..points).unwrap_or_default(),
+                id: id.split_off_mut(..points).unwrap_or_default(),
+                start: start
+                    .split_off_mut(..(last - first) * cells.layer())
+                    .unwrap_or_default(),
+            });
+            first = last;
+            base += points;
+        }
+        use rayon::prelude::*;
+        slabs.par_iter_mut().for_each(sort_layers);
+    }
+}
+
+/// Consecutive layers and their parts of the sorted arrays.
+struct Slab<'a> {
+    layers: std::ops::Range<usize>,
+    base: usize,
+    x: &'a mut [f32],
+    y: &'a mut [f32],
+    z: &'a mut [f32],
+    id: &'a mut [u32],
+    start: &'a mut [u32],
+}
+
+/// The slices of the sorted arrays that some consecutive cells own.
+struct Group<'a> {
+    x: &'a mut [f32],
+    y: &'a mut [f32],
+    z: &'a mut [f32],
+    id: &'a mut [u32],
+    /// Zero on entry.
+    start: &'a mut [u32],
+    /// Points before the first of these cells.
+    base: u32,
+    /// The first of these cells.
+    first: usize,
+}
+
+impl Group<'_> {
+    fn sort<'p, I>(&mut self, segments: I, cells: &Cells)
+    where
+        I: DoubleEndedIterator<Item = &'p [Placed]> + Clone,
+    {
+        for segment in segments.clone() {
+            for point in segment {
+                self.start[cells.index(&point.q) - self.first] += 1;
+            }
+        }
+        let mut end = 0;
+        for start in self.start.iter_mut() {
+            end += *start;
+            *start = end;
+        }
+        for segment in segments.rev() {
+            for point in segment.iter().rev() {
+                let start = &mut self.start[cells.index(&point.q) - self.first];
+                *start -= 1;
+                let at = *start as usize;
+                self.x[at] = point.q[0];
+                self.y[at] = point.q[1];
+                self.z[at] = point.q[2];
+                self.id[at] = point.id;
+            }
+        }
+        if self.base > 0 {
+            for start in self.start.iter_mut() {
+                *start += self.base;
+            }
+        }
+    }
+}

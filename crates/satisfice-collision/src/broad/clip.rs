@@ -1,0 +1,262 @@
+//! What of a body can have a partner: boxes of runs of points, and the points inside a region brought into a frame.
+
+use std::ops::Range;
+
+use super::frame::Frame;
+use super::lanes::{Lanes, Work, dispatch};
+use crate::{Aabb, Error};
+
+/// Points a run has. Meshes number neighbours closely, so a run of 128 is small and is skipped or taken as a whole.
+pub(crate) const RUN: usize = 64;
+
+/// The bounding boxes of a body's points, run by run.
+#[derive(Debug, Default)]
+pub(crate) struct Runs {
+    boxes: Vec<Aabb>,
+    whole: Option<Aabb>,
+}
+
+impl Runs {
+    /// Measures `points`.
+    ///
+    /// # Errors
+    /// [`Error::NonFiniteVertex`] naming the first offender.
+    pub(crate) fn measure(&mut self, points: &[[f64; 3]], threads: usize) -> Result<(), Error> {
+        self.whole = None;
+        self.boxes.clear();
+        self.boxes.resize(points.len().div_ceil(RUN), EMPTY);
+        let tasks = threads.min(points.len() / 50_000 + 1);
+        let finite = if tasks < 2 {
+            dispatch(Measure {
+                points,
+                boxes: &mut self.boxes,
+            })
+        } else {
+            use rayon::prelude::*;
+            let runs = self.boxes.len().div_ceil(tasks * 4);
+            self.boxes
+                .par_chunks_mut(runs)
+                .zip(points.par_chunks(runs * RUN))
+                .map(|(boxes, points)| dispatch(Measure { points, boxes }))
+                .reduce(|| true, |a, b| a & b)
+        };
+        if !finite {
+            first_offender(points)?;
+        }
+        self.whole = self.boxes.iter().copied().reduce(|a, b| union(&a, &b));
+        Ok(())
+    }
+
+    /// The box of all points; `None` if there are none.
+    pub(crate) fn whole(&self) -> Option<Aabb> {
+        self.whole
+    }
+
+    /// The box of each run.
+    pub(crate) fn boxes(&self) -> &[Aabb] {
+        &self.boxes
+    }
+}
+
+fn first_offender(points: &[[f64; 3]]) -> Result<(), Error> {
+    for (vertex, point) in points.iter().enumerate() {
+        if let Some(k) = point.iter().position(|c| !c.is_finite()) {
+            return Err(Error::NonFiniteVertex {
+                vertex,
+                axis: ['x', 'y', 'z'][k],
+                value: point[k],
+            });
+        }
+    }
+    Ok(())
+}
+
+const EMPTY: Aabb = Aabb {
+    min: [f64::INFINITY; 3],
+    max: [f64::NEG_INFINITY; 3],
+};
+
+/// The least box that holds both.
+pub(crate) fn union(a: &Aabb, b: &Aabb) -> Aabb {
+    Aabb {
+        min: std::array::from_fn(|k| a.min[k].min(b.min[k])),
+        max: std::array::from_fn(|k| a.max[k].max(b.max[k])),
+    }
+}
+
+/// What both have in common; `None` if that is nothing.
+pub(crate) fn intersection(a: &Aabb, b: &Aabb) -> Option<Aabb> {
+    let min: [f64; 3] = std::array::from_fn(|k| a.min[k].max(b.min[k]));
+    let max: [f64; 3] = std::array::from_fn(|k| a.max[k].min(b.max[k]));
+    (0..3).all(|k| min[k] <= max[k]).then_some(Aabb { min, max })
+}
+
+/// A box that holds every point within `delta` of `bounds`, roundings included.
+pub(crate) fn inflate(bounds: &Aabb, delta: f64) -> Aabb {
+    Aabb {
+        min: bounds.min.map(|c| (c - delta).next_down().max(f64::MIN)),
+        max: bounds.max.map(|c| (c + delta).next_up().min(f64::MAX)),
+    }
+}
+
+struct Measure<'a> {
+    points: &'a [[f64; 3]],
+    boxes: &'a mut [Aabb],
+}
+
+impl Work for Measure<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> bool {
+        let mut finite = true;
+        for (points, bounds) in self.points.chunks(RUN).zip(self.boxes) {
+            // four points are twelve numbers: whole vectors of either width, the same axis in the same lane
+            let (fours, rest) = points.as_flattened().as_chunks::<12>();
+            let (mut min, mut max, mut zero) = ([f64::INFINITY; 12], [f64::NEG_INFINITY; 12], [0.0; 12]);
+            for four in fours {
+                for k in 0..12 {
+                    min[k] = if four[k] < min[k] { four[k] } else { min[k] };
+                    max[k] = if four[k] > max[k] { four[k] } else { max[k] };
+                }
+            }
+            for four in fours {
+                for k in 0..12 {
+                    zero[k] += four[k] * 0.0;
+                }
+            }
+            for (k, &c) in rest.iter().enumerate() {
+                min[k] = min[k].min(c);
+                max[k] = max[k].max(c);
+                zero[k] += c * 0.0;
+            }
+            finite &= zero.iter().sum::<f64>() == 0.0;
+            let fold = |of: &[f64; 12], k: usize, least: bool| {
+                let pick = |a: f64, b: f64| if least { a.min(b) } else { a.max(b) };
+                pick(pick(of[k], of[k + 3]), pick(of[k + 6], of[k + 9]))
+            };
+            *bounds = Aabb {
+                min: std::array::from_fn(|k| fold(&min, k, true)),
+                max: std::array::from_fn(|k| fold(&max, k, false)),
+            };
+        }
+        finite
+    }
+}
+
+/// A point in a frame, and its serial number.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Placed {
+    pub(crate) q: [f32; 3],
+    pub(crate) id: u32,
+}
+
+/// The points of one part of a body, placed, and the box around them.
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub(crate) points: Vec<Placed>,
+    pub(crate) min: [f32; 3],
+    pub(crate) max: [f32; 3],
+}
+
+impl Default for Part {
+    fn default() -> Self {
+        Self {
+            points: Vec::new(),
+            min: [f32::INFINITY; 3],
+            max: [f32::NEG_INFINITY; 3],
+        }
+    }
+}
+
+impl Part {
+    /// Measures the box anew.
+    pub(crate) fn measure(&mut self) {
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for point in &self.points {
+            for k in 0..3 {
+                min[k] = lesser(point.q[k], min[k]);
+                max[k] = greater(point.q[k], max[k]);
+            }
+        }
+        (self.min, self.max) = (min, max);
+    }
+}
+
+/// What is to be clipped: the runs of a body, the region that counts and the frame to place points in.
+#[derive(Clone, Copy)]
+pub(crate) struct Clip<'a> {
+    pub(crate) points: &'a [[f64; 3]],
+    pub(crate) runs: &'a Runs,
+    pub(crate) region: &'a Aabb,
+    pub(crate) frame: &'a Frame,
+}
+
+impl Clip<'_> {
+    /// Places the points inside the region, in their order, in parts if there are threads for it.
+    pub(crate) fn place(&self, parts: &mut Vec<Part>, threads: usize) {
+        let runs = self.runs.boxes.len();
+        let count = if threads < 2 {
+            1
+        } else {
+            (runs / 64).clamp(1, 8 * threads)
+        };
+        parts.resize_with(count, Part::default);
+        let one = |(part, to): (usize, &mut Part)| {
+            self.part(runs * part / count..runs * (part + 1) / count, to);
+        };
+        if count == 1 {
+            one((0, &mut parts[0]));
+        } else {
+            use rayon::prelude::*;
+            parts.par_iter_mut().enumerate().for_each(one);
+        }
+    }
+
+    fn part(&self, runs: Range<usize>, to: &mut Part) {
+        to.points.clear();
+        for run in runs {
+            self.run(run, &mut to.points);
+        }
+        to.measure();
+    }
+
+    #[inline]
+    fn run(&self, run: usize, to: &mut Vec<Placed>) {
+        let Self { region, frame, .. } = self;
+        let bounds = &self.runs.boxes[run];
+        let first = run * RUN;
+        let points = &self.points[first..self.points.len().min(first + RUN)];
+        let placed = |(at, point): (usize, &[f64; 3])| Placed {
+            q: frame.place(point),
+            id: (first + at) as u32,
+        };
+        if region.contains(bounds.min) && region.contains(bounds.max) {
+            to.extend(points.iter().enumerate().map(placed));
+        } else if intersection(bounds, region).is_some() {
+            // branch-free: always written, kept by moving the end
+            let mut len = to.len();
+            to.resize(len + points.len(), Placed::default());
+            for (at, point) in points.iter().enumerate() {
+                to[len] = placed((at, point));
+                let inside = (0..3).fold(true, |inside, k| {
+                    inside & (region.min[k] <= point[k]) & (point[k] <= region.max[k])
+                });
+                len += usize::from(inside);
+            }
+            to.truncate(len);
+        }
+    }
+}
+
+/// The lesser of two finite numbers; one instruction, unlike `f32::min`.
+#[inline(always)]
+pub(crate) fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two finite numbers.
+#[inline(always)]
+pub(crate) fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}

@@ -1,0 +1,267 @@
+//! Pairs of points in neighbouring cells: candidates gathered a cell at a time, tested eight at once.
+
+use std::ops::Range;
+
+use super::cells::{Cells, Sorted};
+use super::clip::{greater, lesser};
+use super::exact::Decide;
+use super::frame::Frame;
+use super::lanes::{Eight, Lanes, Work};
+use super::order::Packing;
+
+/// From so many tests in one cell on a finer look is worth its overhead.
+const CLUMP: usize = 1 << 17;
+
+/// A cell with too many tests in it: the serial numbers of its points and of their candidates.
+#[derive(Debug)]
+pub(crate) struct Clump {
+    pub(crate) a: Vec<u32>,
+    pub(crate) b: Vec<u32>,
+}
+
+/// What one task keeps between frames.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    near: [Vec<f32>; 3],
+    near_id: Vec<u32>,
+    /// The pairs found, packed.
+    pub(crate) found: Vec<u64>,
+    /// What has to be looked at again in a frame of its own.
+    pub(crate) clumps: Vec<Clump>,
+    /// Squared distances computed.
+    pub(crate) tests: u64,
+    /// Pairs decided exactly because the filter could not.
+    pub(crate) in_band: u64,
+}
+
+impl Scratch {
+    pub(crate) fn clear(&mut self) {
+        self.found.clear();
+        self.clumps.clear();
+        self.tests = 0;
+        self.in_band = 0;
+    }
+
+    fn room(&mut self, len: usize) {
+        if self.near_id.len() < len {
+            let len = len.next_power_of_two();
+            self.near_id.resize(len, 0);
+            for axis in &mut self.near {
+                axis.resize(len, f32::INFINITY);
+            }
+        }
+    }
+}
+
+/// Joins the points of some layers of `a` with those of `b`; with `ONE_BODY` both are the same and each pair is found once.
+pub(crate) struct Join<'a, const ONE_BODY: bool> {
+    pub(crate) a: &'a Sorted,
+    pub(crate) b: &'a Sorted,
+    pub(crate) cells: &'a Cells,
+    pub(crate) frame: &'a Frame,
+    pub(crate) decide: &'a Decide<'a>,
+    pub(crate) packing: Packing,
+    pub(crate) layers: Range<usize>,
+    /// Whether clumps may be handed back.
+    pub(crate) split: bool,
+    pub(crate) scratch: &'a mut Scratch,
+}
+
+impl<const ONE_BODY: bool> Work for Join<'_, ONE_BODY> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let cells = *self.cells;
+        let first = self.layers.start * cells.layer();
+        let last = self.layers.end * cells.layer();
+        for cell in first..last {
+            let own = self.a.start[cell] as usize..self.a.start[cell + 1] as usize;
+            if !own.is_empty() {
+                self.cell(lanes, cell, own);
+            }
+        }
+    }
+}
+
+impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
+    #[inline(always)]
+    fn cell<L: Lanes>(&mut self, lanes: L, cell: usize, own: Range<usize>) {
+        let reach = self.frame.reach;
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for k in 0..3 {
+            for &c in &self.a.c[k][own.clone()] {
+                min[k] = lesser(c, min[k]);
+                max[k] = greater(c, max[k]);
+            }
+            min[k] -= reach;
+            max[k] += reach;
+        }
+        let near = self.gather(lanes, cell, &own, min, max);
+        if near == 0 {
+            return;
+        }
+        if self.split && own.len() * near > CLUMP {
+            let others = usize::from(ONE_BODY) * own.len();
+            let clump = Clump {
+                a: self.a.id[own].to_vec(),
+                b: self.scratch.near_id[others..near].to_vec(),
+            };
+            self.scratch.clumps.push(clump);
+            return;
+        }
+        self.scratch.tests += (own.len() * near) as u64;
+        for (i, at) in own.enumerate() {
+            let q = [self.a.c[0][at], self.a.c[1][at], self.a.c[2][at]];
+            let skip = if ONE_BODY { i + 1 } else { 0 };
+            self.scan(lanes, q, self.a.id[at], skip, near);
+        }
+    }
+
+    /// Copies the candidates of a cell side by side: in one body its own points first, then those of cells that follow it.
+    #[inline(always)]
+    fn gather<L: Lanes>(
+        &mut self,
+        lanes: L,
+        cell: usize,
+        own: &Range<usize>,
+        min: [f32; 3],
+        max: [f32; 3],
+    ) -> usize {
+        let cells = self.cells;
+        let [columns, rows, _] = cells.count();
+        let range = |k: usize| cells.cell(k, min[k])..cells.cell(k, max[k]) + 1;
+        let (xs, ys, zs) = (range(0), range(1), range(2));
+        let mut len = 0;
+        if ONE_BODY {
+            len = self.append(lanes, own.clone(), 0, min, max);
+        }
+        for z in if ONE_BODY {
+            cell / (columns * rows)..zs.end
+        } else {
+            zs
+        } {
+            for y in ys.clone() {
+                let row = (z * rows + y) * columns;
+                let (mut from, to) = (row + xs.start, row + xs.end);
+                if ONE_BODY {
+                    from = from.max(cell + 1);
+                    if from >= to {
+                        continue;
+                    }
+                }
+                let range = self.b.start[from] as usize..self.b.start[to] as usize;
+                if !range.is_empty() {
+                    len = self.append(lanes, range, len, min, max);
+                }
+            }
+        }
+        // what is left of the last eight must be no candidate
+        self.scratch.room(len + 8);
+        for axis in &mut self.scratch.near {
+            axis[len..len + 8].fill(f32::INFINITY);
+        }
+        len
+    }
+
+    /// Appends those of the sorted points `range` of b that lie inside the box, eight at a time.
+    #[inline(always)]
+    fn append<L: Lanes>(
+        &mut self,
+        lanes: L,
+        range: Range<usize>,
+        mut len: usize,
+        min: [f32; 3],
+        max: [f32; 3],
+    ) -> usize {
+        self.scratch.room(len + range.len() + 16);
+        let [nx, ny, nz] = &mut self.scratch.near;
+        let ids = &mut self.scratch.near_id;
+        let [x, y, z] = &self.b.c;
+        let mut at = range.start;
+        while at < range.end {
+            let (x, y, z) = (eight(x, at), eight(y, at), eight(z, at));
+            let rest = range.end - at;
+            let valid = if rest < 8 { (1 << rest) - 1 } else { 0xff };
+            let mask = lanes.inside([x, y, z], min, max) & valid;
+            lanes.compact(x, mask, eight_mut(nx, len));
+            lanes.compact(y, mask, eight_mut(ny, len));
+            lanes.compact(z, mask, eight_mut(nz, len));
+            lanes.compact_ids(id_eight(&self.b.id, at), mask, id_eight_mut(ids, len));
+            len += mask.count_ones() as usize;
+            at += 8;
+        }
+        len
+    }
+
+    /// Tests one point against the gathered candidates from `skip` on.
+    #[inline(always)]
+    fn scan<L: Lanes>(&mut self, lanes: L, q: [f32; 3], id: u32, skip: usize, near: usize) {
+        let Frame { sure, limit, .. } = *self.frame;
+        let Scratch {
+            near: [nx, ny, nz],
+            near_id,
+            found,
+            in_band,
+            ..
+        } = &mut *self.scratch;
+        let mut base = skip & !7;
+        let mut first = !0_u64 << (skip - base);
+        while base < near {
+            // 64 candidates without a branch, then only the hits
+            let mut bits = 0_u64;
+            let mut at = base;
+            let mut lane = 0;
+            while at < near && lane < 64 {
+                let c = [eight(nx, at), eight(ny, at), eight(nz, at)];
+                bits |= u64::from(lanes.closer(c, q, limit)) << lane;
+                at += 8;
+                lane += 8;
+            }
+            bits &= first;
+            first = !0;
+            while bits != 0 {
+                let at = base + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let (dx, dy, dz) = (nx[at] - q[0], ny[at] - q[1], nz[at] - q[2]);
+                let (mut a, mut b) = (id, near_id[at]);
+                if ONE_BODY && a > b {
+                    (a, b) = (b, a);
+                }
+                if dx * dx + dy * dy + dz * dz >= sure {
+                    *in_band += 1;
+                    if !self.decide.closer(a, b) {
+                        continue;
+                    }
+                }
+                found.push(self.packing.pack(a, b));
+            }
+            base += 64;
+        }
+    }
+}
+
+// Eight neighbours of a slice; `Sorted` is padded and `Scratch::room` makes room, so that the indices are in range.
+#[inline(always)]
+#[expect(clippy::unwrap_used, reason = "a slice of length eight is an array of eight")]
+fn eight(of: &[f32], at: usize) -> &Eight {
+    of[at..at + 8].try_into().unwrap()
+}
+
+#[inline(always)]
+#[expect(clippy::unwrap_used, reason = "a slice of length eight is an array of eight")]
+fn eight_mut(of: &mut [f32], at: usize) -> &mut Eight {
+    (&mut of[at..at + 8]).try_into().unwrap()
+}
+
+#[inline(always)]
+#[expect(clippy::unwrap_used, reason = "a slice of length eight is an array of eight")]
+fn id_eight(of: &[u32], at: usize) -> &[u32; 8] {
+    of[at..at + 8].try_into().unwrap()
+}
+
+#[inline(always)]
+#[expect(clippy::unwrap_used, reason = "a slice of length eight is an array of eight")]
+fn id_eight_mut(of: &mut [u32], at: usize) -> &mut [u32; 8] {
+    (&mut of[at..at + 8]).try_into().unwrap()
+}

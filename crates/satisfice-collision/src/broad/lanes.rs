@@ -1,0 +1,181 @@
+//! Eight `f32` lanes: AVX2 where the machine has it, plain arrays elsewhere, chosen when the program runs.
+
+/// Eight numbers side by side.
+pub(crate) type Eight = [f32; 8];
+
+/// What the broad phases ask of a vector unit. Bit `i` of a returned mask speaks of lane `i`.
+pub(crate) trait Lanes: Copy + Send + Sync {
+    /// Lanes whose squared distance from `p` is below `limit`. NaN and infinity are never below.
+    fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32;
+    /// Lanes inside the closed box `min..=max`.
+    fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32;
+    /// The lanes of `mask` moved to the front of `to`, in order; what follows them is unspecified.
+    fn compact(self, from: &Eight, mask: u32, to: &mut Eight);
+    /// The same for serial numbers.
+    fn compact_ids(self, from: &[u32; 8], mask: u32, to: &mut [u32; 8]);
+}
+
+/// A piece of work that runs inside a function compiled for the vector unit found.
+pub(crate) trait Work {
+    /// What it returns.
+    type Output;
+    /// Runs; has to be `#[inline(always)]` to be compiled for the unit.
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}
+
+/// Runs `work` on the best unit of this machine. The result does not depend on the unit.
+pub(crate) fn dispatch<W: Work>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(unit) = pulp::x86::V3::try_new() {
+        return unit.vectorize(OnAvx2(unit, work));
+    }
+    work.run(Portable)
+}
+
+/// Plain arrays; the compiler vectorises as far as the build target allows.
+#[derive(Clone, Copy)]
+pub(crate) struct Portable;
+
+#[inline(always)]
+fn mask(of: impl Fn(usize) -> bool) -> u32 {
+    (0..8).fold(0, |bits, i| bits | (u32::from(of(i)) << i))
+}
+
+impl Lanes for Portable {
+    #[inline(always)]
+    fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32 {
+        mask(|i| {
+            let (x, y, z) = (c[0][i] - p[0], c[1][i] - p[1], c[2][i] - p[2]);
+            x * x + y * y + z * z < limit
+        })
+    }
+
+    #[inline(always)]
+    fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32 {
+        mask(|i| (0..3).all(|k| min[k] <= c[k][i] && c[k][i] <= max[k]))
+    }
+
+    #[inline(always)]
+    fn compact(self, from: &Eight, mut mask: u32, to: &mut Eight) {
+        let mut at = 0;
+        while mask != 0 {
+            to[at] = from[mask.trailing_zeros() as usize & 7];
+            at += 1;
+            mask &= mask - 1;
+        }
+    }
+
+    #[inline(always)]
+    fn compact_ids(self, from: &[u32; 8], mut mask: u32, to: &mut [u32; 8]) {
+        let mut at = 0;
+        while mask != 0 {
+            to[at] = from[mask.trailing_zeros() as usize & 7];
+            at += 1;
+            mask &= mask - 1;
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+use avx2::OnAvx2;
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use std::arch::x86_64::{__m256, __m256i, _CMP_LE_OQ, _CMP_LT_OQ};
+
+    use pulp::NullaryFnOnce;
+    use pulp::x86::V3;
+
+    use super::{Eight, Lanes, Work};
+
+    pub(super) struct OnAvx2<W>(pub(super) V3, pub(super) W);
+
+    impl<W: Work> NullaryFnOnce for OnAvx2<W> {
+        type Output = W::Output;
+
+        #[inline(always)]
+        fn call(self) -> W::Output {
+            self.1.run(self.0)
+        }
+    }
+
+    /// For each mask the lanes it names, in order.
+    static ORDER: [[u32; 8]; 256] = {
+        let mut table = [[0; 8]; 256];
+        let mut mask = 0;
+        while mask < 256 {
+            let (mut lane, mut at) = (0, 0);
+            while lane < 8 {
+                if mask >> lane & 1 == 1 {
+                    table[mask][at] = lane;
+                    at += 1;
+                }
+                lane += 1;
+            }
+            mask += 1;
+        }
+        table
+    };
+
+    #[inline(always)]
+    fn load(eight: &Eight) -> __m256 {
+        pulp::cast(*eight)
+    }
+
+    #[inline(always)]
+    fn order(mask: u32) -> __m256i {
+        pulp::cast(ORDER[mask as usize & 255])
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, reason = "a mask of eight bits")]
+    fn bits(unit: V3, of: __m256) -> u32 {
+        unit.avx._mm256_movemask_ps(of) as u32
+    }
+
+    impl Lanes for V3 {
+        #[inline(always)]
+        fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32 {
+            let avx = self.avx;
+            let x = avx._mm256_sub_ps(load(c[0]), avx._mm256_set1_ps(p[0]));
+            let y = avx._mm256_sub_ps(load(c[1]), avx._mm256_set1_ps(p[1]));
+            let z = avx._mm256_sub_ps(load(c[2]), avx._mm256_set1_ps(p[2]));
+            let d = avx._mm256_mul_ps(x, x);
+            let d = self.fma._mm256_fmadd_ps(y, y, d);
+            let d = self.fma._mm256_fmadd_ps(z, z, d);
+            bits(
+                self,
+                avx._mm256_cmp_ps::<_CMP_LT_OQ>(d, avx._mm256_set1_ps(limit)),
+            )
+        }
+
+        #[inline(always)]
+        fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32 {
+            let avx = self.avx;
+            let axis = |k: usize| {
+                let v = load(c[k]);
+                avx._mm256_and_ps(
+                    avx._mm256_cmp_ps::<_CMP_LE_OQ>(avx._mm256_set1_ps(min[k]), v),
+                    avx._mm256_cmp_ps::<_CMP_LE_OQ>(v, avx._mm256_set1_ps(max[k])),
+                )
+            };
+            bits(
+                self,
+                avx._mm256_and_ps(avx._mm256_and_ps(axis(0), axis(1)), axis(2)),
+            )
+        }
+
+        #[inline(always)]
+        fn compact(self, from: &Eight, mask: u32, to: &mut Eight) {
+            *to = pulp::cast(self.avx2._mm256_permutevar8x32_ps(load(from), order(mask)));
+        }
+
+        #[inline(always)]
+        fn compact_ids(self, from: &[u32; 8], mask: u32, to: &mut [u32; 8]) {
+            *to = pulp::cast(
+                self.avx2
+                    ._mm256_permutevar8x32_epi32(pulp::cast(*from), order(mask)),
+            );
+        }
+    }
+}

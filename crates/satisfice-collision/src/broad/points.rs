@@ -1,0 +1,282 @@
+//! All pairs of points within a threshold, of two bodies or inside one, exactly and in order.
+
+use super::cells::{Cells, Sorted};
+use super::clip::{Clip, Part, Runs, union};
+use super::exact::Decide;
+use super::frame::Frame;
+use super::join::{Clump, Join, Scratch};
+use super::lanes::dispatch;
+use super::order::{Packing, Pair};
+use super::overlap;
+use super::sieve::sieve;
+use crate::distance::Threshold;
+use crate::{Aabb, Error};
+
+/// How deep clumps are looked at in frames of their own; each is at most half as wide as the one before.
+const DEEPEST: u32 = 40;
+
+/// What an enumeration had to do.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PointWork {
+    /// Points of both bodies outside the overlap of the inflated boxes.
+    pub clipped: u64,
+    /// Points inside the overlap with no point of the other body nearby.
+    pub lonely: u64,
+    /// Squared distances computed.
+    pub tests: u64,
+    /// Pairs so close to the threshold that they were decided exactly.
+    pub in_band: u64,
+}
+
+/// Finds all pairs of points within a threshold by a uniform grid that is clipped to the overlap of the two bodies.
+/// Keeps its memory from call to call.
+#[derive(Debug, Default)]
+pub struct PointGrid {
+    threads: usize,
+    runs: [Runs; 2],
+    parts: [Vec<Part>; 2],
+    sorted: [Sorted; 2],
+    tasks: Vec<Scratch>,
+    keys: [Vec<u64>; 2],
+    pairs: Vec<Pair>,
+    work: PointWork,
+}
+
+impl PointGrid {
+    /// A grid that works on one thread.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            threads: 1,
+            ..Self::default()
+        }
+    }
+
+    /// A grid that works on the current rayon pool. The result is the same.
+    #[must_use]
+    pub fn parallel() -> Self {
+        Self {
+            threads: rayon::current_num_threads(),
+            ..Self::default()
+        }
+    }
+
+    /// What the last call did.
+    #[must_use]
+    pub fn work(&self) -> PointWork {
+        self.work
+    }
+
+    /// All pairs `(i, j)` with `|a[i] - b[j]| < threshold`, sorted by `i`, then `j`.
+    ///
+    /// # Errors
+    /// [`Error::NonFiniteVertex`]; [`Error::TooManyVertices`].
+    ///
+    /// Cost: O(points + tests), the tests of a body's surface being proportional to the pairs.
+    pub fn between(
+        &mut self,
+        a: &[[f64; 3]],
+        b: &[[f64; 3]],
+        threshold: Threshold,
+    ) -> Result<&[Pair], Error> {
+        self.run::<false>(a, b, threshold, 0)?;
+        Ok(&self.pairs)
+    }
+
+    /// All pairs `i < j` with `|points[i] - points[j]| < threshold`, sorted by `i`, then `j`.
+    ///
+    /// # Errors
+    /// As [`PointGrid::between`].
+    pub fn within(&mut self, points: &[[f64; 3]], threshold: Threshold) -> Result<&[Pair], Error> {
+        self.run::<true>(points, points, threshold, 0)?;
+        Ok(&self.pairs)
+    }
+
+    fn run<const ONE_BODY: bool>(
+        &mut self,
+        a: &[[f64; 3]],
+        b: &[[f64; 3]],
+        threshold: Threshold,
+        depth: u32,
+    ) -> Result<(), Error> {
+        self.pairs.clear();
+        self.work = PointWork::default();
+        for points in [a, b] {
+            if u32::try_from(points.len()).is_err() {
+                return Err(Error::TooManyVertices {
+                    vertices: points.len(),
+                });
+            }
+        }
+        let (one, two) = self.runs.split_at_mut(1);
+        one[0].measure(a, self.threads)?;
+        if !ONE_BODY {
+            two[0].measure(b, self.threads)?;
+        }
+        let Some(frame) = self.clip::<ONE_BODY>(a, b, threshold) else {
+            self.work.clipped = if ONE_BODY { a.len() } else { a.len() + b.len() } as u64;
+            return Ok(());
+        };
+        let kept = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
+        let (na, nb) = (kept(&self.parts[0]), kept(&self.parts[1]));
+        self.work.clipped = if ONE_BODY {
+            a.len() - na
+        } else {
+            a.len() + b.len() - na - nb
+        } as u64
+            - self.work.lonely;
+        if na == 0 || (!ONE_BODY && nb == 0) {
+            return Ok(());
+        }
+        let cells = Cells::fit(&self.parts[0], frame.reach);
+        self.sorted[0].sort(&self.parts[0], &cells, self.threads);
+        if !ONE_BODY {
+            self.sorted[1].sort(&self.parts[1], &cells, self.threads);
+        }
+        let packing = Packing::new(a.len(), b.len());
+        let decide = Decide { a, b, threshold };
+        let tasks = self.join::<ONE_BODY>(&cells, &frame, &decide, packing, depth < DEEPEST);
+        for task in 0..tasks {
+            for Clump { a: own, b: others } in std::mem::take(&mut self.tasks[task].clumps) {
+                self.clump::<ONE_BODY>(&decide, packing, task, &own, &others, depth)?;
+            }
+            self.work.tests += self.tasks[task].tests;
+            self.work.in_band += self.tasks[task].in_band;
+        }
+        let found = self.tasks[..tasks].iter().map(|task| task.found.as_slice());
+        packing.sort(found, &mut self.keys, &mut self.pairs, self.threads);
+        Ok(())
+    }
+
+    /// Brings what both bodies have near the other into a frame.
+    fn clip<const ONE_BODY: bool>(
+        &mut self,
+        a: &[[f64; 3]],
+        b: &[[f64; 3]],
+        threshold: Threshold,
+    ) -> Option<Frame> {
+        let Self {
+            runs: [runs_a, runs_b],
+            parts: [parts_a, parts_b],
+            threads,
+            ..
+        } = self;
+        if ONE_BODY {
+            let region = &runs_a.whole()?;
+            let frame = &Frame::new(region, threshold.get());
+            Clip {
+                points: a,
+                runs: runs_a,
+                region,
+                frame,
+            }
+            .place(parts_a, *threads);
+            return Some(*frame);
+        }
+        let regions = overlap::regions(runs_a, runs_b, threshold.get())?;
+        let frame = &Frame::new(&union(&regions[0], &regions[1]), threshold.get());
+        Clip {
+            points: a,
+            runs: runs_a,
+            region: &regions[0],
+            frame,
+        }
+        .place(parts_a, *threads);
+        Clip {
+            points: b,
+            runs: runs_b,
+            region: &regions[1],
+            frame,
+        }
+        .place(parts_b, *threads);
+        self.work.lonely = sieve(parts_a, parts_b, frame.reach, *threads) as u64;
+        Some(*frame)
+    }
+
+    fn join<const ONE_BODY: bool>(
+        &mut self,
+        cells: &Cells,
+        frame: &Frame,
+        decide: &Decide<'_>,
+        packing: Packing,
+        split: bool,
+    ) -> usize {
+        let a = &self.sorted[0];
+        let b = if ONE_BODY { a } else { &self.sorted[1] };
+        let layers = cells.count()[2];
+        let points = a.start[a.start.len() - 1] as usize;
+        let tasks = if self.threads < 2 || points < 16_384 {
+            1
+        } else {
+            (self.threads * 8).min(layers)
+        };
+        self.tasks
+            .resize_with(tasks.max(self.tasks.len()), Scratch::default);
+        let bound = |task: usize| layers * task / tasks;
+        let run = |(task, scratch): (usize, &mut Scratch)| {
+            scratch.clear();
+            let layers = bound(task)..bound(task + 1);
+            dispatch(Join::<ONE_BODY> {
+                a,
+                b,
+                cells,
+                frame,
+                decide,
+                packing,
+                layers,
+                split,
+                scratch,
+            });
+        };
+        if tasks == 1 {
+            run((0, &mut self.tasks[0]));
+        } else {
+            use rayon::prelude::*;
+            self.tasks[..tasks]
+                .par_iter_mut()
+                .enumerate()
+                .for_each(|(task, scratch)| run((task, scratch)));
+        }
+        tasks
+    }
+
+    /// Looks at a crowded cell in a frame of its own.
+    fn clump<const ONE_BODY: bool>(
+        &mut self,
+        decide: &Decide<'_>,
+        packing: Packing,
+        task: usize,
+        own: &[u32],
+        others: &[u32],
+        depth: u32,
+    ) -> Result<(), Error> {
+        let pick = |of: &[[f64; 3]], ids: &[u32]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
+        let a = pick(decide.a, own);
+        let b = pick(decide.b, others);
+        let bounds = Aabb::of_points(a.iter().copied());
+        let whole = self.runs[0].whole();
+        let halves = bounds
+            .zip(whole)
+            .is_some_and(|(bounds, whole)| bounds.size() <= whole.size() / 2.0);
+        let depth = if halves { depth + 1 } else { DEEPEST };
+        let mut inner = Self::new();
+        let mut take = |inner: &Self, b: &[u32]| {
+            self.work.tests += inner.work.tests;
+            self.work.in_band += inner.work.in_band;
+            self.tasks[task].found.extend(inner.pairs.iter().map(|pair| {
+                let (mut a, mut b) = (own[pair.a as usize], b[pair.b as usize]);
+                if ONE_BODY && a > b {
+                    (a, b) = (b, a);
+                }
+                packing.pack(a, b)
+            }));
+        };
+        if ONE_BODY {
+            inner.run::<true>(&a, &a, decide.threshold, depth)?;
+            take(&inner, own);
+        }
+        inner.run::<false>(&a, &b, decide.threshold, depth)?;
+        take(&inner, others);
+        Ok(())
+    }
+}
