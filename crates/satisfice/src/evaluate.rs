@@ -71,6 +71,8 @@ pub(crate) struct Candidates<S, T> {
     /// One for each point of the batch.
     pub(crate) outcomes: Vec<Outcome<S>>,
     values: Vec<S>,
+    /// Whether found solutions are deleted from the space, as far as the engine is concerned.
+    deletes: bool,
 }
 
 impl<S: Real, T> Default for Candidates<S, T> {
@@ -83,6 +85,7 @@ impl<S: Real, T> Default for Candidates<S, T> {
             done: Vec::new(),
             outcomes: Vec::new(),
             values: Vec::new(),
+            deletes: true,
         }
     }
 }
@@ -98,7 +101,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         deletes: bool,
     ) {
         let space = problem.space();
-        self.reset(batch.len());
+        self.reset(batch.len(), deletes);
         self.values.resize(space.dimension(), S::zero());
         for i in 0..batch.len().min(limit) {
             let point = batch.point_mut(i);
@@ -113,7 +116,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
                 Some(slot) => problem.decode_into(values, slot),
                 None => self.solutions.push(problem.decode(values)),
             }
-            self.file(i, archive, deletes);
+            self.file(i, archive);
         }
         self.fitness.resize(self.live, S::zero());
         self.done.resize(self.live, false);
@@ -128,19 +131,20 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     ) where
         T: 'a,
     {
-        self.reset(solutions.len());
+        self.reset(solutions.len(), true);
         for (i, solution) in solutions.take(limit).enumerate() {
             match self.solutions.get_mut(self.live) {
                 Some(slot) => slot.clone_from(solution),
                 None => self.solutions.push(solution.clone()),
             }
-            self.file(i, archive, true);
+            self.file(i, archive);
         }
         self.fitness.resize(self.live, S::zero());
         self.done.resize(self.live, false);
     }
 
-    fn reset(&mut self, points: usize) {
+    fn reset(&mut self, points: usize, deletes: bool) {
+        self.deletes = deletes;
         self.live = 0;
         self.places.clear();
         self.fitness.clear();
@@ -151,9 +155,9 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
 
     /// Files the solution in slot `live` as point `i`.
     #[inline]
-    fn file(&mut self, i: usize, archive: &Archive<T>, deletes: bool) {
+    fn file(&mut self, i: usize, archive: &Archive<T>) {
         if archive.contains(&self.solutions[self.live]) {
-            if deletes {
+            if self.deletes {
                 self.outcomes[i] = Outcome::Deleted;
                 return;
             }
@@ -423,7 +427,11 @@ impl Ledger {
             if !archive.insert(solution, self.counts.evaluations, seconds) {
                 // The same as an earlier one of this batch, or its representative is known.
                 self.counts.duplicates += 1;
-                return Outcome::Deleted;
+                return if candidates.deletes {
+                    Outcome::Deleted
+                } else {
+                    Outcome::Known(fitness)
+                };
             }
             self.greet(archive, observer);
             Outcome::Hit(fitness)
