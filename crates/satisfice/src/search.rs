@@ -1,6 +1,5 @@
 //! The loop: engine, ledger, archive, slice after slice.
 
-use core::cell::Cell;
 use std::sync::Arc;
 
 use crate::archive::Archive;
@@ -15,7 +14,7 @@ use crate::problem::{Description, SatisficingProblem};
 use crate::report::{Completeness, Report};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::view::{Calls, View};
+use crate::view::{Calls, Scratches, View};
 
 /// An engine that asks for more this often without proposing anything has nothing to propose.
 const EMPTY_ASKS: usize = 1000;
@@ -68,7 +67,7 @@ struct Slice<S, T> {
     /// What the engine's last `ask` said.
     last: Ask,
     calls: Calls,
-    scratch: Cell<Vec<S>>,
+    scratches: Scratches<S, T>,
     outstanding: bool,
 }
 
@@ -217,7 +216,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             },
             last: Ask::More,
             calls: Calls::default(),
-            scratch: Cell::default(),
+            scratches: Scratches::default(),
             outstanding: false,
         });
         self.engine.begin(&slice.view(problem, &self.previous));
@@ -400,7 +399,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             evaluations: self.ledger.counts.evaluations,
             share: self.ledger.share(),
             calls: &self.calls,
-            scratch: &self.scratch,
+            scratches: &self.scratches,
         }
     }
 

@@ -1,6 +1,6 @@
 //! What an engine sees of a running search.
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use crate::archive::Archive;
 use crate::context::Context;
@@ -14,6 +14,16 @@ pub(crate) struct Calls {
     pub(crate) bounds: Cell<u64>,
 }
 
+/// Memory for one position and its solution.
+#[derive(Debug)]
+pub(crate) struct Scratch<S, T> {
+    values: Vec<S>,
+    solution: Option<T>,
+}
+
+/// Memory that is not in use. A list, because an engine may ask again while it is visiting neighbours.
+pub(crate) type Scratches<S, T> = RefCell<Vec<Scratch<S, T>>>;
+
 pub(crate) struct View<'a, P: SatisficingProblem> {
     pub(crate) problem: &'a P,
     pub(crate) archive: &'a Archive<P::Solution>,
@@ -21,46 +31,75 @@ pub(crate) struct View<'a, P: SatisficingProblem> {
     pub(crate) evaluations: u64,
     pub(crate) share: f64,
     pub(crate) calls: &'a Calls,
-    /// Memory for values; taken while in use, so that nested calls get their own.
-    pub(crate) scratch: &'a Cell<Vec<P::Scalar>>,
+    pub(crate) scratches: &'a Scratches<P::Scalar, P::Solution>,
 }
 
 impl<P: SatisficingProblem> View<'_, P> {
-    fn with_values<R>(&self, position: &[P::Scalar], use_them: impl FnOnce(&mut [P::Scalar]) -> R) -> R {
-        let mut values = self.scratch.take();
-        values.clear();
-        values.extend_from_slice(position);
-        self.problem.space().keep_inside(&mut values);
-        if self.problem.space().has_integers() {
-            for (axis, x) in self.problem.space().axes().iter().zip(&mut values) {
-                *x = axis.value(*x);
-            }
-        }
-        let result = use_them(&mut values);
-        self.scratch.set(values);
+    /// Lends memory that holds the position, brought inside.
+    fn with_scratch<R>(
+        &self,
+        position: &[P::Scalar],
+        use_it: impl FnOnce(&mut Scratch<P::Scalar, P::Solution>) -> R,
+    ) -> R {
+        let free = self.scratches.borrow_mut().pop();
+        let mut scratch = free.unwrap_or(Scratch {
+            values: Vec::new(),
+            solution: None,
+        });
+        scratch.values.clear();
+        scratch.values.extend_from_slice(position);
+        self.problem.space().keep_inside(&mut scratch.values);
+        let result = use_it(&mut scratch);
+        self.scratches.borrow_mut().push(scratch);
         result
     }
 
-    fn own_neighbours(&self, values: &mut [P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
-        let solution = self.problem.decode(values);
-        // Neighbours without an encoding are of no use to an engine.
-        if !self.problem.encode(&solution, values) {
-            return false;
-        }
-        let space = self.problem.space();
-        self.problem.neighbours(&solution, &mut |neighbour| {
-            if self.problem.encode(&neighbour, values) {
-                space.positions(values);
-                visit(values);
+    /// Turns the position in `scratch` into values and decodes them.
+    fn decode<'s>(
+        &self,
+        scratch: &'s mut Scratch<P::Scalar, P::Solution>,
+    ) -> (&'s P::Solution, &'s mut [P::Scalar]) {
+        let Scratch { values, solution } = scratch;
+        if self.problem.space().has_integers() {
+            for (axis, x) in self.problem.space().axes().iter().zip(&mut *values) {
+                *x = axis.value(*x);
             }
+        }
+        let solution = match solution {
+            Some(solution) => {
+                self.problem.decode_into(values, solution);
+                solution
+            }
+            None => solution.insert(self.problem.decode(values)),
+        };
+        (solution, values)
+    }
+
+    fn own_neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
+        self.with_scratch(of, |scratch| {
+            let (solution, values) = self.decode(scratch);
+            // Neighbours without an encoding are of no use to an engine.
+            if !self.problem.encode(solution, values) {
+                return false;
+            }
+            let space = self.problem.space();
+            self.problem.neighbours(solution, &mut |neighbour| {
+                if self.problem.encode(&neighbour, values) {
+                    space.positions(values);
+                    visit(values);
+                }
+            })
         })
     }
 
     fn lattice_neighbours(&self, position: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
         let space = self.problem.space();
         let mut any = false;
-        self.with_values(position, |neighbour| {
-            space.positions(neighbour);
+        self.with_scratch(position, |scratch| {
+            let neighbour = &mut scratch.values;
+            for (axis, x) in space.axes().iter().zip(&mut *neighbour) {
+                *x = axis.position(axis.value(*x));
+            }
             for (j, axis) in space
                 .axes()
                 .iter()
@@ -100,14 +139,11 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
     }
     fn is_deleted(&self, position: &[P::Scalar]) -> bool {
         !self.archive.is_empty()
-            && self.with_values(position, |values| {
-                self.archive.contains(&self.problem.decode(values))
-            })
+            && self.with_scratch(position, |scratch| self.archive.contains(self.decode(scratch).0))
     }
     fn neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
-        self.with_values(of, |values| self.own_neighbours(values, visit))
-            || self.lattice_neighbours(of, visit)
+        self.own_neighbours(of, visit) || self.lattice_neighbours(of, visit)
     }
     fn lower_bound(&self, region: &Region<P::Scalar>) -> Option<P::Scalar> {
         self.calls.bounds.set(self.calls.bounds.get() + 1);
