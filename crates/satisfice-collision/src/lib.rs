@@ -9,11 +9,14 @@ mod error;
 pub mod generate;
 pub mod io;
 pub mod mesh;
+pub mod oracle;
 pub mod order;
 mod placement;
+pub mod problem;
 pub mod sampling;
 
 pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, Mesh};
 pub use order::VertexOrder;
 pub use placement::Placement;
+pub use problem::VertexPairs;

@@ -32,6 +32,34 @@ impl Adjacency {
         Self { offsets, targets }
     }
 
+    /// No vertex joined to any other.
+    pub(crate) fn none(vertices: usize) -> Self {
+        Self {
+            offsets: vec![0; vertices + 1],
+            targets: Vec::new(),
+        }
+    }
+
+    /// The same with the vertices only that are kept; the others stay, joined to nothing.
+    pub(crate) fn restricted(&self, keep: impl Fn(u32) -> bool) -> Self {
+        let mut offsets = Vec::with_capacity(self.offsets.len());
+        let mut targets = Vec::new();
+        offsets.push(0);
+        for v in 0..self.len() as u32 {
+            if keep(v) {
+                targets.extend(self.neighbours(v).iter().filter(|&&u| keep(u)));
+            }
+            offsets.push(targets.len());
+        }
+        Self { offsets, targets }
+    }
+
+    /// Whether no vertex is joined to any other.
+    #[must_use]
+    pub fn has_none(&self) -> bool {
+        self.targets.is_empty()
+    }
+
     /// The number of vertices.
     #[must_use]
     pub fn len(&self) -> usize {

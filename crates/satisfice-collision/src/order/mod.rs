@@ -41,8 +41,8 @@ impl VertexOrder {
 
     /// The permutation: item k of the answer is the number of the point at position k.
     ///
-    /// The curves run over a grid of 2^21 cells an axis in the cube around the bounding box; points in one cell keep
-    /// their order. Meant for finite points (a [`crate::Mesh`] has no others). O(n log n).
+    /// The curves run over a grid of 2^21 cells an axis that fills the bounding box; points in one cell keep their
+    /// order. Meant for finite points (a [`crate::Mesh`] has no others). O(n log n).
     #[must_use]
     pub fn permutation(&self, points: &[[f64; 3]]) -> Vec<u32> {
         match *self {
@@ -108,13 +108,19 @@ fn by_key(points: &[[f64; 3]], key: impl Fn([u32; 3]) -> u64) -> Vec<u32> {
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 
-/// The cell of a point; one width of cell for all axes, so that the curve does not follow the longest one.
+/// The cell of a point. The grid fills the box, axis by axis, but stretches no axis more than fourfold against the longest
+/// one: a nearly flat body would otherwise be ordered by its noise.
+///
+/// Filling the box was measured against cubic cells on two teapots (4 samples, 16 seeds each, 1M evaluations): a
+/// latest-hit swarm that never meets a hit was seen 5 times in 64 against 21.
 fn cell(point: [f64; 3], bounds: &Aabb) -> [u32; 3] {
+    const STRETCH: f64 = 4.0;
     let last = (1_u32 << BITS) - 1;
     // Halved, because the extent of finite coordinates may be infinite.
-    let half_size = (0..3).fold(0.0_f64, |m, k| m.max(bounds.max[k] / 2.0 - bounds.min[k] / 2.0));
+    let half: [f64; 3] = std::array::from_fn(|k| bounds.max[k] / 2.0 - bounds.min[k] / 2.0);
+    let least = half.iter().fold(0.0_f64, |m, &h| m.max(h)) / STRETCH;
     std::array::from_fn(|k| {
-        let share = (point[k] / 2.0 - bounds.min[k] / 2.0) / half_size;
+        let share = (point[k] / 2.0 - bounds.min[k] / 2.0) / half[k].max(least);
         // A body of no extent gives NaN, which `as` takes to 0; `as` saturates, too.
         ((share * f64::from(1_u32 << BITS)) as u32).min(last)
     })

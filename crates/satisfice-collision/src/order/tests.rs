@@ -59,6 +59,26 @@ fn hilbert_keeps_near_numbers_near() {
     assert!(20.0 * hilbert < mean_step(VertexOrder::Random { seed: 1 }));
 }
 
+/// A thin sheet is ordered by its place, not by the noise in its thickness.
+#[test]
+fn noise_across_a_sheet_does_not_rule_its_order() {
+    let noise = sampling::permutation(1024, 3);
+    let sheet = |thickness: f64| -> Vec<[f64; 3]> {
+        (0..1024_u32)
+            .map(|i| {
+                [
+                    f64::from(i % 32),
+                    f64::from(i / 32),
+                    f64::from(noise[i as usize]) * thickness,
+                ]
+            })
+            .collect()
+    };
+    for order in [VertexOrder::Morton, VertexOrder::Hilbert] {
+        assert_eq!(order.permutation(&sheet(1e-9)), order.permutation(&sheet(0.0)));
+    }
+}
+
 #[test]
 fn names_are_read_back_and_others_refused() {
     for name in VertexOrder::NAMES {

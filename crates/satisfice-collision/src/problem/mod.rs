@@ -1,0 +1,10 @@
+//! Collision as a satisficing problem; the only part of this crate that knows the search framework.
+
+mod teapots;
+mod vertex_pairs;
+
+pub use teapots::Teapots;
+pub use vertex_pairs::VertexPairs;
+
+#[cfg(test)]
+mod tests;
