@@ -28,6 +28,9 @@ pub trait Context<S: Real> {
     /// each integer axis. `false`, without a visit, where there are none of either kind.
     fn neighbours(&self, of: &[S], visit: &mut dyn FnMut(&[S])) -> bool;
 
+    /// Whether the problem names neighbours of its own.
+    fn offers_neighbours(&self) -> bool;
+
     /// The problem's lower bound of F in a region of values, if it offers one. Every call is counted.
     fn lower_bound(&self, region: &Region<S>) -> Option<S>;
 

@@ -159,6 +159,16 @@ impl<T: Saved> Saved for Option<T> {
     }
 }
 
+impl<T: Saved, U: Saved> Saved for (T, U) {
+    fn save(&self, state: &mut State) {
+        self.0.save(state);
+        self.1.save(state);
+    }
+    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
+        Ok((from.read()?, from.read()?))
+    }
+}
+
 impl<T: Saved, const N: usize> Saved for [T; N] {
     fn save(&self, state: &mut State) {
         for item in self {

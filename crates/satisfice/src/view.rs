@@ -12,6 +12,8 @@ use crate::space::{Region, Space};
 pub(crate) struct Calls {
     pub(crate) neighbours: Cell<u64>,
     pub(crate) bounds: Cell<u64>,
+    /// Whether the problem names neighbours, once asked.
+    pub(crate) offers_neighbours: Cell<Option<bool>>,
 }
 
 /// Memory for one position and its solution.
@@ -144,6 +146,16 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
     fn neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
         self.own_neighbours(of, visit) || self.lattice_neighbours(of, visit)
+    }
+    fn offers_neighbours(&self) -> bool {
+        let known = self.calls.offers_neighbours.get();
+        known.unwrap_or_else(|| {
+            // Asked at any one point; a problem either names neighbours or does not.
+            let corner = self.problem.space().region().lower;
+            let offers = self.with_values(&corner, |values| self.own_neighbours(values, &mut |_| {}));
+            self.calls.offers_neighbours.set(Some(offers));
+            offers
+        })
     }
     fn lower_bound(&self, region: &Region<P::Scalar>) -> Option<P::Scalar> {
         self.calls.bounds.set(self.calls.bounds.get() + 1);

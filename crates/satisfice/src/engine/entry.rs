@@ -103,6 +103,12 @@ macro_rules! entry {
 
 static ENGINES: &[Entry] = &[
     entry!(
+        portfolio,
+        "portfolio",
+        "swarms, local searches, learned steps and uniform points that compete for evaluations by their yield",
+        "this project; parts after Chen et al. 2012, Igel et al. 2006, Luby et al. 1993, Agrawal, Goyal 2012"
+    ),
+    entry!(
         random,
         "random",
         "uniform random sampling, the baseline",

@@ -13,6 +13,7 @@ mod entry;
 mod flood;
 mod informants;
 mod latest_hit_qpso;
+mod portfolio;
 pub mod potential_well;
 mod pso;
 mod pso_1995;

@@ -1,0 +1,460 @@
+//! The default engine: sources of candidates that compete for evaluations by what they yield.
+
+mod bandit;
+mod climbers;
+mod moves;
+mod neighbourhoods;
+mod one_plus_one;
+mod swarms;
+mod translations;
+mod visited;
+
+use bandit::{Arm, draw};
+use climbers::Climbers;
+use neighbourhoods::Neighbourhoods;
+use swarms::Swarms;
+use translations::Translations;
+use visited::Visited;
+
+use super::{Ask, Engine, Origin};
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::error::Error;
+use crate::parameter::{Parameter, Values};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::state::{Reader, Saved, State};
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    Parameter::integer(
+        "batch",
+        "candidates proposed at once, for as many threads to evaluate",
+        64,
+        1,
+        65_536,
+    ),
+    Parameter::integer("swarms", "number of swarms, K", 6, 1, 1000),
+    Parameter::integer("particles", "particles of each swarm, N", 5, 1, 1000),
+    Parameter::real(
+        "alpha",
+        "contraction-expansion coefficient; bounded below 1.781",
+        0.75,
+        0.0,
+        10.0,
+    ),
+    Parameter::integer(
+        "restart",
+        "barren evaluations after which a swarm starts anew",
+        1000,
+        1,
+        1_000_000_000,
+    ),
+    Parameter::choice(
+        "without",
+        "a source to leave out, for ablation",
+        "none",
+        &["none", "swarms", "climbers", "steps", "learning", "neighbours"],
+    ),
+];
+
+/// Candidates that come from one choice of source.
+const BLOCK: usize = 8;
+
+/// Where a candidate comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    Uniform,
+    Swarm,
+    Climber,
+    /// A hit moved by a step that is known.
+    Step,
+    /// A hit moved by the difference of two hits, on trial.
+    Trial,
+    /// A neighbour of a hit, by the problem's own word.
+    Neighbour,
+}
+
+/// A candidate's source, and which swarm, climber, step or trial of it.
+type Tag = (Source, usize);
+
+/// The arm of a source; steps and neighbours keep their own books.
+fn arm_of(source: Source) -> Option<usize> {
+    match source {
+        Source::Uniform => Some(0),
+        Source::Swarm => Some(1),
+        Source::Climber => Some(2),
+        Source::Trial => Some(3),
+        Source::Step | Source::Neighbour => None,
+    }
+}
+
+impl Saved for Source {
+    fn save(&self, state: &mut State) {
+        (*self as u64).save(state);
+    }
+    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
+        use Source::{Climber, Neighbour, Step, Swarm, Trial, Uniform};
+        let all = [Uniform, Swarm, Climber, Step, Trial, Neighbour];
+        let word: usize = from.read()?;
+        all.get(word)
+            .copied()
+            .ok_or_else(|| Error::State(format!("{word} is no source")))
+    }
+}
+
+/// A portfolio of sources, each paid by its yield:
+///
+/// - uniform points, on a lattice without repetition, so that a small one is covered and the result proved complete;
+/// - small swarms attracted by the latest hit of their own, after Chen et al. 2012;
+/// - restarted local searches: descent over the problem's neighbours, adaptive moves on integer axes, a covariance-adapting
+///   (1+1) strategy on continuous ones; a search that comes back to a known hit ends at once;
+/// - steps that have led from hit to hit, applied to every hit: neighbourhoods are exhausted by the short ones, and
+///   repetitions and manifolds of hits followed by those that are learned from differences of hits;
+/// - neighbours of hits by the problem's own word, breadth first.
+///
+/// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
+#[derive(Debug)]
+pub(super) struct Portfolio<S> {
+    batch: usize,
+    without: String,
+    arms: [Arm; 4],
+    hits: Vec<S>,
+    visited: Option<Visited>,
+    /// The next point of the lattice, once so many are visited that uniform draws mostly repeat.
+    scan: u64,
+    swarms: Swarms<S>,
+    climbers: Climbers<S>,
+    steps: Option<Translations<S>>,
+    neighbourhoods: Neighbourhoods<S>,
+    tags: Vec<Tag>,
+    trials: Vec<S>,
+    position: Vec<S>,
+}
+
+pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+    Ok(Box::new(Portfolio {
+        batch: values.count("batch"),
+        without: values.text("without").to_owned(),
+        arms: [Arm::default(); 4],
+        hits: Vec::new(),
+        visited: None,
+        scan: 0,
+        swarms: Swarms::new(values),
+        climbers: Climbers::new(),
+        steps: None,
+        neighbourhoods: Neighbourhoods::new(),
+        tags: Vec::new(),
+        trials: Vec::new(),
+        position: Vec::new(),
+    }))
+}
+
+impl<S: Real> Portfolio<S> {
+    fn hit_count(&self) -> usize {
+        self.hits.len() / self.position.len().max(1)
+    }
+
+    /// Draws a source, and which step of [`Source::Step`].
+    fn choose(&self, context: &dyn Context<S>, rng: &mut SearchRng) -> Tag {
+        let uses = |name: &str| self.without != name;
+        let mut best = (self.arms[0].draw(rng), (Source::Uniform, 0));
+        let mut offer = |yields: f64, tag: Tag| {
+            if yields > best.0 {
+                best = (yields, tag);
+            }
+        };
+        if uses("swarms") {
+            offer(self.arms[1].draw(rng), (Source::Swarm, 0));
+        }
+        if uses("climbers") {
+            offer(self.arms[2].draw(rng), (Source::Climber, 0));
+        }
+        let hits = self.hit_count();
+        if uses("learning") && hits >= 3 {
+            offer(self.arms[3].draw(rng), (Source::Trial, 0));
+        }
+        if uses("steps")
+            && let Some((index, good, all)) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
+        {
+            offer(draw(rng, good, all), (Source::Step, index));
+        }
+        if uses("neighbours")
+            && context.offers_neighbours()
+            && let Some((good, all)) = self.neighbourhoods.posterior(hits)
+        {
+            offer(draw(rng, good, all), (Source::Neighbour, 0));
+        }
+        best.1
+    }
+
+    /// Whether a position is inside and worth an evaluation: not proposed before, or not a known hit.
+    fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
+        let space = context.space();
+        let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
+            axis.lower() <= x
+                && if axis.is_integer() {
+                    x < axis.end()
+                } else {
+                    x <= axis.end()
+                }
+        });
+        inside
+            && match &mut self.visited {
+                Some(visited) => visited.insert(space, &self.position),
+                None => !context.is_deleted(&self.position),
+            }
+    }
+
+    /// Proposes one candidate; `false` where the source has none left for this batch.
+    fn propose(
+        &mut self,
+        tag: Tag,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) -> bool {
+        let (source, index) = tag;
+        let proposed = match source {
+            Source::Swarm => self
+                .swarms
+                .propose(context.space(), self.visited.as_ref(), rng, out),
+            Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
+            Source::Uniform => {
+                if self.visited.as_ref().is_some_and(Visited::is_dense) {
+                    if !self.scan_on(context) {
+                        return false;
+                    }
+                } else {
+                    rng.position(context.space(), &mut self.position);
+                    if !self.is_fresh(context) {
+                        return true; // that draw was in vain, the next may not be
+                    }
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+            Source::Step => {
+                let Some(steps) = &mut self.steps else {
+                    return false;
+                };
+                if !steps.apply(index, &self.hits, &mut self.position) {
+                    return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                Some(index)
+            }
+            Source::Trial => {
+                if !self.draw_trial(rng) || !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                self.trials
+                    .truncate((self.trials.len() / self.position.len()) * self.position.len());
+                Some(self.trials.len() / self.position.len() - 1)
+            }
+            Source::Neighbour => {
+                let visited = self.visited.as_mut();
+                if !self
+                    .neighbourhoods
+                    .propose(context, &self.hits, visited, &mut self.position)
+                {
+                    return false;
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+        };
+        match proposed {
+            Some(index) => self.tags.push((source, index)),
+            None => return false,
+        }
+        true
+    }
+
+    /// Goes on through the lattice to the next point that is not visited; `false` at its end.
+    fn scan_on(&mut self, context: &dyn Context<S>) -> bool {
+        let Some(count) = context.space().cardinality() else {
+            return false;
+        };
+        while (self.scan as f64) < count {
+            Visited::point(context.space(), self.scan, &mut self.position);
+            self.scan += 1;
+            if self.is_fresh(context) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Writes a hit moved by the difference of two others, and appends that difference to `trials`; `false` where it is zero.
+    /// Half of the pairs are neighbours in the order found, which are near to each other in space.
+    fn draw_trial(&mut self, rng: &mut SearchRng) -> bool {
+        let dimension = self.position.len();
+        let count = self.hit_count();
+        let (a, b) = (rng.below(count), rng.below(count));
+        let (reach, far) = rng.uniform_and_sign();
+        let c = if far {
+            rng.below(count)
+        } else {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
+            let apart = 1 + (8.0 * reach) as usize;
+            if b >= apart {
+                b - apart
+            } else {
+                (b + apart).min(count - 1)
+            }
+        };
+        let row = |hit: usize| &self.hits[hit * dimension..(hit + 1) * dimension];
+        let mut moves = false;
+        let start = self.trials.len();
+        for j in 0..dimension {
+            let difference = row(b)[j] - row(c)[j];
+            moves |= difference != S::zero();
+            self.trials.push(difference);
+            self.position[j] = row(a)[j] + difference;
+        }
+        if !moves {
+            self.trials.truncate(start);
+        }
+        moves
+    }
+}
+
+impl<S: Real> Engine<S> for Portfolio<S> {
+    fn begin(&mut self, context: &dyn Context<S>) {
+        let space = context.space();
+        let dimension = space.dimension();
+        self.position = vec![S::zero(); dimension];
+        self.hits.clear();
+        let lattice = space.axes().iter().all(crate::Axis::is_integer);
+        self.visited = lattice.then(|| Visited::new(space));
+        self.scan = 0;
+        self.swarms.begin(dimension);
+        self.climbers.begin(context);
+        // Steps that were good in the slice before are likely to be good in this one.
+        match &mut self.steps {
+            Some(steps) => steps.begin(),
+            None => self.steps = Some(Translations::new(space)),
+        }
+        self.neighbourhoods.begin();
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        self.tags.clear();
+        self.trials.clear();
+        self.swarms.begin_batch();
+        self.climbers.begin_batch();
+        let mut in_vain = 0;
+        while out.len() < self.batch && in_vain < 2 * self.batch {
+            let tag = self.choose(context, rng);
+            let before = out.len();
+            for _ in 0..BLOCK.min(self.batch - before) {
+                if !self.propose(tag, context, rng, out) {
+                    break;
+                }
+            }
+            in_vain += usize::from(out.len() == before);
+        }
+        if out.is_empty() {
+            if self.visited.as_ref().is_some_and(Visited::is_all) {
+                return Ask::Covered;
+            }
+            // Everything drawn was known: whatever the next uniform point is, it goes to the ledger.
+            out.push_with(|position| rng.position(context.space(), position));
+            self.tags.push((Source::Uniform, 0));
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        let space = context.space();
+        for (position, outcome) in batch.points().zip(outcomes) {
+            if outcome.is_hit() {
+                // Steps between whole cells are whole: hits are kept at the centres of their cells.
+                let centre = space
+                    .axes()
+                    .iter()
+                    .zip(position)
+                    .map(|(axis, &x)| axis.position(axis.value(x)));
+                self.hits.extend(centre);
+            }
+            if let Some(visited) = &mut self.visited {
+                visited.insert(space, position);
+            }
+        }
+        if origin == Origin::WarmStart {
+            self.note_near(context, batch, outcomes);
+        }
+        if origin != Origin::Engine {
+            return;
+        }
+        for (i, &(source, index)) in self.tags.iter().enumerate() {
+            let (position, outcome) = (batch.point(i), outcomes[i]);
+            match source {
+                Source::Swarm => self.swarms.tell(index, position, outcome),
+                Source::Climber => self.climbers.tell(index, position, outcome),
+                Source::Step => {
+                    if let Some(steps) = &mut self.steps {
+                        steps.book(index, outcome.is_hit());
+                    }
+                }
+                Source::Neighbour => self.neighbourhoods.book(outcome.is_hit()),
+                Source::Uniform | Source::Trial => {}
+            }
+        }
+        for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
+            let hit = outcome.is_hit();
+            if let Some(arm) = arm_of(source) {
+                self.arms[arm].book(hit);
+            }
+            // After all bookings, because a step that is learned may take the place of another.
+            if let (Source::Trial, true, Some(steps)) = (source, hit, &mut self.steps) {
+                let dimension = space.dimension();
+                steps.learn(&self.trials[index * dimension..(index + 1) * dimension], space);
+            }
+        }
+        for arm in &mut self.arms {
+            arm.fade(outcomes.len());
+        }
+    }
+
+    fn save(&self, state: &mut State) {
+        (self.arms, self.hits.clone()).save(state);
+        self.visited.save(state);
+        self.scan.save(state);
+        self.swarms.save(state);
+        self.climbers.save(state);
+        self.steps.save(state);
+        self.neighbourhoods.save(state);
+        (self.tags.clone(), self.trials.clone()).save(state);
+        self.position.save(state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        (self.arms, self.hits) = from.read()?;
+        self.visited = from.read()?;
+        self.scan = from.read()?;
+        self.swarms.restore(from)?;
+        self.climbers.restore(from)?;
+        self.steps = from.read()?;
+        self.neighbourhoods = from.read()?;
+        (self.tags, self.trials) = from.read()?;
+        self.position = from.read()?;
+        Ok(())
+    }
+}
+
+impl<S: Real> Portfolio<S> {
+    /// Of the last slice's hits that are none any more, those within twice the threshold stay worth a look around them.
+    fn note_near(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+        let limit = context.threshold() + context.threshold().abs();
+        for (position, outcome) in batch.points().zip(outcomes) {
+            if matches!(outcome, Outcome::Miss(fitness) if *fitness < limit) {
+                self.neighbourhoods.note_near(position);
+            }
+        }
+    }
+}

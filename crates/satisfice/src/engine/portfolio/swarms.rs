@@ -1,0 +1,207 @@
+//! Small swarms, each attracted by the latest hit of its own.
+
+use super::visited::Visited;
+use crate::batch::{Batch, Outcome};
+use crate::engine::potential_well::{mean_best, step};
+use crate::parameter::Values;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::Space;
+use crate::state::Saved;
+
+/// A move to a point that was evaluated before, and so cannot be a new hit, is drawn again at most this often.
+const DRAWS: usize = 4;
+
+/// One swarm of a few particles.
+#[derive(Debug, Clone)]
+struct SubSwarm<S> {
+    positions: Vec<S>,
+    bests: Vec<S>,
+    best_fitness: Vec<S>,
+    mean: Vec<S>,
+    latest_hit: Vec<S>,
+    has_hit: bool,
+    /// The particle whose turn it is.
+    turn: usize,
+    /// How many particles still have to be evaluated for the first time.
+    unborn: usize,
+    /// Evaluations since its last hit.
+    barren: usize,
+}
+
+crate::saved_struct!(SubSwarm<S: Real> {
+    positions, bests, best_fitness, mean, latest_hit, has_hit, turn, unborn, barren
+});
+
+/// K swarms of N particles that take turns. Sharing the latest hit between them would destroy their gain: each works in a
+/// region of its own, until it has been barren for too long and starts anew.
+///
+/// Differs from the paper in: several swarms, alpha below 1, restarts, one particle of each swarm a batch.
+#[derive(Debug, Clone)]
+pub(super) struct Swarms<S> {
+    particles: usize,
+    alpha: S,
+    restart: usize,
+    swarms: Vec<SubSwarm<S>>,
+    /// The swarm whose turn it is.
+    next: usize,
+    /// Candidates proposed in this batch: a swarm proposes once a batch.
+    proposed: usize,
+}
+
+impl<S: Real> Swarms<S> {
+    pub(super) fn new(values: &Values) -> Self {
+        let swarm = SubSwarm {
+            positions: Vec::new(),
+            bests: Vec::new(),
+            best_fitness: Vec::new(),
+            mean: Vec::new(),
+            latest_hit: Vec::new(),
+            has_hit: false,
+            turn: 0,
+            unborn: 0,
+            barren: 0,
+        };
+        Self {
+            particles: values.count("particles"),
+            alpha: S::of(values.real("alpha")),
+            restart: values.count("restart"),
+            swarms: vec![swarm; values.count("swarms")],
+            next: 0,
+            proposed: 0,
+        }
+    }
+
+    pub(super) fn begin(&mut self, dimension: usize) {
+        for swarm in &mut self.swarms {
+            swarm.mean = vec![S::zero(); dimension];
+            swarm.latest_hit = vec![S::zero(); dimension];
+            swarm.start_anew();
+        }
+        self.next = 0;
+    }
+
+    pub(super) fn save(&self, state: &mut crate::state::State) {
+        self.swarms.save(state);
+        self.next.save(state);
+    }
+
+    pub(super) fn restore(&mut self, from: &mut crate::state::Reader<'_>) -> Result<(), crate::Error> {
+        self.swarms = from.read()?;
+        self.next = from.read()?;
+        Ok(())
+    }
+
+    /// A new batch begins.
+    pub(super) fn begin_batch(&mut self) {
+        self.proposed = 0;
+    }
+
+    /// Proposes for the next swarm and names it, unless every swarm has proposed in this batch.
+    pub(super) fn propose(
+        &mut self,
+        space: &Space<S>,
+        visited: Option<&Visited>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) -> Option<usize> {
+        if self.proposed == self.swarms.len() {
+            return None;
+        }
+        self.proposed += 1;
+        let index = self.next;
+        self.next = (index + 1) % self.swarms.len();
+        self.swarms[index].propose(self.particles, self.alpha, space, visited, rng, out);
+        Some(index)
+    }
+
+    /// Tells swarm `index` what became of its particle.
+    pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
+        let swarm = &mut self.swarms[index];
+        swarm.tell(self.particles, position, outcome);
+        if swarm.barren > self.restart {
+            swarm.start_anew();
+        }
+    }
+}
+
+impl<S: Real> SubSwarm<S> {
+    fn start_anew(&mut self) {
+        self.positions.clear();
+        self.has_hit = false;
+        self.turn = 0;
+        self.barren = 0;
+    }
+
+    fn propose(
+        &mut self,
+        particles: usize,
+        alpha: S,
+        space: &Space<S>,
+        visited: Option<&Visited>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) {
+        let dimension = self.mean.len();
+        if self.positions.is_empty() {
+            self.positions.resize(particles * dimension, S::zero());
+            for position in self.positions.chunks_exact_mut(dimension) {
+                rng.position(space, position);
+            }
+            self.bests.clear();
+            self.bests.extend_from_slice(&self.positions);
+            self.best_fitness.clear();
+            self.best_fitness.resize(particles, S::infinity());
+            self.unborn = particles;
+        }
+        let row = self.turn * dimension..(self.turn + 1) * dimension;
+        if self.unborn == 0 {
+            if self.turn == 0 {
+                mean_best(&self.bests, &mut self.mean);
+            }
+            let by_fitness =
+                |&a: &usize, &b: &usize| self.best_fitness[a].f64().total_cmp(&self.best_fitness[b].f64());
+            let attractor = if self.has_hit {
+                &self.latest_hit[..]
+            } else {
+                &self.bests[(0..particles).min_by(by_fitness).unwrap_or(0) * dimension..][..dimension]
+            };
+            let position = &mut self.positions[row.clone()];
+            for _ in 0..DRAWS {
+                step(
+                    rng,
+                    alpha,
+                    position,
+                    &self.bests[row.clone()],
+                    attractor,
+                    &self.mean,
+                );
+                space.keep_inside(position);
+                if visited.is_none_or(|visited| !visited.contains(space, position)) {
+                    break;
+                }
+            }
+        }
+        out.push(&self.positions[row]);
+    }
+
+    fn tell(&mut self, particles: usize, position: &[S], outcome: Outcome<S>) {
+        let dimension = self.mean.len();
+        let row = self.turn * dimension..(self.turn + 1) * dimension;
+        let fitness = outcome.fitness();
+        self.positions[row.clone()].copy_from_slice(position);
+        if outcome.is_hit() || fitness < self.best_fitness[self.turn] {
+            self.bests[row].copy_from_slice(position);
+            self.best_fitness[self.turn] = fitness;
+        }
+        if outcome.is_hit() {
+            self.latest_hit.copy_from_slice(position);
+            self.has_hit = true;
+            self.barren = 0;
+        } else {
+            self.barren += 1;
+        }
+        self.unborn = self.unborn.saturating_sub(1);
+        self.turn = (self.turn + 1) % particles;
+    }
+}

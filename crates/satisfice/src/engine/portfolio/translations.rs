@@ -1,0 +1,159 @@
+//! Steps that have led from one hit to another, and their application to every hit.
+//!
+//! On a lattice the unit steps along each axis are among them from the start, so that exhausting a hit's neighbourhood is the
+//! special case of well-tried short steps. Others are learned: the difference of two hits, applied to a third one, is worth a
+//! trial wherever hits repeat or lie on a manifold.
+
+use crate::scalar::Real;
+use crate::space::Space;
+
+/// At most so many steps are kept.
+const MOST: usize = 128;
+/// Past trials of a step are halved at this number, so that its rate follows the search.
+const MEMORY: f64 = 400.0;
+
+/// A step and how it has fared.
+#[derive(Debug, Clone)]
+struct Step {
+    trials: f64,
+    hits: f64,
+    /// The next hit that it will be applied to.
+    cursor: usize,
+}
+
+crate::saved_struct!(Step { trials, hits, cursor });
+
+/// The steps, each with a cursor into the list of hits: every step meets every hit once, best steps first. Memory: O(steps),
+/// not O(hits x steps).
+#[derive(Debug, Clone, Default)]
+pub(super) struct Translations<S> {
+    vectors: Vec<S>,
+    steps: Vec<Step>,
+}
+
+impl<S: Real> crate::state::Saved for Translations<S> {
+    fn save(&self, state: &mut crate::state::State) {
+        self.vectors.save(state);
+        self.steps.save(state);
+    }
+    fn restore(from: &mut crate::state::Reader<'_>) -> Result<Self, crate::Error> {
+        Ok(Self {
+            vectors: from.read()?,
+            steps: from.read()?,
+        })
+    }
+}
+
+impl<S: Real> Translations<S> {
+    /// The unit steps along the integer axes, hopeful: one hit in two trials.
+    pub(super) fn new(space: &Space<S>) -> Self {
+        let mut all = Self {
+            vectors: Vec::new(),
+            steps: Vec::new(),
+        };
+        for j in (0..space.dimension()).filter(|&j| space.axes()[j].is_integer()) {
+            for unit in [-S::one(), S::one()] {
+                all.vectors
+                    .extend((0..space.dimension()).map(|i| if i == j { unit } else { S::zero() }));
+                all.steps.push(Step {
+                    trials: 2.0,
+                    hits: 1.0,
+                    cursor: 0,
+                });
+            }
+        }
+        all
+    }
+
+    /// A new list of hits begins.
+    pub(super) fn begin(&mut self) {
+        for step in &mut self.steps {
+            step.cursor = 0;
+        }
+    }
+
+    /// The step with the best rate among those that have not met all `hits`, with `(hits, trials)` as a posterior of its rate.
+    /// `base` is the rate of steps nobody has tried. Cost: O(steps).
+    pub(super) fn best(&self, hits: usize, base: f64) -> Option<(usize, f64, f64)> {
+        let rate = |step: &Step| (step.hits + base) / (step.trials + 1.0);
+        let open = self
+            .steps
+            .iter()
+            .enumerate()
+            .filter(|(_, step)| step.cursor < hits);
+        let (index, step) = open.max_by(|(_, a), (_, b)| rate(a).total_cmp(&rate(b)))?;
+        Some((index, step.hits + 0.1, step.trials + 1.0))
+    }
+
+    /// Writes the next hit moved by step `index`; `false` when that step has met all hits.
+    #[inline]
+    pub(super) fn apply(&mut self, index: usize, hits: &[S], position: &mut [S]) -> bool {
+        let dimension = position.len();
+        let start = self.steps[index].cursor * dimension;
+        let Some(hit) = hits.get(start..start + dimension) else {
+            return false;
+        };
+        self.steps[index].cursor += 1;
+        let vector = &self.vectors[index * dimension..(index + 1) * dimension];
+        for ((x, &h), &v) in position.iter_mut().zip(hit).zip(vector) {
+            *x = h + v;
+        }
+        true
+    }
+
+    /// Books a trial of step `index`.
+    #[inline]
+    pub(super) fn book(&mut self, index: usize, hit: bool) {
+        let step = &mut self.steps[index];
+        step.trials += 1.0;
+        step.hits += f64::from(u8::from(hit));
+        if step.trials > MEMORY {
+            step.trials *= 0.5;
+            step.hits *= 0.5;
+        }
+    }
+
+    /// Learns a step that has just led to a hit, and its reverse.
+    pub(super) fn learn(&mut self, vector: &[S], space: &Space<S>) {
+        let dimension = vector.len();
+        for sign in [S::one(), -S::one()] {
+            let same = |known: &[S]| {
+                known
+                    .iter()
+                    .zip(vector)
+                    .zip(space.axes())
+                    .all(|((&k, &v), axis)| {
+                        // On continuous axes, steps between hits differ a little where they mean the same.
+                        let tolerance = if axis.is_integer() {
+                            S::of(0.5)
+                        } else {
+                            S::of(5e-4) * axis.width()
+                        };
+                        (k - sign * v).abs() <= tolerance
+                    })
+            };
+            if self.vectors.chunks_exact(dimension).any(same) {
+                continue;
+            }
+            let signed = vector.iter().map(|&v| sign * v);
+            let step = Step {
+                trials: 1.0,
+                hits: 0.5,
+                cursor: 0,
+            };
+            if self.steps.len() < MOST {
+                self.vectors.extend(signed);
+                self.steps.push(step);
+                continue;
+            }
+            let rate = |step: &Step| (step.hits + 0.1) / (step.trials + 1.0);
+            let worst = (0..MOST).min_by(|&a, &b| rate(&self.steps[a]).total_cmp(&rate(&self.steps[b])));
+            if let Some(worst) = worst {
+                self.steps[worst] = step;
+                for (old, new) in self.vectors[worst * dimension..].iter_mut().zip(signed) {
+                    *old = new;
+                }
+            }
+        }
+    }
+}
