@@ -152,7 +152,7 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         known.unwrap_or_else(|| {
             // Asked at any one point; a problem either names neighbours or does not.
             let corner = self.problem.space().region().lower;
-            let offers = self.with_values(&corner, |values| self.own_neighbours(values, &mut |_| {}));
+            let offers = self.own_neighbours(&corner, &mut |_| {});
             self.calls.offers_neighbours.set(Some(offers));
             offers
         })
