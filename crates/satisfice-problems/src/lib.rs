@@ -1,1 +1,35 @@
-//! satisfice-problems
+//! Satisficing problems with known answers, each a type that implements [`SatisficingProblem`] and [`Catalogued`].
+//!
+//! | family | problems |
+//! |---|---|
+//! | level sets | [`Rastrigin`], [`Shell`], [`Islands`], and the negative control [`Needles`] |
+//! | design windows | [`SallenKey`] |
+//! | inverse kinematics | [`Arm`] |
+//! | falsification | [`Falsification`] |
+//! | constraint satisfaction | [`Queens`] |
+//! | roots of nonlinear systems | [`Roots`], [`Himmelblau`] |
+//!
+//! What counts as distinct: a cell on a lattice, a root where the space is continuous (hits are polished by Newton's
+//! method). Long enumerations are kept as constants; `cargo run --release -p satisfice-problems --example enumerate`
+//! makes them again.
+//!
+//! [`SatisficingProblem`]: satisfice::SatisficingProblem
+//! [`Catalogued`]: satisfice::Catalogued
+
+mod constraints;
+mod design;
+mod falsification;
+pub mod interval;
+mod kinematics;
+mod lattice;
+mod level_sets;
+pub mod number;
+mod roots;
+
+pub use constraints::Queens;
+pub use design::{Parts, SallenKey, Window};
+pub use falsification::Falsification;
+pub use kinematics::Arm;
+pub use lattice::{ENUMERABLE, count_hits};
+pub use level_sets::{Islands, Needles, Rastrigin, Shell};
+pub use roots::{Himmelblau, Roots};

@@ -1,0 +1,143 @@
+//! A planar arm with more joints than the plane needs.
+
+use core::f64::consts::PI;
+
+use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+
+use crate::lattice::{Lattice, Published, as_published, description, lattice_methods, reference};
+
+/// Links, cells an angle, threshold, hits. The hits are those of `--example enumerate`.
+const PUBLISHED: &[Published] = &[(3, 100, 0.01, 128), (4, 50, 0.015, 2_724), (5, 24, 0.03, 11_667)];
+
+const GOAL: [f64; 2] = [0.45, 0.2];
+
+/// All postures of a planar arm of n equal links and total length 1 whose tip is near a goal:
+///
+/// F(q) = |(1/n) sum_k (cos a_k, sin a_k) - (0.45, 0.2)| < delta, a_k = q_1 + ... + q_k.
+///
+/// Each relative angle q_k is the centre of one of m equal cells of [-pi, pi]; a hit is a cell. Three links leave one
+/// degree of freedom, five leave three.
+#[derive(Debug, Clone)]
+pub struct Arm {
+    lattice: Lattice,
+    threshold: f64,
+    description: Description,
+    cells: usize,
+    /// (cos, sin) of the multiples of pi / m, over one turn: all that sums of cell centres can be.
+    directions: Vec<[f64; 2]>,
+}
+
+impl Arm {
+    /// An arm of `links` links with `cells` cells an angle; `threshold` in units of the arm's length.
+    ///
+    /// # Errors
+    /// [`Error::NoAxis`], [`Error::Bounds`] where a number is 0; [`Error::Threshold`] for NaN.
+    pub fn new(links: usize, cells: usize, threshold: f64) -> Result<Self, Error> {
+        if threshold.is_nan() {
+            return Err(Error::Threshold);
+        }
+        let direction = |k: usize| {
+            let angle = PI * k as f64 / cells as f64;
+            [angle.cos(), angle.sin()]
+        };
+        Ok(Self {
+            lattice: Lattice::new(vec![cells; links])?,
+            threshold,
+            description: description(
+                Self::NAME,
+                [
+                    ("links", links.to_string()),
+                    ("cells", cells.to_string()),
+                    ("threshold", threshold.to_string()),
+                ],
+            ),
+            cells,
+            directions: (0..2 * cells).map(direction).collect(),
+        })
+    }
+
+    /// The joints of a posture from the base (0, 0) to the tip; empty where the cells are none of this arm.
+    #[must_use]
+    pub fn joints(&self, cells: &[u32]) -> Vec<[f64; 2]> {
+        if !self.lattice.holds(cells) {
+            return Vec::new();
+        }
+        let mut joints = vec![[0.0; 2]];
+        self.walk(cells, |joint| joints.push(joint));
+        joints
+    }
+
+    /// Where the tip has to be.
+    #[must_use]
+    pub fn goal(&self) -> [f64; 2] {
+        GOAL
+    }
+
+    #[inline]
+    fn walk(&self, cells: &[u32], mut visit: impl FnMut([f64; 2])) {
+        let length = 1.0 / cells.len() as f64;
+        let turn = self.directions.len();
+        let [mut x, mut y] = [0.0; 2];
+        let mut angle = 0; // in units of pi / m
+        for &cell in cells {
+            // The centre of cell k of m is -pi + (2 k + 1) pi / m.
+            angle = (angle + 2 * cell as usize + 1 + self.cells) % turn;
+            let [cos, sin] = self.directions[angle];
+            (x, y) = (x + cos * length, y + sin * length);
+            visit([x, y]);
+        }
+    }
+}
+
+impl SatisficingProblem for Arm {
+    lattice_methods!();
+
+    #[inline]
+    fn fitness(&self, cells: &Vec<u32>) -> f64 {
+        if !self.lattice.holds(cells) {
+            return f64::NAN;
+        }
+        let mut tip = [0.0; 2];
+        self.walk(cells, |joint| tip = joint);
+        let (x, y) = (tip[0] - GOAL[0], tip[1] - GOAL[1]);
+        (x * x + y * y).sqrt()
+    }
+}
+
+impl Catalogued for Arm {
+    const NAME: &'static str = "arm";
+    const SUMMARY: &'static str = "postures of a redundant planar arm whose tip is at (0.45, 0.2)";
+    const SOURCE: &'static str = "a standard redundant manipulator; counts by enumeration";
+    const PARAMETERS: &'static [Parameter] = &[
+        Parameter::integer("links", "number of links, n", 3, 1, 64),
+        Parameter::integer(
+            "cells",
+            "cells an angle, m; 0 = as published for this number of links",
+            0,
+            0,
+            1_000_000,
+        ),
+        Parameter::real(
+            "threshold",
+            "distance of the tip, delta, in arm lengths; below 0 = as published for this number of links",
+            -1.0,
+            -1.0,
+            2.0,
+        ),
+    ];
+
+    fn from_values(values: &Values) -> Result<Self, Error> {
+        let links = values.count("links");
+        let (cells, threshold) = as_published(
+            PUBLISHED,
+            ("links", links),
+            values.count("cells"),
+            values.real("threshold"),
+        )?;
+        Self::new(links, cells, threshold)
+    }
+
+    fn reference_hits(&self) -> Option<u64> {
+        reference(PUBLISHED, self, self.lattice.space().dimension(), self.cells)
+    }
+}

@@ -1,0 +1,255 @@
+//! What problems on a lattice of cells share: the space, decoding, range minima, enumeration.
+
+use satisfice::{Axis, Description, Error, SatisficingProblem, Space};
+
+/// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices.
+#[derive(Debug, Clone)]
+pub(crate) struct Lattice {
+    space: Space<f64>,
+}
+
+impl Lattice {
+    /// A lattice with these numbers of cells, all of them positive.
+    pub(crate) fn new(cells: impl IntoIterator<Item = usize>) -> Result<Self, Error> {
+        let axes = cells.into_iter().map(|m| Axis::integer(0, m as i64 - 1));
+        Ok(Self {
+            space: Space::new(axes)?,
+        })
+    }
+
+    pub(crate) fn space(&self) -> &Space<f64> {
+        &self.space
+    }
+
+    /// Whether these are cells of this lattice: solutions may come from outside, from a report for instance.
+    #[inline]
+    pub(crate) fn holds(&self, cells: &[u32]) -> bool {
+        let axes = self.space.axes();
+        cells.len() == axes.len()
+            && (axes.iter().zip(cells)).all(|(axis, &cell)| f64::from(cell) <= axis.upper())
+    }
+
+    #[inline]
+    pub(crate) fn decode_into(values: &[f64], cells: &mut Vec<u32>) {
+        cells.clear();
+        cells.extend(values.iter().map(|&x| x as u32));
+    }
+
+    pub(crate) fn encode(&self, cells: &[u32], values: &mut [f64]) -> bool {
+        if !self.holds(cells) || values.len() != cells.len() {
+            return false;
+        }
+        for (value, &cell) in values.iter_mut().zip(cells) {
+            *value = f64::from(cell);
+        }
+        true
+    }
+}
+
+/// The methods of `SatisficingProblem` that are alike on every lattice, for a type with the fields `lattice`, `threshold`
+/// and `description`.
+macro_rules! lattice_methods {
+    () => {
+        type Scalar = f64;
+        type Solution = Vec<u32>;
+
+        fn space(&self) -> &satisfice::Space<f64> {
+            self.lattice.space()
+        }
+        fn decode(&self, values: &[f64]) -> Vec<u32> {
+            let mut cells = Vec::with_capacity(values.len());
+            $crate::lattice::Lattice::decode_into(values, &mut cells);
+            cells
+        }
+        #[inline]
+        fn decode_into(&self, values: &[f64], cells: &mut Vec<u32>) {
+            $crate::lattice::Lattice::decode_into(values, cells);
+        }
+        fn threshold(&self) -> f64 {
+            self.threshold
+        }
+        fn encode(&self, cells: &Vec<u32>, values: &mut [f64]) -> bool {
+            self.lattice.encode(cells, values)
+        }
+        fn description(&self) -> satisfice::Description {
+            self.description.clone()
+        }
+    };
+}
+pub(crate) use lattice_methods;
+
+/// Name and parameters, as they were resolved.
+pub(crate) fn description<const N: usize>(name: &str, parameters: [(&str, String); N]) -> Description {
+    Description {
+        name: name.to_owned(),
+        parameters: parameters
+            .into_iter()
+            .map(|(key, value)| (key.to_owned(), value))
+            .collect(),
+    }
+}
+
+/// The centres of `m` equal cells of `[lower, upper]`.
+pub(crate) fn centres(m: usize, lower: f64, upper: f64) -> Vec<f64> {
+    (0..m)
+        .map(|k| lower + (upper - lower) * (k as f64 + 0.5) / m as f64)
+        .collect()
+}
+
+/// Size, cells and threshold of a row that was published, and its number of hits.
+pub(crate) type Published = (usize, usize, f64, u64);
+
+/// `cells` and `threshold` for a size, where 0 cells and a threshold below 0 mean the published ones.
+pub(crate) fn as_published(
+    rows: &[Published],
+    (name, size): (&str, usize),
+    cells: usize,
+    threshold: f64,
+) -> Result<(usize, f64), Error> {
+    let row = rows.iter().find(|row| row.0 == size);
+    if row.is_none() && (cells == 0 || threshold < 0.0) {
+        let sizes: Vec<String> = rows.iter().map(|row| row.0.to_string()).collect();
+        return Err(Error::parameter(
+            name,
+            size,
+            format!(
+                "published for {} only: set `cells` and `threshold` for another",
+                sizes.join(", ")
+            ),
+        ));
+    }
+    Ok((
+        if cells == 0 {
+            row.map_or(1, |row| row.1)
+        } else {
+            cells
+        },
+        if threshold < 0.0 {
+            row.map_or(0.0, |row| row.2)
+        } else {
+            threshold
+        },
+    ))
+}
+
+/// The published number of hits of exactly this row, else an enumeration where the lattice is small enough.
+pub(crate) fn reference<P: SatisficingProblem<Scalar = f64>>(
+    rows: &[Published],
+    problem: &P,
+    size: usize,
+    cells: usize,
+) -> Option<u64> {
+    rows.iter()
+        .find(|row| row.0 == size && row.1 == cells && row.2 == problem.threshold())
+        .map(|row| row.3)
+        .or_else(|| count_hits(problem, ENUMERABLE))
+}
+
+/// Lattices of at most this many points are enumerated for their reference count: some seconds.
+pub const ENUMERABLE: f64 = 2e7;
+
+/// The number of lattice points with F < delta, by visiting every one; `None` where the space has a continuous axis or
+/// more than `limit` points. Cost: one decoding and one fitness a point.
+///
+/// ```
+/// use satisfice::Catalogued;
+/// use satisfice_problems::{ENUMERABLE, Queens, count_hits};
+/// assert_eq!(count_hits(&Queens::new(6)?, ENUMERABLE), Some(4));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+pub fn count_hits<P: SatisficingProblem<Scalar = f64>>(problem: &P, limit: f64) -> Option<u64> {
+    let space = problem.space();
+    if space.cardinality().is_none_or(|points| points > limit) {
+        return None;
+    }
+    let axes = space.axes();
+    let mut values: Vec<f64> = axes.iter().map(Axis::lower).collect();
+    let mut solution = problem.decode(&values);
+    let mut hits = 0;
+    loop {
+        hits += u64::from(problem.fitness(&solution) < problem.threshold());
+        let Some(turned) = values.iter().zip(axes).rposition(|(x, axis)| x < &axis.upper()) else {
+            return Some(hits);
+        };
+        values[turned] += 1.0;
+        for (x, axis) in values.iter_mut().zip(axes).skip(turned + 1) {
+            *x = axis.lower();
+        }
+        problem.decode_into(&values, &mut solution);
+    }
+}
+
+/// Minima over ranges of a fixed table in constant time: minima over windows of every power of two.
+#[derive(Debug, Clone)]
+pub(crate) struct RangeMinimum {
+    /// `levels[k][i]` is the minimum of `table[i .. i + 2^k]`.
+    levels: Vec<Vec<f64>>,
+}
+
+impl RangeMinimum {
+    pub(crate) fn new(table: Vec<f64>) -> Self {
+        let mut levels = vec![table];
+        loop {
+            let half = 1 << (levels.len() - 1);
+            let last = &levels[levels.len() - 1];
+            if last.len() <= half {
+                return Self { levels };
+            }
+            let next = last.iter().zip(&last[half..]).map(|(a, b)| a.min(*b)).collect();
+            levels.push(next);
+        }
+    }
+
+    /// The table.
+    #[inline]
+    pub(crate) fn table(&self) -> &[f64] {
+        &self.levels[0]
+    }
+
+    /// The minimum over the indices `from..=to`, clipped to the table; infinite where none is left.
+    pub(crate) fn minimum(&self, from: f64, to: f64) -> f64 {
+        let last = self.table().len() - 1;
+        let (from, to) = (from.ceil().max(0.0), to.floor().min(last as f64));
+        if from.is_nan() || to.is_nan() || from > to {
+            return f64::INFINITY;
+        }
+        let (from, to) = (from as usize, to as usize);
+        let level = (to - from + 1).ilog2() as usize;
+        self.levels[level][from].min(self.levels[level][to + 1 - (1 << level)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn range_minima_are_those_of_a_scan() {
+        let mut rng = satisfice::SearchRng::new(1);
+        for length in [1, 2, 3, 7, 8, 9, 33] {
+            let table: Vec<f64> = (0..length).map(|_| rng.uniform()).collect();
+            let minima = RangeMinimum::new(table.clone());
+            for from in 0..length {
+                for to in from..length {
+                    let scan = table[from..=to].iter().copied().fold(f64::INFINITY, f64::min);
+                    assert_eq!(minima.minimum(from as f64, to as f64), scan);
+                }
+            }
+            assert_eq!(minima.minimum(1.0, 0.0), f64::INFINITY);
+        }
+    }
+
+    #[test]
+    fn what_is_not_published_has_to_be_given() {
+        let rows: &[Published] = &[(2, 10, 0.5, 7)];
+        assert_eq!(as_published(rows, ("dimension", 2), 0, -1.0), Ok((10, 0.5)));
+        assert_eq!(as_published(rows, ("dimension", 2), 4, 0.0), Ok((4, 0.0)));
+        assert_eq!(as_published(rows, ("dimension", 3), 4, 0.1), Ok((4, 0.1)));
+        let error = as_published(rows, ("dimension", 3), 4, -1.0).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .starts_with("dimension = 3 is not allowed: published for 2 only")
+        );
+    }
+}

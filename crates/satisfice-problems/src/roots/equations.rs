@@ -1,0 +1,169 @@
+//! A square system e(x) = 0 in a box, as a satisficing problem: what all root problems share.
+
+use satisfice::{Axis, Error, Located, Region, Space};
+
+use super::newton;
+use crate::interval::Interval;
+use crate::number::Dual;
+
+/// Systems have at most this many unknowns, so that evaluation needs no allocation.
+pub(crate) const UNKNOWNS: usize = 24;
+
+/// One system, in the three arithmetics it is needed in. Each writes as many equations as there are unknowns.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Functions {
+    pub(crate) real: fn(&[f64], &mut [f64]),
+    pub(crate) interval: fn(&[Interval], &mut [Interval]),
+    pub(crate) dual: fn(&[Dual<f64>], &mut [Dual<f64>]),
+}
+
+/// `Functions` from a function that is generic over `Number`.
+macro_rules! functions {
+    ($system:path) => {
+        $crate::roots::equations::Functions {
+            real: $system,
+            interval: $system,
+            dual: $system,
+        }
+    };
+}
+pub(crate) use functions;
+
+/// The system with its box.
+#[derive(Debug, Clone)]
+pub(crate) struct Equations {
+    pub(crate) functions: Functions,
+    pub(crate) space: Space<f64>,
+    pub(crate) threshold: f64,
+    pub(crate) separation: f64,
+}
+
+impl Equations {
+    /// `threshold` of the sum of squares and `separation` of roots have to be positive.
+    pub(crate) fn new(
+        functions: Functions,
+        bounds: impl IntoIterator<Item = (f64, f64)>,
+        threshold: f64,
+        separation: f64,
+    ) -> Result<Self, Error> {
+        for (name, value) in [("threshold", threshold), ("separation", separation)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Error::parameter(name, value, "a number above 0"));
+            }
+        }
+        let space = Space::new(
+            bounds
+                .into_iter()
+                .map(|(lower, upper)| Axis::continuous(lower, upper)),
+        )?;
+        if space.dimension() > UNKNOWNS {
+            return Err(Error::parameter(
+                "unknowns",
+                space.dimension(),
+                format!("at most {UNKNOWNS}"),
+            ));
+        }
+        Ok(Self {
+            functions,
+            space,
+            threshold,
+            separation,
+        })
+    }
+
+    #[inline]
+    pub(crate) fn decode(&self, values: &[f64]) -> Located<f64> {
+        Located::new(values, self.separation)
+    }
+
+    #[inline]
+    pub(crate) fn decode_into(&self, values: &[f64], solution: &mut Located<f64>) {
+        solution.coordinates.clear();
+        solution.coordinates.extend_from_slice(values);
+        solution.separation = self.separation;
+    }
+
+    pub(crate) fn encode(&self, solution: &Located<f64>, values: &mut [f64]) -> bool {
+        let fits = solution.coordinates.len() == values.len() && self.space.contains(&solution.coordinates);
+        if fits {
+            values.copy_from_slice(&solution.coordinates);
+        }
+        fits
+    }
+
+    /// The sum of the squares of the equations.
+    #[inline]
+    pub(crate) fn fitness(&self, x: &[f64]) -> f64 {
+        let n = self.space.dimension();
+        if x.len() != n {
+            return f64::NAN;
+        }
+        let mut residuals = [0.0; UNKNOWNS];
+        (self.functions.real)(x, &mut residuals[..n]);
+        residuals[..n].iter().fold(0.0, |sum, e| sum + e * e)
+    }
+
+    /// The same in interval arithmetic, which contains every rounding of `fitness`.
+    pub(crate) fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+        let n = self.space.dimension();
+        if region.lower.len() != n || region.upper.len() != n {
+            return None;
+        }
+        let mut x = [Interval::new(0.0, 0.0); UNKNOWNS];
+        for (x, (&lower, &upper)) in x.iter_mut().zip(region.lower.iter().zip(&region.upper)) {
+            *x = Interval::new(lower, upper);
+        }
+        let mut residuals = [Interval::ENTIRE; UNKNOWNS];
+        (self.functions.interval)(&x[..n], &mut residuals[..n]);
+        let squares = residuals[..n].iter().map(|e| e.square());
+        let sum = squares.fold(Interval::new(0.0, 0.0), |sum, square| sum + square);
+        Some(sum.lower.max(0.0))
+    }
+
+    /// The root that Newton's method finds from a hit; the hit itself where it finds none inside the box.
+    pub(crate) fn canonical(&self, mut hit: Located<f64>) -> Located<f64> {
+        if let Some(root) = newton::polish(self, &hit.coordinates) {
+            hit.coordinates = root;
+        }
+        hit
+    }
+}
+
+/// The methods of `SatisficingProblem` for a type with the fields `equations` and `description`.
+macro_rules! root_methods {
+    () => {
+        type Scalar = f64;
+        type Solution = satisfice::Located<f64>;
+
+        fn space(&self) -> &satisfice::Space<f64> {
+            &self.equations.space
+        }
+        fn decode(&self, values: &[f64]) -> satisfice::Located<f64> {
+            self.equations.decode(values)
+        }
+        #[inline]
+        fn decode_into(&self, values: &[f64], solution: &mut satisfice::Located<f64>) {
+            self.equations.decode_into(values, solution);
+        }
+        #[inline]
+        fn fitness(&self, solution: &satisfice::Located<f64>) -> f64 {
+            self.equations.fitness(&solution.coordinates)
+        }
+        fn threshold(&self) -> f64 {
+            self.equations.threshold
+        }
+        fn encode(&self, solution: &satisfice::Located<f64>, values: &mut [f64]) -> bool {
+            self.equations.encode(solution, values)
+        }
+        fn lower_bound(&self, region: &satisfice::Region<f64>) -> Option<f64> {
+            self.equations.lower_bound(region)
+        }
+        fn canonical(&self, hit: satisfice::Located<f64>) -> satisfice::Located<f64> {
+            self.equations.canonical(hit)
+        }
+        fn description(&self) -> satisfice::Description {
+            self.description.clone()
+        }
+    };
+}
+pub(crate) use root_methods;

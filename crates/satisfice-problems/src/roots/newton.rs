@@ -1,0 +1,86 @@
+//! Newton's method from a point near a root, damped.
+
+use super::equations::{Equations, UNKNOWNS};
+use crate::number::Dual;
+
+/// From inside a sound threshold ten steps are plenty; more only matter at near-singular roots.
+const STEPS: usize = 60;
+/// A step is halved at most this often.
+const HALVINGS: usize = 20;
+
+/// The root near `start`: as close as f64 allows, with a residual not above that of `start`, inside the box. `None` where
+/// the Jacobian is singular or the iteration leaves the box.
+pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
+    let before = equations.fitness(start);
+    let (mut best, mut least) = (start.to_vec(), before);
+    for _ in 0..STEPS {
+        if least == 0.0 {
+            break;
+        }
+        let step = newton_step(equations, &best)?;
+        let mut share = 1.0;
+        let better = (0..HALVINGS).find_map(|_| {
+            let next: Vec<f64> = best.iter().zip(step).map(|(x, step)| x - share * step).collect();
+            let here = equations.fitness(&next);
+            share *= 0.5;
+            (here < least).then_some((next, here))
+        });
+        // No step makes it better: rounding is all that is left.
+        let Some((next, here)) = better else { break };
+        (best, least) = (next, here);
+    }
+    // A root on the border may come out a rounding error outside.
+    for (x, axis) in best.iter_mut().zip(equations.space.axes()) {
+        let tolerance = 1e-9 * axis.width();
+        if *x < axis.lower() - tolerance || *x > axis.upper() + tolerance {
+            return None;
+        }
+        *x = x.clamp(axis.lower(), axis.upper());
+    }
+    (equations.fitness(&best) <= before).then_some(best)
+}
+
+/// J(x)^-1 e(x), by Gaussian elimination with partial pivoting on the exact derivatives.
+fn newton_step(equations: &Equations, x: &[f64]) -> Option<[f64; UNKNOWNS]> {
+    let n = x.len();
+    let mut matrix = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
+    let mut input = [Dual {
+        value: 0.0,
+        slope: 0.0,
+    }; UNKNOWNS];
+    let mut output = input;
+    for (input, &value) in input.iter_mut().zip(x) {
+        input.value = value;
+    }
+    for column in 0..n {
+        input[column].slope = 1.0;
+        (equations.functions.dual)(&input[..n], &mut output[..n]);
+        input[column].slope = 0.0;
+        for (row, output) in matrix.iter_mut().zip(&output[..n]) {
+            row[column] = output.slope;
+            row[n] = output.value;
+        }
+    }
+    for column in 0..n {
+        let pivot =
+            (column..n).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))?;
+        matrix.swap(column, pivot);
+        let divisor = matrix[column][column];
+        if divisor == 0.0 || !divisor.is_finite() {
+            return None;
+        }
+        let above = matrix[column];
+        for row in &mut matrix[column + 1..n] {
+            let factor = row[column] / divisor;
+            for (entry, above) in row[column..=n].iter_mut().zip(&above[column..=n]) {
+                *entry -= factor * above;
+            }
+        }
+    }
+    let mut step = [0.0; UNKNOWNS];
+    for row in (0..n).rev() {
+        let known: f64 = (row + 1..n).map(|k| matrix[row][k] * step[k]).sum();
+        step[row] = (matrix[row][n] - known) / matrix[row][row];
+    }
+    Some(step)
+}
