@@ -53,7 +53,7 @@ impl Entry {
     }
 }
 
-static PROBLEMS: &[Entry] = &[];
+static PROBLEMS: &[Entry] = &[entry::<satisfice_collision::problem::Teapots>()];
 
 /// Every problem, in the order of the docs.
 #[must_use]
