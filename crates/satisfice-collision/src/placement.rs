@@ -115,6 +115,12 @@ impl Placement {
         self.quaternion
     }
 
+    /// The rows of the rotation matrix.
+    #[must_use]
+    pub fn rotation(&self) -> [[f64; 3]; 3] {
+        self.rotation
+    }
+
     /// The translation.
     #[must_use]
     pub fn translation(&self) -> [f64; 3] {

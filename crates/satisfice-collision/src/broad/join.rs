@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::cells::{Cells, Sorted};
 use super::clip::{greater, lesser};
 use super::exact::Decide;
-use super::frame::Frame;
+use super::frame::Filter;
 use super::lanes::{Eight, Lanes, Work};
 use super::order::Packing;
 
@@ -58,7 +58,7 @@ pub(crate) struct Join<'a, const ONE_BODY: bool> {
     pub(crate) a: &'a Sorted,
     pub(crate) b: &'a Sorted,
     pub(crate) cells: &'a Cells,
-    pub(crate) frame: &'a Frame,
+    pub(crate) filter: &'a Filter,
     pub(crate) decide: &'a Decide<'a>,
     pub(crate) packing: Packing,
     pub(crate) layers: Range<usize>,
@@ -87,7 +87,7 @@ impl<const ONE_BODY: bool> Work for Join<'_, ONE_BODY> {
 impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
     #[inline(always)]
     fn cell<L: Lanes>(&mut self, lanes: L, cell: usize, own: Range<usize>) {
-        let reach = self.frame.reach;
+        let reach = self.filter.reach;
         let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for k in 0..3 {
             for &c in &self.a.c[k][own.clone()] {
@@ -197,7 +197,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
     /// Tests one point against the gathered candidates from `skip` on.
     #[inline(always)]
     fn scan<L: Lanes>(&mut self, lanes: L, q: [f32; 3], id: u32, skip: usize, near: usize) {
-        let Frame { sure, limit, .. } = *self.frame;
+        let Filter { sure, limit, .. } = *self.filter;
         let Scratch {
             near: [nx, ny, nz],
             near_id,

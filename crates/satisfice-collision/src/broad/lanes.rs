@@ -9,6 +9,15 @@ pub(crate) trait Lanes: Copy + Send + Sync {
     fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32;
     /// Lanes inside the closed box `min..=max`.
     fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32;
+    /// Lanes (boxes) whose squared distance from the box `min..=max` is at most `limit`.
+    fn boxes_within(
+        self,
+        lower: [&Eight; 3],
+        upper: [&Eight; 3],
+        min: [f32; 3],
+        max: [f32; 3],
+        limit: f32,
+    ) -> u32;
     /// The lanes of `mask` moved to the front of `to`, in order; what follows them is unspecified.
     fn compact(self, from: &Eight, mask: u32, to: &mut Eight);
     /// The same for serial numbers.
@@ -41,6 +50,12 @@ fn mask(of: impl Fn(usize) -> bool) -> u32 {
     (0..8).fold(0, |bits, i| bits | (u32::from(of(i)) << i))
 }
 
+/// Distance of two intervals, 0 if they meet.
+#[inline(always)]
+fn gap(lower: f32, upper: f32, min: f32, max: f32) -> f32 {
+    (lower - max).max(min - upper).max(0.0)
+}
+
 impl Lanes for Portable {
     #[inline(always)]
     fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32 {
@@ -53,6 +68,23 @@ impl Lanes for Portable {
     #[inline(always)]
     fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32 {
         mask(|i| (0..3).all(|k| min[k] <= c[k][i] && c[k][i] <= max[k]))
+    }
+
+    #[inline(always)]
+    fn boxes_within(
+        self,
+        lower: [&Eight; 3],
+        upper: [&Eight; 3],
+        min: [f32; 3],
+        max: [f32; 3],
+        limit: f32,
+    ) -> u32 {
+        mask(|i| {
+            let x = gap(lower[0][i], upper[0][i], min[0], max[0]);
+            let y = gap(lower[1][i], upper[1][i], min[1], max[1]);
+            let z = gap(lower[2][i], upper[2][i], min[2], max[2]);
+            x * x + y * y + z * z <= limit
+        })
     }
 
     #[inline(always)]
@@ -162,6 +194,31 @@ mod avx2 {
             bits(
                 self,
                 avx._mm256_and_ps(avx._mm256_and_ps(axis(0), axis(1)), axis(2)),
+            )
+        }
+
+        #[inline(always)]
+        fn boxes_within(
+            self,
+            lower: [&Eight; 3],
+            upper: [&Eight; 3],
+            min: [f32; 3],
+            max: [f32; 3],
+            limit: f32,
+        ) -> u32 {
+            let avx = self.avx;
+            let axis = |k: usize| {
+                let below = avx._mm256_sub_ps(load(lower[k]), avx._mm256_set1_ps(max[k]));
+                let above = avx._mm256_sub_ps(avx._mm256_set1_ps(min[k]), load(upper[k]));
+                avx._mm256_max_ps(avx._mm256_max_ps(below, above), avx._mm256_set1_ps(0.0))
+            };
+            let (x, y, z) = (axis(0), axis(1), axis(2));
+            let d = avx._mm256_mul_ps(x, x);
+            let d = self.fma._mm256_fmadd_ps(y, y, d);
+            let d = self.fma._mm256_fmadd_ps(z, z, d);
+            bits(
+                self,
+                avx._mm256_cmp_ps::<_CMP_LE_OQ>(d, avx._mm256_set1_ps(limit)),
             )
         }
 

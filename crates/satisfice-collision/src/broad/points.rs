@@ -3,7 +3,7 @@
 use super::cells::{Cells, Sorted};
 use super::clip::{Clip, Part, Runs, union};
 use super::exact::Decide;
-use super::frame::Frame;
+use super::frame::{Filter, Frame};
 use super::join::{Clump, Join, Scratch};
 use super::lanes::dispatch;
 use super::order::{Packing, Pair};
@@ -128,14 +128,15 @@ impl PointGrid {
         if na == 0 || (!ONE_BODY && nb == 0) {
             return Ok(());
         }
-        let cells = Cells::fit(&self.parts[0], frame.reach);
+        let filter = frame.filter(threshold.get());
+        let cells = Cells::fit(&self.parts[0], filter.reach);
         self.sorted[0].sort(&self.parts[0], &cells, self.threads);
         if !ONE_BODY {
             self.sorted[1].sort(&self.parts[1], &cells, self.threads);
         }
         let packing = Packing::new(a.len(), b.len());
         let decide = Decide { a, b, threshold };
-        let tasks = self.join::<ONE_BODY>(&cells, &frame, &decide, packing, depth < DEEPEST);
+        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, packing, depth < DEEPEST);
         for task in 0..tasks {
             for Clump { a: own, b: others } in std::mem::take(&mut self.tasks[task].clumps) {
                 self.clump::<ONE_BODY>(&decide, packing, task, &own, &others, depth)?;
@@ -163,7 +164,7 @@ impl PointGrid {
         } = self;
         if ONE_BODY {
             let region = &runs_a.whole()?;
-            let frame = &Frame::new(region, threshold.get());
+            let frame = &Frame::for_threshold(region, threshold.get());
             Clip {
                 points: a,
                 runs: runs_a,
@@ -174,7 +175,7 @@ impl PointGrid {
             return Some(*frame);
         }
         let regions = overlap::regions(runs_a, runs_b, threshold.get())?;
-        let frame = &Frame::new(&union(&regions[0], &regions[1]), threshold.get());
+        let frame = &Frame::for_threshold(&union(&regions[0], &regions[1]), threshold.get());
         Clip {
             points: a,
             runs: runs_a,
@@ -189,14 +190,14 @@ impl PointGrid {
             frame,
         }
         .place(parts_b, *threads);
-        self.work.lonely = sieve(parts_a, parts_b, frame.reach, *threads) as u64;
+        self.work.lonely = sieve(parts_a, parts_b, frame.filter(threshold.get()).reach, *threads) as u64;
         Some(*frame)
     }
 
     fn join<const ONE_BODY: bool>(
         &mut self,
         cells: &Cells,
-        frame: &Frame,
+        filter: &Filter,
         decide: &Decide<'_>,
         packing: Packing,
         split: bool,
@@ -220,7 +221,7 @@ impl PointGrid {
                 a,
                 b,
                 cells,
-                frame,
+                filter,
                 decide,
                 packing,
                 layers,

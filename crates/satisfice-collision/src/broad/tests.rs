@@ -4,9 +4,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{Pair, PointGrid};
-use crate::Error;
-use crate::distance::{Threshold, vertex_vertex};
+use super::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
+use crate::distance::{Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex};
+use crate::{Error, Mesh, Placement, generate};
 
 type Points = Vec<[f64; 3]>;
 
@@ -157,6 +157,193 @@ fn one_body_agrees_with_brute_force() {
     }
 }
 
+fn point_tree(points: &[[f64; 3]]) -> Option<FeatureTree> {
+    let mesh = Mesh::new(points.to_vec(), vec![], vec![]).ok()?;
+    Some(FeatureTree::new(&mesh, FeatureKind::Vertex))
+}
+
+#[test]
+fn kept_trees_agree_with_brute_force() {
+    let mut join = TreeJoin::new();
+    let rest = Placement::IDENTITY;
+    for (name, a, b, deltas) in scenes() {
+        let (Some(tree_a), Some(tree_b)) = (point_tree(&a), point_tree(&b)) else {
+            continue;
+        };
+        for delta in deltas {
+            let threshold = Threshold::new(delta).unwrap();
+            let pairs = join
+                .between((&tree_a, &rest), (&tree_b, &rest), threshold, None)
+                .unwrap();
+            assert!(
+                pairs == brute(&a, &b, delta, false),
+                "{name}, {delta}: {} pairs",
+                pairs.len()
+            );
+            if a.len() < 10_000 {
+                let pairs = join.within(&tree_a, threshold, None);
+                assert!(
+                    pairs == brute(&a, &a, delta, true),
+                    "{name}, {delta}: {} pairs",
+                    pairs.len()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn posed_trees_answer_for_the_posed_coordinates() {
+    let (a, b) = (
+        cloud(600, 1, |x, y, z| [x, y, z]),
+        cloud(500, 2, |x, y, z| [3.0 * x, y, -z]),
+    );
+    let (tree_a, tree_b) = (point_tree(&a).unwrap(), point_tree(&b).unwrap());
+    let mut join = TreeJoin::new();
+    let threshold = Threshold::new(0.125).unwrap();
+    let mut hits = 0;
+    for step in 0..12 {
+        let angle = f64::from(step) * 0.4;
+        let far = [0.0, 1e3, -1e9][step as usize % 3];
+        let pose_a = Placement::from_axis_angle([1.0, 0.3, -0.2], angle)
+            .unwrap()
+            .moved([far, 0.2, 0.0])
+            .unwrap();
+        let turn = if step % 2 == 0 { 0.0 } else { -angle };
+        let pose_b = Placement::from_axis_angle([0.0, 0.1, 1.0], turn)
+            .unwrap()
+            .moved([far, 0.0, 0.1])
+            .unwrap();
+        let posed_a: Points = a.iter().map(|&p| pose_a.apply(p)).collect();
+        let posed_b: Points = b.iter().map(|&p| pose_b.apply(p)).collect();
+        let pairs = join
+            .between((&tree_a, &pose_a), (&tree_b, &pose_b), threshold, None)
+            .unwrap();
+        assert!(pairs == brute(&posed_a, &posed_b, 0.125, false), "step {step}");
+        hits += pairs.len();
+        let back = join
+            .between((&tree_b, &pose_b), (&tree_a, &pose_a), threshold, None)
+            .unwrap()
+            .len();
+        assert_eq!(back, pairs_len(&posed_a, &posed_b));
+    }
+    assert!(hits > 1000);
+}
+
+fn pairs_len(a: &[[f64; 3]], b: &[[f64; 3]]) -> usize {
+    brute(a, b, 0.125, false).len()
+}
+
+#[test]
+fn a_refitted_tree_is_as_good_as_a_new_one() {
+    let mut points = cloud(3000, 1, |x, y, z| [x, y, z]);
+    let mut tree = point_tree(&points).unwrap();
+    let mut join = TreeJoin::new();
+    let threshold = Threshold::new(0.05).unwrap();
+    for frame in 1..4 {
+        for (i, point) in points.iter_mut().enumerate() {
+            point[i % 3] += 0.3 * f64::from(frame) * ((i * 37 % 101) as f64 / 101.0 - 0.4);
+        }
+        tree.refit(&points).unwrap();
+        assert!(
+            join.within(&tree, threshold, None) == brute(&points, &points, 0.05, true),
+            "frame {frame}"
+        );
+    }
+    points[7][2] = f64::NAN;
+    assert!(matches!(
+        tree.refit(&points),
+        Err(Error::NonFiniteVertex {
+            vertex: 7,
+            axis: 'z',
+            ..
+        })
+    ));
+    assert!(matches!(tree.refit(&points[1..]), Err(Error::Parameter { .. })));
+}
+
+#[test]
+fn edges_and_triangles_agree_with_brute_force() {
+    let a = generate::torus(1.0, 0.4, 24, 14).unwrap();
+    let pose = Placement::from_axis_angle([1.0, 0.2, 0.1], 1.2)
+        .unwrap()
+        .moved([0.9, 0.1, 0.2])
+        .unwrap();
+    let b = generate::icosphere(0.8, 2).unwrap();
+    let posed = pose.place(&b).unwrap();
+    let mut join = TreeJoin::new();
+    let rest = Placement::IDENTITY;
+    let tree = |mesh: &Mesh, kind| FeatureTree::new(mesh, kind);
+    for delta in [1e-3, 0.05, 0.2] {
+        let threshold = Threshold::new(delta).unwrap();
+        let all = |rows: usize, columns: usize, within: &dyn Fn(usize, usize) -> bool| {
+            let pairs = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
+            let hits = pairs.filter(|&(i, j)| within(i, j));
+            hits.map(|(i, j)| Pair {
+                a: i as u32,
+                b: j as u32,
+            })
+            .collect::<Vec<_>>()
+        };
+        let edge = |mesh: &Mesh, e: usize| mesh.edges()[e].map(|v| mesh.vertex(v));
+        let (kinds, expected): (_, Vec<Vec<Pair>>) = (
+            [FeatureKind::Vertex, FeatureKind::Edge, FeatureKind::Triangle],
+            vec![
+                all(a.vertices().len(), b.triangles().len(), &|i, j| {
+                    vertex_triangle::within(&a.vertices()[i], &posed.triangle(j), threshold)
+                }),
+                all(a.edges().len(), b.edges().len(), &|i, j| {
+                    edge_edge::within(&edge(&a, i), &edge(&posed, j), threshold)
+                }),
+                all(a.triangles().len(), b.triangles().len(), &|i, j| {
+                    triangle_triangle::within(&a.triangle(i), &posed.triangle(j), threshold)
+                }),
+            ],
+        );
+        for (kind, expected) in kinds.into_iter().zip(expected) {
+            let other = if kind == FeatureKind::Vertex {
+                FeatureKind::Triangle
+            } else {
+                kind
+            };
+            let (tree_a, tree_b) = (tree(&a, kind), tree(&b, other));
+            let pairs = join
+                .between((&tree_a, &rest), (&tree_b, &pose), threshold, None)
+                .unwrap();
+            assert!(
+                pairs == expected,
+                "{kind:?} {delta}: {} of {}",
+                pairs.len(),
+                expected.len()
+            );
+            assert!(!pairs.is_empty() || delta < 0.01);
+            let turned: Vec<Pair> = join
+                .between((&tree_b, &pose), (&tree_a, &rest), threshold, None)
+                .unwrap()
+                .iter()
+                .map(|pair| Pair { a: pair.b, b: pair.a })
+                .collect();
+            let mut turned = turned;
+            turned.sort_unstable();
+            assert!(turned == expected, "{kind:?} {delta}, the other way round");
+        }
+    }
+}
+
+#[test]
+fn pairs_that_are_not_kept_are_left_out() {
+    let points = cloud(900, 3, |x, y, z| [x, y, z]);
+    let tree = point_tree(&points).unwrap();
+    let mut join = TreeJoin::new();
+    let odd = |i: u32, j: u32| (i + j) % 2 == 1;
+    let kept = join
+        .within(&tree, Threshold::new(0.2).unwrap(), Some(&odd))
+        .to_vec();
+    let mut expected = brute(&points, &points, 0.2, true);
+    expected.retain(|pair| odd(pair.a, pair.b));
+    assert!(kept == expected && !kept.is_empty());
+}
+
 #[test]
 fn threads_change_nothing() {
     let (a, b) = (
@@ -180,6 +367,14 @@ fn threads_change_nothing() {
                 "{threads} threads"
             );
             assert!(same == grid.within(&a, threshold).unwrap(), "{threads} threads");
+            let mut join = TreeJoin::parallel();
+            let (tree_a, tree_b) = (point_tree(&a).unwrap(), point_tree(&b).unwrap());
+            let rest = Placement::IDENTITY;
+            let pairs = join
+                .between((&tree_a, &rest), (&tree_b, &rest), threshold, None)
+                .unwrap();
+            assert!(one == pairs, "{threads} threads");
+            assert!(same == join.within(&tree_a, threshold, None), "{threads} threads");
         });
     }
 }

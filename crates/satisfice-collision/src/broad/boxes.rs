@@ -1,0 +1,182 @@
+//! A tree of boxes with eight children a node, without pointers: level 0 holds the items' boxes in groups of eight, and
+//! box g of level k + 1 bounds group g of level k. Refitting is one pass from the bottom up.
+
+use super::clip::{greater, lesser};
+use super::lanes::Eight;
+
+/// A box of `f32` coordinates; empty if a lower side lies above its upper one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Box32 {
+    pub(crate) min: [f32; 3],
+    pub(crate) max: [f32; 3],
+}
+
+impl Box32 {
+    /// Bounds nothing; at an infinite distance from everything.
+    pub(crate) const EMPTY: Self = Self {
+        min: [f32::INFINITY; 3],
+        max: [f32::NEG_INFINITY; 3],
+    };
+
+    /// The least box around some points.
+    #[inline(always)]
+    pub(crate) fn around<const N: usize>(points: [[f32; 3]; N]) -> Self {
+        points.iter().fold(Self::EMPTY, |bounds, point| Self {
+            min: std::array::from_fn(|k| lesser(point[k], bounds.min[k])),
+            max: std::array::from_fn(|k| greater(point[k], bounds.max[k])),
+        })
+    }
+}
+
+/// Eight boxes side by side.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Group {
+    pub(crate) lower: [Eight; 3],
+    pub(crate) upper: [Eight; 3],
+}
+
+impl Group {
+    const EMPTY: Self = Self {
+        lower: [[f32::INFINITY; 8]; 3],
+        upper: [[f32::NEG_INFINITY; 8]; 3],
+    };
+
+    #[inline(always)]
+    fn bounds(&self) -> Box32 {
+        let fold = |of: &Eight, pick: fn(f32, f32) -> f32| {
+            let four: [f32; 4] = std::array::from_fn(|i| pick(of[i], of[i + 4]));
+            pick(pick(four[0], four[2]), pick(four[1], four[3]))
+        };
+        Box32 {
+            min: std::array::from_fn(|k| fold(&self.lower[k], lesser)),
+            max: std::array::from_fn(|k| fold(&self.upper[k], greater)),
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, to: &Box32) {
+        for k in 0..3 {
+            self.lower[k][lane] = to.min[k];
+            self.upper[k][lane] = to.max[k];
+        }
+    }
+}
+
+/// The tree.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BoxTree {
+    /// The item at each place of level 0.
+    pub(crate) order: Vec<u32>,
+    /// From the items up to the one group of the root.
+    pub(crate) levels: Vec<Vec<Group>>,
+}
+
+impl BoxTree {
+    /// Builds the tree over items with these boxes. Cost: O(n log n).
+    pub(crate) fn build(boxes: &[Box32], threads: usize) -> Self {
+        let mut items: Vec<Item> = (0_u32..)
+            .zip(boxes)
+            .map(|(id, b)| Item {
+                centre: std::array::from_fn(|k| b.min[k] + b.max[k]),
+                id,
+            })
+            .collect();
+        split(&mut items, threads > 1);
+        let mut tree = Self {
+            order: items.iter().map(|item| item.id).collect(),
+            levels: Vec::new(),
+        };
+        let mut groups = boxes.len().div_ceil(8);
+        while groups > 0 {
+            tree.levels.push(vec![Group::EMPTY; groups]);
+            groups = if groups == 1 { 0 } else { groups.div_ceil(8) };
+        }
+        tree.refit(boxes, threads);
+        tree
+    }
+
+    /// Measures the tree anew after its items have moved; `boxes` are by item. Cost: O(n), and no allocation.
+    pub(crate) fn refit(&mut self, boxes: &[Box32], threads: usize) {
+        use rayon::prelude::*;
+        let Some((items, above)) = self.levels.split_first_mut() else {
+            return;
+        };
+        let place = |(group, order): (&mut Group, &[u32])| {
+            for (lane, &id) in order.iter().enumerate() {
+                group.set(lane, &boxes[id as usize]);
+            }
+        };
+        if threads < 2 || boxes.len() < 20_000 {
+            items.iter_mut().zip(self.order.chunks(8)).for_each(place);
+        } else {
+            items
+                .par_iter_mut()
+                .with_min_len(512)
+                .zip(self.order.par_chunks(8))
+                .for_each(place);
+        }
+        let mut below: &[Group] = items;
+        for level in above {
+            let bound = |(group, children): (&mut Group, &[Group])| {
+                for (lane, child) in children.iter().enumerate() {
+                    group.set(lane, &child.bounds());
+                }
+            };
+            if threads < 2 || level.len() < 4096 {
+                level.iter_mut().zip(below.chunks(8)).for_each(bound);
+            } else {
+                level
+                    .par_iter_mut()
+                    .with_min_len(512)
+                    .zip(below.par_chunks(8))
+                    .for_each(bound);
+            }
+            below = level;
+        }
+    }
+
+    /// How many items there are.
+    pub(crate) fn len(&self) -> usize {
+        self.order.len()
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Item {
+    /// Twice the centre of the box.
+    centre: [f32; 3],
+    id: u32,
+}
+
+/// Orders items so that every aligned run of 8, 64, 512, … is compact: halves by the median along the longest axis of the
+/// centres, at multiples of the largest run that is shorter than the whole.
+fn split(items: &mut [Item], parallel: bool) {
+    let n = items.len();
+    if n <= 8 {
+        return;
+    }
+    let mut run = 8;
+    while run * 8 < n {
+        run *= 8;
+    }
+    let at = n.div_ceil(run).div_ceil(2) * run;
+    let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for item in items.iter() {
+        for k in 0..3 {
+            min[k] = lesser(item.centre[k], min[k]);
+            max[k] = greater(item.centre[k], max[k]);
+        }
+    }
+    let extent = |k: usize| max[k] - min[k];
+    let axis = (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best });
+    if extent(axis) > 0.0 {
+        items.select_nth_unstable_by(at, |a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+    }
+    let (left, right) = items.split_at_mut(at);
+    if parallel && n > 20_000 {
+        rayon::join(|| split(left, true), || split(right, true));
+    } else {
+        split(left, false);
+        split(right, false);
+    }
+}

@@ -1,0 +1,177 @@
+//! The vertices, edges or triangles of a body in a box tree that can be kept and refitted.
+
+use super::boxes::{Box32, BoxTree};
+use super::clip::Runs;
+use super::frame::Frame;
+use crate::distance::{PairKind, Point, Segment, Triangle};
+use crate::{Error, Mesh};
+
+/// What a tree is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FeatureKind {
+    /// Vertices, by their number.
+    Vertex,
+    /// Unique edges, in the order of [`Mesh::edges`].
+    Edge,
+    /// Triangles, in the order of [`Mesh::triangles`].
+    Triangle,
+}
+
+impl FeatureKind {
+    /// The kinds of the first and the second feature of a pair.
+    #[must_use]
+    pub fn of_pair(kind: PairKind) -> (Self, Self) {
+        match kind {
+            PairKind::VertexVertex => (Self::Vertex, Self::Vertex),
+            PairKind::VertexEdge => (Self::Vertex, Self::Edge),
+            PairKind::VertexTriangle => (Self::Vertex, Self::Triangle),
+            PairKind::EdgeEdge => (Self::Edge, Self::Edge),
+            PairKind::EdgeTriangle => (Self::Edge, Self::Triangle),
+            PairKind::TriangleTriangle => (Self::Triangle, Self::Triangle),
+        }
+    }
+}
+
+/// The vertex numbers of the features.
+#[derive(Debug, Clone)]
+enum Elements {
+    Vertices,
+    Edges(Vec<[u32; 2]>),
+    Triangles(Vec<[u32; 3]>),
+}
+
+/// A box tree over the features of one kind of one body, in the body's own coordinates.
+#[derive(Debug)]
+pub struct FeatureTree {
+    elements: Elements,
+    vertices: Vec<Point>,
+    runs: Runs,
+    pub(crate) frame: Frame,
+    boxes: Vec<Box32>,
+    placed: Vec<[f32; 3]>,
+    pub(crate) tree: BoxTree,
+}
+
+impl FeatureTree {
+    /// Builds the tree. Cost: O(n log n).
+    #[must_use]
+    pub fn new(mesh: &Mesh, kind: FeatureKind) -> Self {
+        let elements = match kind {
+            FeatureKind::Vertex => Elements::Vertices,
+            FeatureKind::Edge => Elements::Edges(mesh.edges().to_vec()),
+            FeatureKind::Triangle => Elements::Triangles(mesh.triangles().to_vec()),
+        };
+        let bounds = mesh.bounds();
+        let mut tree = Self {
+            elements,
+            vertices: mesh.vertices().to_vec(),
+            runs: Runs::default(),
+            frame: Frame::unit(&bounds),
+            boxes: Vec::new(),
+            placed: Vec::new(),
+            tree: BoxTree::default(),
+        };
+        tree.measure();
+        tree.tree = BoxTree::build(&tree.boxes, rayon::current_num_threads());
+        tree
+    }
+
+    /// Moves the vertices and measures the boxes anew; which features are siblings stays. Cost: O(n), no allocation.
+    ///
+    /// # Errors
+    /// [`Error::NonFiniteVertex`], or [`Error::Parameter`] if the number of vertices differs; the tree is then as before.
+    pub fn refit(&mut self, vertices: &[Point]) -> Result<(), Error> {
+        if vertices.len() != self.vertices.len() {
+            return Err(Error::parameter(
+                "number of vertices",
+                vertices.len(),
+                "a frame has as many vertices as its body",
+            ));
+        }
+        self.runs.measure(vertices, 1)?;
+        if let Some(bounds) = self.runs.whole() {
+            self.frame = Frame::unit(&bounds);
+        }
+        self.vertices.copy_from_slice(vertices);
+        self.measure();
+        self.tree.refit(&self.boxes, rayon::current_num_threads());
+        Ok(())
+    }
+
+    fn measure(&mut self) {
+        let Self {
+            frame,
+            placed,
+            boxes,
+            vertices,
+            ..
+        } = self;
+        placed.clear();
+        placed.extend(vertices.iter().map(|vertex| frame.place(vertex)));
+        let at = |v: u32| placed[v as usize];
+        boxes.clear();
+        match &self.elements {
+            Elements::Vertices => boxes.extend(placed.iter().map(|&q| Box32 { min: q, max: q })),
+            Elements::Edges(edges) => boxes.extend(edges.iter().map(|edge| Box32::around(edge.map(at)))),
+            Elements::Triangles(triangles) => {
+                boxes.extend(triangles.iter().map(|triangle| Box32::around(triangle.map(at))));
+            }
+        }
+    }
+
+    /// A radius around the frame's origin that holds every vertex.
+    pub(crate) fn radius(&self) -> f64 {
+        1.7321 * self.frame.half / self.frame.scale
+    }
+
+    /// How many features there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.tree.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// What the features are.
+    #[must_use]
+    pub fn kind(&self) -> FeatureKind {
+        match self.elements {
+            Elements::Vertices => FeatureKind::Vertex,
+            Elements::Edges(_) => FeatureKind::Edge,
+            Elements::Triangles(_) => FeatureKind::Triangle,
+        }
+    }
+
+    /// The vertices, where they were put last.
+    #[must_use]
+    pub fn vertices(&self) -> &[Point] {
+        &self.vertices
+    }
+
+    #[inline]
+    pub(crate) fn point(&self, v: u32) -> Point {
+        self.vertices[v as usize]
+    }
+
+    /// The ends of edge `e`; of a tree that is not about edges, a point.
+    #[inline]
+    pub(crate) fn segment(&self, e: u32) -> Segment {
+        match &self.elements {
+            Elements::Edges(edges) => edges[e as usize].map(|v| self.point(v)),
+            _ => [self.point(e); 2],
+        }
+    }
+
+    /// The corners of triangle `t`; of a tree that is not about triangles, a point.
+    #[inline]
+    pub(crate) fn triangle(&self, t: u32) -> Triangle {
+        match &self.elements {
+            Elements::Triangles(triangles) => triangles[t as usize].map(|v| self.point(v)),
+            _ => [self.point(t); 3],
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! How one body lies in the frame of another: a rotation, a scale and a shift in `f32`, and what their rounding costs.
+//!
+//! With world = R p + t, the frame of b holds q = (R_b^T (R_a p + t_a - t_b) - o_b) s_b. Errors on every axis, in the unit of
+//! that frame, with r = s_b / s_a <= 1 and c the shift: e_b for b's own coordinates; sqrt(3) r e_a for a's; the `f32` matrix,
+//! three products and three sums of numbers up to 2 sqrt(3) r and c: below 8u (4 r + |c|); the `f64` arithmetic of posing and
+//! of this composition: below 2^-46 times all lengths involved (a rotation matrix made from a rounded quaternion is
+//! orthonormal within 2^-50). A box turned with its centre and the absolute matrix is wrong by no more.
+
+use super::boxes::Group;
+use super::frame::{Filter, Frame, U, power_of_two};
+use super::lanes::Eight;
+use crate::Placement;
+
+/// Brings coordinates of one frame into another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Relative {
+    matrix: [[f32; 3]; 3],
+    shift: [f32; 3],
+    turned: bool,
+}
+
+impl Relative {
+    /// From the frame `a` of a body at `pose_a` into the frame `b` of one at `pose_b`, and what `f32` distances there say
+    /// about the threshold `delta`. Wants `b.scale <= a.scale`.
+    pub(crate) fn new(
+        a: &Frame,
+        pose_a: &Placement,
+        b: &Frame,
+        pose_b: &Placement,
+        delta: f64,
+    ) -> (Self, Filter) {
+        let (ra, rb) = (pose_a.rotation(), pose_b.rotation());
+        let (ta, tb) = (pose_a.translation(), pose_b.translation());
+        let ratio = b.scale / a.scale;
+        let product = |i: usize, j: usize| (0..3).map(|k| rb[k][i] * ra[k][j]).sum::<f64>();
+        let turned = ra != rb;
+        let matrix: [[f64; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                if turned {
+                    product(i, j)
+                } else {
+                    f64::from(u8::from(i == j))
+                }
+            })
+        });
+        // o_a and the translations, turned into b's axes; their difference first, where it may cancel
+        let moved: [f64; 3] = std::array::from_fn(|k| ta[k] - tb[k]);
+        let shift: [f64; 3] = std::array::from_fn(|i| {
+            let translation = (0..3).map(|k| rb[k][i] * moved[k]).sum::<f64>();
+            let origin = if turned {
+                (0..3).map(|j| matrix[i][j] * a.origin[j]).sum::<f64>() - b.origin[i]
+            } else {
+                a.origin[i] - b.origin[i]
+            };
+            (translation + origin) * b.scale
+        });
+        let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let lengths = [&ta, &tb, &a.origin, &b.origin]
+            .map(largest)
+            .iter()
+            .map(|l| l * b.scale)
+            .sum::<f64>()
+            + a.half * ratio
+            + b.half;
+        let c = largest(&shift);
+        let error = b.error
+            + 1.7321 * ratio * a.error
+            + 8.0 * U * (4.0 * ratio + c)
+            + power_of_two(-46) * lengths
+            + power_of_two(-140);
+        let scaled = delta * b.scale;
+        // beyond this f32 squares could overflow: let everything pass to the exact decision
+        let sane = c < power_of_two(55) && scaled < power_of_two(55) && error.is_finite();
+        let error = if sane { error } else { f64::INFINITY };
+        let relative = Self {
+            matrix: matrix.map(|row| row.map(|m| (m * ratio) as f32)),
+            shift: if sane { shift.map(|s| s as f32) } else { [0.0; 3] },
+            turned,
+        };
+        (relative, Filter::new(scaled, error, c + 4.0))
+    }
+
+    /// Within one frame.
+    pub(crate) fn same() -> Self {
+        Self {
+            matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            shift: [0.0; 3],
+            turned: false,
+        }
+    }
+
+    /// Eight points, one a lane.
+    #[inline(always)]
+    pub(crate) fn points(&self, c: &[Eight; 3]) -> [Eight; 3] {
+        if self.turned {
+            std::array::from_fn(|i| {
+                let m = self.matrix[i];
+                std::array::from_fn(|l| m[0] * c[0][l] + m[1] * c[1][l] + m[2] * c[2][l] + self.shift[i])
+            })
+        } else {
+            self.moved(c)
+        }
+    }
+
+    #[inline(always)]
+    fn moved(&self, c: &[Eight; 3]) -> [Eight; 3] {
+        std::array::from_fn(|i| std::array::from_fn(|l| self.matrix[i][i] * c[i][l] + self.shift[i]))
+    }
+
+    /// Boxes around eight boxes.
+    #[inline(always)]
+    pub(crate) fn boxes(&self, of: &Group) -> Group {
+        if !self.turned {
+            return Group {
+                lower: self.moved(&of.lower),
+                upper: self.moved(&of.upper),
+            };
+        }
+        let centre: [Eight; 3] =
+            std::array::from_fn(|k| std::array::from_fn(|l| 0.5 * (of.lower[k][l] + of.upper[k][l])));
+        let half: [Eight; 3] =
+            std::array::from_fn(|k| std::array::from_fn(|l| 0.5 * (of.upper[k][l] - of.lower[k][l])));
+        let centre = self.points(&centre);
+        let half: [Eight; 3] = std::array::from_fn(|i| {
+            let m = self.matrix[i].map(f32::abs);
+            std::array::from_fn(|l| m[0] * half[0][l] + m[1] * half[1][l] + m[2] * half[2][l])
+        });
+        Group {
+            lower: std::array::from_fn(|i| std::array::from_fn(|l| centre[i][l] - half[i][l])),
+            upper: std::array::from_fn(|i| std::array::from_fn(|l| centre[i][l] + half[i][l])),
+        }
+    }
+}
