@@ -63,58 +63,79 @@ impl<S: Real> Located<S> {
         }
     }
 
-    /// Cells have twice the separation as edge, so that a ball meets at most two cells on each hashed axis.
-    fn cell(&self, axis: usize, shift: S) -> u64 {
-        let x = self.coordinates[axis];
-        let cell = if self.separation > S::zero() {
-            ((x + shift) / (self.separation + self.separation)).floor()
-        } else {
+    /// The cell of `x` on one axis. Monotone in `x`, roundings included.
+    fn cell(&self, x: S) -> S {
+        let edge = self.separation * S::of(EDGE);
+        let cell = if self.separation == S::zero() {
             x
+        } else if edge.is_finite() {
+            (x / edge).floor()
+        } else {
+            S::zero()
         };
-        // -0.0 and 0.0 are one cell.
-        (cell + S::zero()).to_word()
+        cell + S::zero() // -0.0 and 0.0 are one cell
     }
+
+    /// The first and the last cell on one axis that a solution within the radius may be in.
+    fn cells_near(&self, x: S) -> [S; 2] {
+        // A little more than the radius, so that rounding in `same` loses nothing.
+        let reach = self.separation * S::of(1.0 + 1e-6);
+        let within = |x: S| x.max(S::min_value()).min(S::max_value());
+        [self.cell(within(x - reach)), self.cell(within(x + reach))]
+    }
+}
+
+/// Edge of a cell in radii. A ball then meets one cell or two on each axis, or three where the scalar's rounding is as
+/// coarse as the radius.
+const EDGE: f64 = 4.0;
+
+/// The next cell, also where whole numbers are no longer next to each other.
+fn next_cell<S: Real>(cell: S) -> S {
+    cell + (cell.abs() * S::epsilon() * S::of(0.75)).max(S::one())
 }
 
 impl<S: Real> Identity for Located<S> {
     fn key(&self) -> u64 {
         let mut cells = [0; HASHED];
-        for (axis, cell) in cells.iter_mut().enumerate().take(self.coordinates.len()) {
-            *cell = self.cell(axis, S::zero());
+        for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
+            *cell = self.cell(x).to_word();
         }
         KEYS.hash_one(cells)
     }
 
     fn same(&self, other: &Self) -> bool {
-        let square = self
-            .coordinates
-            .iter()
-            .zip(&other.coordinates)
-            .fold(S::zero(), |sum, (&a, &b)| sum + (a - b) * (a - b));
-        square <= self.separation * self.separation
+        let pairs = self.coordinates.iter().zip(&other.coordinates);
+        if self.separation == S::zero() {
+            return pairs.into_iter().all(|(a, b)| a == b);
+        }
+        // Divided before it is squared: the square of a small or of a large radius is no number of use.
+        let square = pairs.fold(S::zero(), |sum, (&a, &b)| {
+            let d = (a - b) / self.separation;
+            sum + d * d
+        });
+        square <= S::one()
     }
 
     fn visit_keys(&self, visit: &mut dyn FnMut(u64) -> bool) -> bool {
-        let hashed = self.coordinates.len().min(HASHED);
-        // A little more than the radius, so that rounding in `same` and in the division below loses nothing.
-        let reach = self.separation * S::of(1.0 + 1e-6);
-        let mut ends = [[0; 2]; HASHED];
-        for (axis, end) in ends.iter_mut().enumerate().take(hashed) {
-            *end = [self.cell(axis, -reach), self.cell(axis, reach)];
+        let mut ends = [[S::zero(); 2]; HASHED];
+        let mut cells = [S::zero(); HASHED];
+        for ((end, cell), &x) in ends.iter_mut().zip(&mut cells).zip(&self.coordinates) {
+            *end = self.cells_near(x);
+            *cell = end[0];
         }
-        for corner in 0..1_usize << hashed {
-            let mut cells = [0; HASHED];
-            let mut repeated = false;
-            for axis in 0..hashed {
-                let side = corner >> axis & 1;
-                repeated |= side == 1 && ends[axis][0] == ends[axis][1];
-                cells[axis] = ends[axis][side];
-            }
-            if !repeated && visit(KEYS.hash_one(cells)) {
+        loop {
+            if visit(KEYS.hash_one(cells.map(Real::to_word))) {
                 return true;
             }
+            // The next combination, the first axis fastest.
+            let Some(axis) = (0..HASHED).find(|&axis| cells[axis] < ends[axis][1]) else {
+                return false;
+            };
+            cells[axis] = next_cell(cells[axis]).min(ends[axis][1]);
+            for earlier in 0..axis {
+                cells[earlier] = ends[earlier][0];
+            }
         }
-        false
     }
 }
 
@@ -122,21 +143,46 @@ impl<S: Real> Identity for Located<S> {
 mod tests {
     use super::*;
 
+    fn same_is_found<S: Real>() {
+        let mut rng = crate::SearchRng::new(7);
+        let mut same = 0;
+        for trial in 0..60_000 {
+            let dimension = 1 + trial % 5;
+            let separation = S::of([0.0, 1e-3, 0.5, 0.02, 1e-30, 1e300, f64::INFINITY][trial % 7]);
+            let size = S::of([1.0, 100.0, 1e6, 1e-3, 1e38][trial % 11 % 5]);
+            // Round numbers, where cells begin, and others.
+            let round = |x: S, rng: &mut crate::SearchRng| if rng.uniform() < 0.5 { x.round() } else { x };
+            let mut a = Vec::new();
+            let mut b = Vec::new();
+            for _ in 0..dimension {
+                let x = round(size * S::of(2.0 * rng.uniform() - 1.0), &mut rng);
+                let step = S::of(1.1 * rng.uniform().round() * (2.0 * rng.uniform() - 1.0));
+                a.push(x);
+                b.push(x + separation.min(size) * step);
+            }
+            let (a, b) = (Located::new(&a, separation), Located::new(&b, separation));
+            for (a, b) in [(&a, &b), (&b, &a)] {
+                let mut visited = 0;
+                let found = b.visit_keys(&mut |key| {
+                    visited += 1;
+                    key == a.key()
+                });
+                assert!(found || !a.same(b), "{a:?} {b:?}");
+                assert!(visited <= 27, "{visited} keys for {b:?}");
+                same += u32::from(a.same(b));
+            }
+        }
+        assert!(same > 50_000, "the test looks at {same} pairs that are the same");
+    }
+
     #[test]
     fn whatever_is_the_same_is_found_by_its_keys() {
-        let mut rng = crate::SearchRng::new(7);
-        for trial in 0..20_000 {
-            let dimension = 1 + trial % 5;
-            let separation = [0.0, 1e-3, 0.5][trial % 3];
-            let a: Vec<f64> = (0..dimension).map(|_| 2.0 * rng.uniform() - 1.0).collect();
-            let b: Vec<f64> = a
-                .iter()
-                .map(|x| x + separation * (2.0 * rng.uniform() - 1.0))
-                .collect();
-            let (a, b) = (Located::new(&a, separation), Located::new(&b, separation));
-            let found = b.visit_keys(&mut |key| key == a.key());
-            assert!(found || !a.same(&b), "{a:?} {b:?}");
-        }
+        same_is_found::<f64>();
+    }
+
+    #[test]
+    fn whatever_is_the_same_is_found_by_its_keys_in_f32() {
+        same_is_found::<f32>();
     }
 
     #[test]
