@@ -20,6 +20,7 @@ mod search;
 mod seed;
 pub mod space;
 pub mod state;
+pub mod testing;
 mod view;
 
 pub use archive::{Archive, Hit};

@@ -1,0 +1,191 @@
+//! What is run for each law.
+
+use super::probe::{Probe, Restored};
+use super::{LONG_RUN, Law, RUN, Suite};
+use crate::budget::Budget;
+use crate::engine::WarmStart;
+use crate::error::Error;
+use crate::identity::Located;
+use crate::report::Report;
+use crate::scalar::Real;
+use crate::search::Search;
+use crate::space::Space;
+use crate::testing::case::{Case, Poison, spaces};
+use crate::testing::{difference, difference_in_hits};
+
+impl<S: Real> Suite<'_, S> {
+    /// A run twice, and once with its proposals looked at.
+    pub(super) fn ordinary(&mut self, case: &Case<S>) -> Result<(), Error> {
+        let budget = Budget::evaluations(RUN);
+        let report = self.run(case, &budget)?;
+        let again = self.search()?.run(case, &budget)?;
+        self.say_if(Law::SameSeed, &case.name, difference(&report, &again));
+        let (probe, findings) = Probe::around((self.make)()?);
+        let probed = Search::new(probe).seed(42).run(case, &budget)?;
+        self.say_if(Law::Proposals, &case.name, findings.first());
+        self.say_if(
+            Law::SameSeed,
+            &case.name,
+            difference_in_hits(&report, &probed, RUN),
+        );
+        Ok(())
+    }
+
+    pub(super) fn budgets(&mut self) -> Result<(), Error> {
+        for evaluations in [1, 2, 7, 29, 30, 31, 64, 65, 1000] {
+            for case in spaces()? {
+                self.run(&case, &Budget::evaluations(evaluations))?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn prefixes(&mut self) -> Result<(), Error> {
+        for (case, twin) in spaces()?.into_iter().zip(spaces()?) {
+            let budget = |evaluations| {
+                let budget = Budget::evaluations(evaluations);
+                if self.scheduled {
+                    budget.with_horizon(4 * RUN)
+                } else {
+                    budget
+                }
+            };
+            let (short, long) = (budget(RUN), budget(4 * RUN));
+            let short = self.run(&case, &short)?;
+            let long = self.run(&twin, &long)?;
+            self.say_if(Law::Prefix, &case.name, difference_in_hits(&short, &long, RUN));
+            let common = |report: &Report<Located<S>>| -> Vec<_> {
+                let trace = report.trace.iter().map(|point| (point.evaluations, point.hits));
+                trace.filter(|&(evaluations, _)| evaluations < RUN).collect()
+            };
+            let (short, long) = (common(&short), common(&long));
+            if !long.starts_with(&short) {
+                self.say(Law::Prefix, &case.name, format!("traces {short:?} and {long:?}"));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn threads(&mut self) -> Result<(), Error> {
+        for mut case in spaces()? {
+            // Slow enough to be worth several threads.
+            case.work = 300;
+            let budget = Budget::evaluations(RUN / 2);
+            let one = self.run(&case, &budget)?;
+            for threads in [2, 3, 8] {
+                let many = self.search()?.threads(threads).run(&case, &budget)?;
+                let what = difference(&one, &many).map(|what| format!("{threads} threads: {what}"));
+                self.say_if(Law::Threads, &case.name, what);
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn poison(&mut self) -> Result<(), Error> {
+        let values = [S::nan(), S::infinity(), S::neg_infinity()];
+        let kinds: [fn(S) -> Poison<S>; 2] = [Poison::Third, Poison::Everywhere];
+        for poison in kinds {
+            for index in 0..spaces::<S>()?.len() {
+                let mut reports = Vec::new();
+                let healthy = spaces()?.swap_remove(index);
+                let healthy = self.run(&healthy, &Budget::evaluations(RUN))?;
+                for value in values {
+                    let case = spaces()?.swap_remove(index).poisoned(poison(value));
+                    let (probe, findings) = Probe::around((self.make)()?);
+                    let mut search = Search::new(probe).seed(42);
+                    let report = self.run_by(&mut search, &case, &Budget::evaluations(RUN))?;
+                    self.say_if(Law::Proposals, &case.name, findings.first());
+                    if report.counts.evaluations < healthy.counts.evaluations {
+                        self.say(
+                            Law::NonFinite,
+                            &case.name,
+                            format!("gave up after {} evaluations", report.counts.evaluations),
+                        );
+                    }
+                    if matches!(case.poison, Poison::Everywhere(_)) && report.hit_count() > 0 {
+                        self.say(Law::NonFinite, &case.name, "found hits where there are none");
+                    }
+                    reports.push((case.name, report));
+                }
+                for (name, report) in &reports[1..] {
+                    self.say_if(Law::NonFinite, name, difference(&reports[0].1, report));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn hit_counts(&mut self) -> Result<(), Error> {
+        for threshold in [0.1, 0.0, -3.0] {
+            let case = Case::new("an easy lattice", Space::lattice(2, 40)?, 0.1).with_threshold(threshold);
+            let report = self.run(&case, &Budget::evaluations(LONG_RUN))?;
+            let (found, all) = (report.hit_count() as u64, case.count());
+            if found * 4 < all || found > all {
+                self.say(Law::HitCount, &case.name, format!("{found} hits of {all}"));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn restoring(&mut self) -> Result<(), Error> {
+        for case in spaces()? {
+            let budget = Budget::evaluations(RUN);
+            let straight = self.search()?.run(&case, &budget)?;
+            for every in [1, 7] {
+                let (restored, findings) = Restored::around(self.make, every)?;
+                let report = Search::new(restored).seed(42).run(&case, &budget)?;
+                self.say_if(Law::Restore, &case.name, findings.first());
+                self.say_if(
+                    Law::Restore,
+                    &case.name,
+                    difference_in_hits(&straight, &report, RUN),
+                );
+                if straight.counts != report.counts {
+                    self.say(
+                        Law::Restore,
+                        &case.name,
+                        format!("{:?} and {:?}", straight.counts, report.counts),
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn slices(&mut self) -> Result<(), Error> {
+        for rule in [WarmStart::Cold, WarmStart::Engine, WarmStart::Verify] {
+            for index in 0..2 * spaces::<S>()?.len() {
+                let pick = || -> Result<Case<S>, Error> {
+                    let case = spaces()?.swap_remove(index / 2);
+                    Ok(if index % 2 == 0 {
+                        case
+                    } else {
+                        case.offering_nothing()
+                    })
+                };
+                let (first, moved, again) = (pick()?, pick()?.moved(0.02), pick()?.moved(0.02));
+                let mut twins = [self.search()?.warm_start(rule), self.search()?.warm_start(rule)];
+                let budget = Budget::evaluations(RUN);
+                let before = self.run_by(&mut twins[0], &first, &budget)?;
+                let after = self.run_by(&mut twins[0], &moved, &budget)?;
+                twins[1].run(&first, &budget)?;
+                let twin = twins[1].run(&again, &budget)?;
+                let name = format!("{}, {rule:?}", moved.name);
+                self.say_if(Law::Slices, &name, difference(&after, &twin));
+                let wanted = if rule == WarmStart::Verify {
+                    before.hit_count() as u64
+                } else {
+                    0
+                };
+                if after.counts.verified != wanted.min(RUN) {
+                    self.say(
+                        Law::Slices,
+                        &name,
+                        format!("{} of {wanted} hits verified", after.counts.verified),
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,78 @@
+//! For authors of engines and of problems: suites that say which laws are broken, and a comparison of reports.
+
+use core::fmt::Debug;
+
+use crate::report::Report;
+
+mod case;
+pub mod engine;
+pub mod problem;
+
+/// A law that something under test broke.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Violation<L> {
+    /// Which one.
+    pub law: L,
+    /// Where: what was run, or which point was looked at.
+    pub case: String,
+    /// What was seen.
+    pub what: String,
+}
+
+impl<L: Debug> core::fmt::Display for Violation<L> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{:?} broken on {}: {}", self.law, self.case, self.what)
+    }
+}
+
+/// The first difference between two reports, times aside; `None` where they tell the same.
+///
+/// Under a time budget, traces and counts differ of course.
+#[must_use]
+pub fn difference<T: PartialEq + Debug>(a: &Report<T>, b: &Report<T>) -> Option<String> {
+    let budget = |r: &Report<T>| {
+        (
+            r.budget.evaluations,
+            r.budget.hits,
+            r.budget.horizon,
+            r.budget.time,
+        )
+    };
+    let trace = |r: &Report<T>| -> Vec<_> { r.trace.iter().map(|p| (p.evaluations, p.hits)).collect() };
+    differ("problem", &a.problem, &b.problem)
+        .or_else(|| differ("engine", &a.engine, &b.engine))
+        .or_else(|| differ("scalar", &a.scalar, &b.scalar))
+        .or_else(|| differ("seed", &a.seed, &b.seed))
+        .or_else(|| differ("slice", &a.slice, &b.slice))
+        .or_else(|| differ("budget", &budget(a), &budget(b)))
+        .or_else(|| difference_in_hits(a, b, u64::MAX))
+        .or_else(|| differ("counts", &a.counts, &b.counts))
+        .or_else(|| differ("trace", &trace(a), &trace(b)))
+        .or_else(|| differ("stop reason", &a.stop_reason, &b.stop_reason))
+        .or_else(|| differ("completeness", &a.completeness, &b.completeness))
+}
+
+fn differ<V: PartialEq + Debug>(what: &str, a: &V, b: &V) -> Option<String> {
+    (a != b).then(|| format!("{what}: {a:?} and {b:?}"))
+}
+
+/// The first difference between the hits of two reports up to an evaluation.
+fn difference_in_hits<T: PartialEq + Debug>(a: &Report<T>, b: &Report<T>, until: u64) -> Option<String> {
+    let mut hits = [a, b].map(|report| report.hits().take_while(move |hit| hit.evaluation <= until));
+    for number in 1.. {
+        match hits.each_mut().map(Iterator::next) {
+            [None, None] => break,
+            [Some(a), Some(b)] if a.solution == b.solution && a.evaluation == b.evaluation => {}
+            [a, b] => {
+                let show = |hit: Option<crate::Hit<'_, T>>| {
+                    hit.map_or_else(
+                        || "none".to_owned(),
+                        |hit| format!("{:?} at evaluation {}", hit.solution, hit.evaluation),
+                    )
+                };
+                return Some(format!("hit {number}: {} and {}", show(a), show(b)));
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,228 @@
+//! The conformance suite over every engine of the registry, and over broken ones that it has to find out.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use core::sync::atomic::{AtomicUsize, Ordering};
+
+use satisfice::engine::{self, Ask, Named, Origin};
+use satisfice::state::{Part, Reader, State};
+use satisfice::testing::engine::{Law, check, check_entry};
+use satisfice::{Batch, Context, Engine, Error, Outcome, SearchRng, saved_fields};
+
+type Settings = &'static [(&'static str, &'static str)];
+
+/// Settings worth a run of their own, beside the defaults of every engine, and whether they search at all: one particle is its
+/// own mean and attractor and stays where it is, and without a well (alpha = 0) a swarm collapses.
+const SETTINGS: &[(&str, Settings, bool)] = &[
+    ("random", &[("batch", "1")], true),
+    ("latest-hit-qpso", &[("particles", "1")], false),
+    ("latest-hit-qpso", &[("batch", "30")], true),
+    ("latest-hit-qpso", &[("alpha", "10")], true),
+    ("latest-hit-qpso", &[("alpha", "0")], false),
+    (
+        "qpso",
+        &[("alpha", "1"), ("alpha-end", "0.5"), ("batch", "7")],
+        true,
+    ),
+    (
+        "pso",
+        &[("particles", "64"), ("batch", "64"), ("deletion", "yes")],
+        true,
+    ),
+    ("spso-2011", &[("batch", "40"), ("informed", "0")], true),
+    ("walk", &[("uniform", "0.5")], true),
+    ("descent", &[("step", "1"), ("shortest", "1")], true),
+];
+
+#[test]
+fn every_engine_keeps_the_laws() {
+    let defaults = engine::all()
+        .iter()
+        .map(|entry| (entry.name, Settings::default(), true));
+    for (name, settings, searches) in defaults.chain(SETTINGS.iter().copied()) {
+        let mut violations = check_entry(engine::find(name).unwrap(), settings).unwrap();
+        violations.retain(|violation| searches || violation.law != Law::HitCount);
+        let listed: Vec<String> = violations.iter().take(10).map(ToString::to_string).collect();
+        assert!(
+            violations.is_empty(),
+            "{name} {settings:?}: {} violations\n{}",
+            violations.len(),
+            listed.join("\n")
+        );
+    }
+}
+
+#[test]
+fn every_default_is_in_its_range_and_every_engine_says_where_it_comes_from() {
+    for entry in engine::all() {
+        assert!(entry.build::<f64>([]).is_ok(), "{}", entry.name);
+        assert!(!entry.summary.is_empty() && !entry.reference.is_empty());
+        assert_eq!(engine::find(entry.name).unwrap().name, entry.name);
+    }
+    let mut names: Vec<_> = engine::all().iter().map(|entry| entry.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), engine::all().len(), "a name twice");
+}
+
+/// The laws that an engine is found to break.
+fn broken(make: &mut dyn FnMut() -> Result<Named<f64>, Error>) -> Vec<Law> {
+    let violations = check(false, make).unwrap();
+    let mut laws = Vec::new();
+    for violation in violations {
+        if !laws.contains(&violation.law) {
+            laws.push(violation.law);
+        }
+    }
+    laws
+}
+
+/// What an engine of these tests does wrong.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Fault {
+    None,
+    ProposesNaN,
+    ProposesTwoCoordinates,
+    ForgetsWhenSaved,
+    AcceptsShortStates,
+    FollowsTheBudget,
+    RemembersOtherRuns,
+    GivesUpOnNaN,
+    StandsStill,
+    SaysCovered,
+    ProposesNothing,
+}
+
+/// Uniform sampling, half of it round the best point so far; with a fault.
+struct Faulty {
+    fault: Fault,
+    best: Vec<f64>,
+    fitness: f64,
+    gave_up: bool,
+}
+
+static RUNS: AtomicUsize = AtomicUsize::new(0);
+
+impl Faulty {
+    fn named(fault: Fault) -> Named<f64> {
+        let engine = Self {
+            fault,
+            best: Vec::new(),
+            fitness: f64::INFINITY,
+            gave_up: false,
+        };
+        Named::new("faulty", engine)
+    }
+}
+
+impl Engine<f64> for Faulty {
+    fn begin(&mut self, _: &dyn Context<f64>) {
+        self.best.clear();
+        self.fitness = f64::INFINITY;
+        self.gave_up = false;
+        RUNS.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn ask(&mut self, context: &dyn Context<f64>, rng: &mut SearchRng, out: &mut Batch<f64>) -> Ask {
+        if self.gave_up {
+            return Ask::Exhausted;
+        }
+        let space = context.space();
+        let share = match self.fault {
+            Fault::FollowsTheBudget => context.elapsed_share(),
+            Fault::RemembersOtherRuns => RUNS.load(Ordering::Relaxed) as f64 * 0.37 % 1.0,
+            _ => 0.5,
+        };
+        match self.fault {
+            Fault::ProposesTwoCoordinates => out.push(&[space.axes()[0].lower(), 0.0]),
+            Fault::ProposesNaN if rng.uniform() < 0.1 => out.push_with(|x| x.fill(f64::NAN)),
+            Fault::StandsStill => out.push_with(|x| x.copy_from_slice(&space.region().lower)),
+            Fault::ProposesNothing => {}
+            _ => out.push_with(|x| {
+                rng.position(space, x);
+                if rng.uniform() < share {
+                    for (x, best) in x.iter_mut().zip(&self.best) {
+                        *x = (*x + best) / 2.0;
+                    }
+                }
+            }),
+        }
+        if self.fault == Fault::SaysCovered {
+            Ask::Covered
+        } else {
+            Ask::More
+        }
+    }
+
+    fn tell(&mut self, _: &dyn Context<f64>, batch: &Batch<f64>, outcomes: &[Outcome<f64>], _: Origin) {
+        for (point, outcome) in batch.points().zip(outcomes) {
+            if outcome.fitness() < self.fitness {
+                self.fitness = outcome.fitness();
+                self.best = point.to_vec();
+            }
+            if self.fault == Fault::GivesUpOnNaN && *outcome == Outcome::NonFinite {
+                self.gave_up = true;
+            }
+        }
+    }
+
+    fn save(&self, state: &mut State) {
+        if self.fault != Fault::ForgetsWhenSaved {
+            Part::save(&self.best, state);
+        }
+        Part::save(&self.fitness, state);
+        Part::save(&self.gave_up, state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        if self.fault != Fault::ForgetsWhenSaved {
+            self.best = from.read()?;
+        }
+        self.fitness = from.read()?;
+        let last = from.read();
+        self.gave_up = if self.fault == Fault::AcceptsShortStates {
+            last.unwrap_or_default()
+        } else {
+            last?
+        };
+        Ok(())
+    }
+}
+
+#[test]
+fn a_broken_engine_is_found_out() {
+    for (fault, expected) in [
+        (Fault::None, None),
+        (Fault::ProposesNaN, Some(Law::Proposals)),
+        (Fault::ProposesTwoCoordinates, Some(Law::Proposals)),
+        (Fault::ForgetsWhenSaved, Some(Law::Restore)),
+        (Fault::AcceptsShortStates, Some(Law::Restore)),
+        (Fault::FollowsTheBudget, Some(Law::Prefix)),
+        (Fault::RemembersOtherRuns, Some(Law::SameSeed)),
+        (Fault::GivesUpOnNaN, Some(Law::NonFinite)),
+        (Fault::StandsStill, Some(Law::HitCount)),
+        (Fault::SaysCovered, Some(Law::Covered)),
+        (Fault::ProposesNothing, Some(Law::HitCount)),
+    ] {
+        let laws = broken(&mut || Ok(Faulty::named(fault)));
+        match expected {
+            Some(law) => assert!(laws.contains(&law), "{fault:?}: {laws:?}"),
+            None => assert_eq!(laws, []),
+        }
+    }
+}
+
+#[test]
+fn an_engine_of_ten_lines_keeps_the_laws() {
+    struct Uniform;
+    impl Engine<f64> for Uniform {
+        fn begin(&mut self, _: &dyn Context<f64>) {}
+        fn ask(&mut self, context: &dyn Context<f64>, rng: &mut SearchRng, out: &mut Batch<f64>) -> Ask {
+            out.push_with(|x| rng.position(context.space(), x));
+            Ask::More
+        }
+        fn tell(&mut self, _: &dyn Context<f64>, _: &Batch<f64>, _: &[Outcome<f64>], _: Origin) {}
+        saved_fields!();
+    }
+    assert_eq!(broken(&mut || Ok(Named::new("uniform", Uniform))), []);
+}

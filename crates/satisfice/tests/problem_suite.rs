@@ -1,0 +1,196 @@
+//! The suite for problems over the framework's own, and over broken ones that it has to find out.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use satisfice::testing::problem::{Law, check};
+use satisfice::{Axis, Region, SatisficingProblem, Space, from_fn};
+
+#[test]
+fn closures_keep_the_laws_in_either_scalar_and_on_any_space() {
+    let lattice = from_fn(Space::lattice(3, 7).unwrap(), 2.0, |x: &[f64]| x[0] + x[1] - x[2]);
+    assert_eq!(check(&lattice, 1), []);
+    let square = from_fn(Space::cube(2, -1.0, 1.0).unwrap(), 0.1, |x: &[f32]| {
+        x[0].hypot(x[1])
+    });
+    assert_eq!(check(&square, 2), []);
+    let mixed = Space::new([
+        Axis::integer(-3, 3),
+        Axis::continuous(0.0, 1e-9),
+        Axis::continuous(5.0, 5.0),
+    ]);
+    let mixed = from_fn(mixed.unwrap(), 0.0, |x: &[f64]| {
+        if x[0] == 0.0 { f64::NAN } else { x[1] / x[0] }
+    });
+    assert_eq!(check(&mixed, 3), []);
+}
+
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Fault {
+    None,
+    ThresholdIsNaN,
+    DecodeIntoForgets,
+    FitnessCounts,
+    FitnessAllIsRounded,
+    EncodeLeavesTheSpace,
+    EncodeIsOffByOne,
+    NeighboursLeaveTheSpace,
+    NeighboursAlternate,
+    BoundIsTooHigh,
+    BoundIsNaN,
+    RepresentativeIsNoHit,
+    RepresentativesWander,
+}
+
+/// The points of a lattice below a line, with a fault.
+struct Faulty {
+    space: Space<f64>,
+    fault: Fault,
+    calls: AtomicU32,
+}
+
+impl Faulty {
+    fn count(&self) -> u32 {
+        self.calls.fetch_add(1, Ordering::Relaxed)
+    }
+}
+
+impl SatisficingProblem for Faulty {
+    type Scalar = f64;
+    type Solution = [i64; 2];
+    fn space(&self) -> &Space<f64> {
+        &self.space
+    }
+    fn decode(&self, values: &[f64]) -> [i64; 2] {
+        [values[0] as i64, values[1] as i64]
+    }
+    fn decode_into(&self, values: &[f64], solution: &mut [i64; 2]) {
+        solution[0] = values[0] as i64;
+        if self.fault != Fault::DecodeIntoForgets {
+            solution[1] = values[1] as i64;
+        }
+    }
+    fn fitness(&self, &[a, b]: &[i64; 2]) -> f64 {
+        let count = if self.fault == Fault::FitnessCounts {
+            self.count()
+        } else {
+            0
+        };
+        (a + b) as f64 / 3.0 + f64::from(count)
+    }
+    fn fitness_all(&self, solutions: &[[i64; 2]], fitness: &mut [f64]) {
+        for (solution, f) in solutions.iter().zip(fitness) {
+            *f = self.fitness(solution);
+            if self.fault == Fault::FitnessAllIsRounded {
+                *f = f64::from(*f as f32);
+            }
+        }
+    }
+    fn threshold(&self) -> f64 {
+        if self.fault == Fault::ThresholdIsNaN {
+            f64::NAN
+        } else {
+            3.0
+        }
+    }
+    fn encode(&self, &[a, b]: &[i64; 2], values: &mut [f64]) -> bool {
+        values.copy_from_slice(&[a as f64, b as f64]);
+        match self.fault {
+            Fault::EncodeLeavesTheSpace => values[0] -= 1.0,
+            Fault::EncodeIsOffByOne if a > 0 => values[0] -= 1.0,
+            _ => {}
+        }
+        true
+    }
+    fn neighbours(&self, &[a, b]: &[i64; 2], visit: &mut dyn FnMut([i64; 2])) -> bool {
+        if self.fault == Fault::NeighboursAlternate && self.count() % 2 == 1 {
+            return true;
+        }
+        if a < 19 || self.fault == Fault::NeighboursLeaveTheSpace {
+            visit([a + 1, b]);
+        }
+        true
+    }
+    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+        Some(match self.fault {
+            Fault::BoundIsTooHigh => (region.upper[0] + region.lower[1]) / 3.0,
+            Fault::BoundIsNaN => f64::NAN,
+            _ => (region.lower[0] + region.lower[1]) / 3.0,
+        })
+    }
+    fn canonical(&self, hit: [i64; 2]) -> [i64; 2] {
+        match self.fault {
+            Fault::RepresentativeIsNoHit => [19, 19],
+            Fault::RepresentativesWander => [hit[0], (hit[1] - 1).max(0)],
+            _ => hit,
+        }
+    }
+}
+
+#[test]
+fn a_broken_problem_is_found_out() {
+    for (fault, expected) in [
+        (Fault::None, None),
+        (Fault::ThresholdIsNaN, Some(Law::Threshold)),
+        (Fault::DecodeIntoForgets, Some(Law::Decode)),
+        (Fault::FitnessCounts, Some(Law::Fitness)),
+        (Fault::FitnessAllIsRounded, Some(Law::Fitness)),
+        (Fault::EncodeLeavesTheSpace, Some(Law::Encode)),
+        (Fault::EncodeIsOffByOne, Some(Law::Encode)),
+        (Fault::NeighboursLeaveTheSpace, Some(Law::Neighbours)),
+        (Fault::NeighboursAlternate, Some(Law::Neighbours)),
+        (Fault::BoundIsTooHigh, Some(Law::LowerBound)),
+        (Fault::BoundIsNaN, Some(Law::LowerBound)),
+        (Fault::RepresentativeIsNoHit, Some(Law::Canonical)),
+        (Fault::RepresentativesWander, Some(Law::Canonical)),
+    ] {
+        let problem = Faulty {
+            space: Space::lattice(2, 20).unwrap(),
+            fault,
+            calls: AtomicU32::new(0),
+        };
+        let laws: Vec<Law> = check(&problem, 7).iter().map(|violation| violation.law).collect();
+        match expected {
+            Some(law) => assert!(laws.contains(&law), "{fault:?}: {laws:?}"),
+            None => assert_eq!(laws, []),
+        }
+    }
+}
+
+/// Near is not the same as equal: a sameness that is not symmetric loses hits.
+#[test]
+fn a_one_sided_sameness_is_found_out() {
+    #[derive(Clone)]
+    struct OneSided(f64);
+    impl satisfice::Identity for OneSided {
+        fn key(&self) -> u64 {
+            0
+        }
+        fn same(&self, other: &Self) -> bool {
+            self.0 >= other.0
+        }
+    }
+    struct Problem(Space<f64>);
+    impl SatisficingProblem for Problem {
+        type Scalar = f64;
+        type Solution = OneSided;
+        fn space(&self) -> &Space<f64> {
+            &self.0
+        }
+        fn decode(&self, values: &[f64]) -> OneSided {
+            OneSided(values[0])
+        }
+        fn fitness(&self, solution: &OneSided) -> f64 {
+            solution.0
+        }
+        fn threshold(&self) -> f64 {
+            0.0
+        }
+    }
+    let laws: Vec<Law> = check(&Problem(Space::cube(1, 0.0, 1.0).unwrap()), 1)
+        .iter()
+        .map(|violation| violation.law)
+        .collect();
+    assert_eq!(laws, [Law::Identity]);
+}
