@@ -37,16 +37,16 @@ use super::vector::{cross, dot, exponent, ldexp, scale, sub};
 use super::{Point, Threshold};
 
 /// 1 + 8u.
-const ABOVE_ONE: f64 = 1.0 + 8.0 * (f64::EPSILON / 2.0);
+pub(super) const ABOVE_ONE: f64 = 1.0 + 8.0 * (f64::EPSILON / 2.0);
 /// 16u: the error of a gap in units of `rho |v|_1`.
-const GAP_ERROR: f64 = 8.0 * f64::EPSILON;
+pub(super) const GAP_ERROR: f64 = 8.0 * f64::EPSILON;
 /// 64u: the error of an upper bound in units of `rho`.
-const SPAN_ERROR: f64 = 32.0 * f64::EPSILON;
+pub(super) const SPAN_ERROR: f64 = 32.0 * f64::EPSILON;
 /// 2^-300, the least gap that is believed.
 pub(super) const LEAST_GAP: f64 = f64::from_bits((1023 - 300) << 52);
 /// 2^-100 and 2^100, between which `rho` needs no scaling.
-const LEAST_RHO: f64 = f64::from_bits((1023 - 100) << 52);
-const GREATEST_RHO: f64 = f64::from_bits((1023 + 100) << 52);
+pub(super) const LEAST_RHO: f64 = f64::from_bits((1023 - 100) << 52);
+pub(super) const GREATEST_RHO: f64 = f64::from_bits((1023 + 100) << 52);
 
 /// What a certificate says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,17 +103,17 @@ impl<const M: usize, const N: usize> Frame<M, N> {
         let origin = a[0];
         let a = a.map(|p| sub(p, origin));
         let b = b.map(|p| sub(p, origin));
-        // The maximum over bit patterns, unlike `f64::max`, keeps NaN and infinity visible.
-        let mut rho = 0;
+        // A chain an axis; NaN passes unseen here and is caught where a difference of points is judged.
+        let mut most = [0.0_f64; 3];
         for p in a[1..].iter().chain(&b) {
-            for x in p {
-                rho = rho.max(x.to_bits() & !(1 << 63));
+            for k in 0..3 {
+                most[k] = greatest(most[k], p[k].abs());
             }
         }
         Self {
             a,
             b,
-            rho: f64::from_bits(rho),
+            rho: greatest(greatest(most[0], most[1]), most[2]),
             exponent: 0,
         }
     }
@@ -161,6 +161,12 @@ impl<const M: usize, const N: usize> Frame<M, N> {
             squared_above,
             reach,
         }
+    }
+
+    /// Whether a coordinate is NaN. Every difference of points then has a NaN (even a weight of 0 passes it on), so
+    /// that no certificate speaks; this is asked afterwards.
+    pub(super) fn has_nan(&self) -> bool {
+        self.a.iter().chain(&self.b).flatten().any(|x| x.is_nan())
     }
 
     /// `min v.a - max v.b` as computed.
@@ -214,6 +220,12 @@ impl Limits {
     pub(super) fn is_within(&self, squared: f64) -> bool {
         squared * ABOVE_ONE < self.reach
     }
+}
+
+/// The greater of two numbers, one instruction; `x` if `y` is NaN.
+#[inline(always)]
+fn greatest(x: f64, y: f64) -> f64 {
+    if y > x { y } else { x }
 }
 
 /// The lesser of two numbers, one instruction; the operands are finite.

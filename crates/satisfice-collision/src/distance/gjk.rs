@@ -19,10 +19,7 @@ pub(super) fn filter<const M: usize, const N: usize>(frame: &Frame<M, N>, limits
     if limits.is_within(squared) {
         return Verdict::Within;
     }
-    let mut simplex = Simplex {
-        w: [[0.0; 3]; 4],
-        len: 0,
-    };
+    let mut simplex = Simplex { w: [v; 4], len: 1 };
     for _ in 0..STEPS {
         let (gap, w) = support(frame, v);
         if frame.is_apart(gap, v, squared, limits) {

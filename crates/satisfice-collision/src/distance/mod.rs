@@ -22,6 +22,7 @@
 //! # Ok::<(), satisfice_collision::Error>(())
 //! ```
 
+mod batch;
 mod candidates;
 pub mod edge_edge;
 pub mod edge_triangle;
@@ -30,6 +31,7 @@ mod extended;
 mod frame;
 mod gjk;
 mod kind;
+mod lanes;
 mod resolve;
 mod threshold;
 pub mod triangle_triangle;
@@ -38,6 +40,7 @@ pub mod vertex_edge;
 pub mod vertex_triangle;
 pub mod vertex_vertex;
 
+pub use batch::TriangleBatch;
 pub use edge_edge::EdgeEdge;
 pub use edge_triangle::EdgeTriangle;
 pub use kind::{FeaturePair, PairKind};

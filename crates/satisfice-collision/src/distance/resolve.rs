@@ -55,6 +55,12 @@ fn decide_in_band<const M: usize, const N: usize>(
     limits: &Limits,
     threshold: Threshold,
 ) -> Decision {
+    if frame.has_nan() {
+        return Decision {
+            within: false,
+            by: DecidedBy::NotFinite,
+        };
+    }
     if pierced(frame).is_some() {
         return Decision {
             within: true,
@@ -81,6 +87,10 @@ fn decide_in_band<const M: usize, const N: usize>(
 
 pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Proximity {
     let frame = match Frame::new(a, b) {
+        Ok(frame) if frame.has_nan() => Err(NoFrame::NotFinite),
+        other => other,
+    };
+    let frame = match frame {
         Ok(frame) => frame,
         Err(NoFrame::Coincident) => {
             return assemble(a, b, 0.0, [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], DecidedBy::Filter);
