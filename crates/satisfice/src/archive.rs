@@ -19,7 +19,20 @@ pub struct Archive<T> {
     evaluations: Vec<u64>,
     seconds: Vec<f32>,
     table: HashTable<u32>,
+    /// Hits of probes that the engine has not found itself: [`Archive::contains`] does not see them.
+    hidden: HashTable<u32>,
     filter: Vec<u64>,
+}
+
+/// What became of a hit that was handed to an archive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Entered {
+    /// It was new.
+    New,
+    /// Only a probe had found it; now the engine has, too.
+    Revealed,
+    /// It was known.
+    Known,
 }
 
 impl<T> Default for Archive<T> {
@@ -29,6 +42,7 @@ impl<T> Default for Archive<T> {
             evaluations: Vec::new(),
             seconds: Vec::new(),
             table: HashTable::new(),
+            hidden: HashTable::new(),
             filter: Vec::new(),
         }
     }
@@ -52,6 +66,12 @@ impl<T> Archive<T> {
     #[must_use]
     pub fn len(&self) -> usize {
         self.solutions.len()
+    }
+
+    /// Number of hits that only probes have found.
+    #[inline]
+    pub(crate) fn hidden(&self) -> usize {
+        self.hidden.len()
     }
 
     /// Whether there is none.
@@ -102,6 +122,7 @@ impl<T> Archive<T> {
         self.evaluations.capacity() * 8
             + self.seconds.capacity() * 4
             + self.table.allocation_size()
+            + self.hidden.allocation_size()
             + self.filter.capacity() * 8
             + (self.solutions.capacity() - self.solutions.len()) * size_of::<T>()
     }
@@ -128,26 +149,96 @@ impl<T: Identity> Archive<T> {
     ///
     /// At 2^32 - 1 hits, the archive is full and takes no more.
     pub fn insert(&mut self, solution: T, evaluation: u64, seconds: f64) -> bool {
-        let Ok(index) = u32::try_from(self.solutions.len()) else {
-            return false;
-        };
+        self.enter(solution, evaluation, seconds, false) == Entered::New
+    }
+
+    /// The same for a hit of the engine or of a probe. That of a probe is listed, but hidden from
+    /// [`contains`](Archive::contains) until the engine finds it, too, or the archive comes to rest.
+    pub(crate) fn enter(&mut self, solution: T, evaluation: u64, seconds: f64, probe: bool) -> Entered {
         if self.contains(&solution) {
-            return false;
+            return Entered::Known;
         }
+        if let Some(index) = self.position_hidden(&solution) {
+            if probe {
+                return Entered::Known;
+            }
+            self.reveal(index);
+            return Entered::Revealed;
+        }
+        let Ok(index) = u32::try_from(self.solutions.len()) else {
+            return Entered::Known;
+        };
         let key = solution.key();
         self.solutions.push(solution);
         self.evaluations.push(evaluation);
         #[expect(clippy::cast_possible_truncation, reason = "7 digits of a time are plenty")]
         self.seconds.push(seconds as f32);
         let solutions = &self.solutions;
+        let rehash = |&i: &u32| solutions[i as usize].key();
+        if probe {
+            self.hidden.insert_unique(key, index, rehash);
+        } else {
+            self.table.insert_unique(key, index, rehash);
+            self.note(key);
+        }
+        Entered::New
+    }
+
+    /// Where a solution that is the same is, hidden or not.
+    pub(crate) fn position(&self, solution: &T) -> Option<usize> {
+        let mut found = None;
+        solution.visit_keys(&mut |key| {
+            found = self
+                .table
+                .find(key, |&i| self.solutions[i as usize].same(solution))
+                .copied();
+            found.is_some()
+        });
+        found
+            .or_else(|| self.position_hidden(solution))
+            .map(|index| index as usize)
+    }
+
+    fn position_hidden(&self, solution: &T) -> Option<u32> {
+        if self.hidden.is_empty() {
+            return None;
+        }
+        let mut found = None;
+        solution.visit_keys(&mut |key| {
+            found = self
+                .hidden
+                .find(key, |&i| self.solutions[i as usize].same(solution))
+                .copied();
+            found.is_some()
+        });
+        found
+    }
+
+    /// Whether only a probe has found hit `index`.
+    pub(crate) fn is_hidden(&self, index: usize) -> bool {
+        !self.hidden.is_empty()
+            && self.solutions.get(index).is_some_and(|solution| {
+                self.hidden
+                    .find(solution.key(), |&i| i as usize == index)
+                    .is_some()
+            })
+    }
+
+    fn reveal(&mut self, index: u32) {
+        let key = self.solutions[index as usize].key();
+        if let Ok(entry) = self.hidden.find_entry(key, |&i| i == index) {
+            entry.remove();
+        }
+        let solutions = &self.solutions;
         self.table
             .insert_unique(key, index, |&i| solutions[i as usize].key());
         self.note(key);
-        true
     }
 
-    /// Gives back memory that is kept for growth and for speed.
+    /// Gives back memory that is kept for growth and for speed, and hides nothing any more.
     pub fn rest(&mut self) {
+        let hidden = core::mem::take(&mut self.hidden);
+        hidden.into_iter().for_each(|index| self.reveal(index));
         self.solutions.shrink_to_fit();
         self.evaluations.shrink_to_fit();
         self.seconds.shrink_to_fit();

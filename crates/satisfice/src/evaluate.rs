@@ -7,7 +7,7 @@ use core::time::Duration;
 
 use num_traits::Float;
 
-use crate::archive::Archive;
+use crate::archive::{Archive, Entered};
 use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::clock::{Alarm, Clock};
@@ -70,6 +70,8 @@ pub(crate) struct Candidates<S, T> {
     done: Vec<bool>,
     /// One for each point of the batch.
     pub(crate) outcomes: Vec<Outcome<S>>,
+    /// Whether they are uniform probes, whose hits the engine does not see.
+    pub(crate) probing: bool,
     values: Vec<S>,
     /// Whether found solutions are deleted from the space, as far as the engine is concerned.
     deletes: bool,
@@ -84,6 +86,7 @@ impl<S: Real, T> Default for Candidates<S, T> {
             fitness: Vec::new(),
             done: Vec::new(),
             outcomes: Vec::new(),
+            probing: false,
             values: Vec::new(),
             deletes: true,
         }
@@ -424,16 +427,20 @@ impl Ledger {
         } else if fitness < threshold {
             let solution = problem.canonical(candidates.solutions[slot].clone());
             let seconds = self.clock.elapsed().as_secs_f64();
-            if !archive.insert(solution, self.counts.evaluations, seconds) {
-                // The same as an earlier one of this batch, or its representative is known.
-                self.counts.duplicates += 1;
-                return if candidates.deletes {
-                    Outcome::Deleted
-                } else {
-                    Outcome::Known(fitness)
-                };
+            match archive.enter(solution, self.counts.evaluations, seconds, candidates.probing) {
+                Entered::New => self.greet(archive, observer),
+                // News to the engine only.
+                Entered::Revealed => self.counts.duplicates += 1,
+                Entered::Known => {
+                    // The same as an earlier one of this batch, or its representative is known.
+                    self.counts.duplicates += 1;
+                    return if candidates.deletes {
+                        Outcome::Deleted
+                    } else {
+                        Outcome::Known(fitness)
+                    };
+                }
             }
-            self.greet(archive, observer);
             Outcome::Hit(fitness)
         } else {
             Outcome::Miss(fitness)

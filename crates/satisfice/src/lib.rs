@@ -2,6 +2,7 @@
 
 pub mod archive;
 pub mod batch;
+mod binomial;
 pub mod budget;
 mod clock;
 pub mod context;
@@ -13,6 +14,7 @@ pub mod identity;
 pub mod interval;
 pub mod observer;
 pub mod parameter;
+mod probes;
 pub mod problem;
 pub mod report;
 mod scalar;
@@ -21,6 +23,7 @@ mod seed;
 pub mod space;
 pub mod state;
 pub mod testing;
+mod unseen;
 mod view;
 
 pub use archive::{Archive, Hit};
@@ -38,3 +41,4 @@ pub use scalar::Real;
 pub use search::Search;
 pub use seed::SearchRng;
 pub use space::{Axis, AxisKind, Boundary, Region, Space};
+pub use unseen::{Method, Unseen};

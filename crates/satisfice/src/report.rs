@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::archive::{Archive, Hit};
 use crate::budget::{Budget, StopReason};
 use crate::problem::Description;
+use crate::unseen::Unseen;
 
 /// How complete the hits are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +44,9 @@ pub struct Counts {
     pub non_finite: u64,
     /// Hits of the slice before that were evaluated anew at the start of this one.
     pub verified: u64,
+    /// Uniform probes among the evaluations.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub probes: u64,
     /// Calls of the problem's neighbours.
     pub neighbour_calls: u64,
     /// Calls of the problem's bounds.
@@ -75,6 +79,9 @@ pub struct Report<T> {
     pub slice: u64,
     /// The budget.
     pub budget: Budget,
+    /// The share of the evaluations spent on uniform probes.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub probe_share: f64,
     /// Why it ended.
     pub stop_reason: StopReason,
     /// What was counted.
@@ -85,6 +92,9 @@ pub struct Report<T> {
     pub overshoot: Duration,
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
+    /// How many hits are missing, estimated; `None` where nothing was probed or proved.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub unseen: Option<Unseen>,
     /// |C| at fixed evaluation counts (some ten a decade) and, under a time budget, at each hundredth of it.
     pub trace: Vec<TracePoint>,
     /// The version of this crate.
@@ -127,6 +137,12 @@ impl<T> core::fmt::Display for Report<T> {
             self.seed,
             self.stop_reason,
             self.completeness,
-        )
+        )?;
+        match &self.unseen {
+            Some(unseen) if self.completeness == Completeness::Unknown => {
+                write!(f, ", some {unseen} hits not seen")
+            }
+            _ => Ok(()),
+        }
     }
 }

@@ -10,10 +10,12 @@ use crate::error::Error;
 use crate::evaluate::{Candidates, Ledger, Threads};
 use crate::identity::Identity;
 use crate::observer::Observer;
+use crate::probes::Probes;
 use crate::problem::{Description, SatisficingProblem};
 use crate::report::{Completeness, Report};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
+use crate::unseen::Unseen;
 use crate::view::{Calls, Scratches, View};
 
 /// An engine that asks for more this often without proposing anything has nothing to propose.
@@ -47,6 +49,7 @@ pub struct Search<S, T> {
     seed: u64,
     threads: usize,
     warm_start: Option<WarmStart>,
+    probes: Option<f64>,
     rng: SearchRng,
     slices: u64,
     dimension: Option<usize>,
@@ -61,6 +64,7 @@ struct Slice<S, T> {
     archive: Archive<T>,
     batch: Batch<S>,
     candidates: Candidates<S, T>,
+    probes: Probes,
     origin: Origin,
     /// How many hits of the slice before have been verified, or all of them where none is to be.
     verified: usize,
@@ -86,6 +90,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             seed: 0,
             threads: 1,
             warm_start: None,
+            probes: None,
             rng: SearchRng::new(0),
             slices: 0,
             dimension: None,
@@ -119,6 +124,30 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         self
     }
 
+    /// The share of the evaluations to spend on uniform probes, from 0 (none) to 0.5; by default as the engine wants it,
+    /// which is 0 for every engine from the literature.
+    ///
+    /// From the probes the report [estimates the hits not seen](crate::Report::unseen), with an interval. Their hits enter C,
+    /// but the engine is not told of them: its own sequence of points stays as it is without probes.
+    ///
+    /// ```
+    /// use satisfice::{engine, from_fn, Budget, Search, Space};
+    /// // 21 lattice points of a disc, in a space of 10^4.
+    /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let mut search = Search::new(engine::build("random")?).seed(1).probes(0.2);
+    /// let report = search.run(&problem, &Budget::evaluations(5_000))?;
+    /// let unseen = report.unseen.expect("1,000 probes were made");
+    /// let (lower, upper) = unseen.interval;
+    /// let truth = 21.0 - report.hit_count() as f64;
+    /// assert!(lower <= truth && truth <= upper.expect("a lattice is finite"), "{unseen}");
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn probes(mut self, share: f64) -> Self {
+        self.probes = Some(share);
+        self
+    }
+
     /// Forgets the hits so far: the next slice starts cold.
     pub fn clear(&mut self) {
         self.previous = Arc::default();
@@ -128,6 +157,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
     ///
     /// # Errors
     /// [`Error::Budget`] for a budget that is empty or zero, [`Error::Threshold`] for a threshold of NaN,
+    /// [`Error::Parameter`] for a share of [probes](Search::probes) outside [0, 0.5],
     /// [`Error::SpaceChanged`] if the number of axes is another than in the slice before, [`Error::Threads`].
     pub fn run<P>(&mut self, problem: &P, budget: &Budget) -> Result<Report<T>, Error>
     where
@@ -203,11 +233,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         if rule == WarmStart::Cold {
             self.clear();
         }
+        let share = self.probes.unwrap_or_else(|| self.engine.probes());
+        let probes = Probes::new(share, self.seed, self.slices)?;
         let slice = self.slice.insert(Slice {
             ledger: Ledger::open(budget),
             archive: Archive::default(),
             batch: Batch::new(now),
             candidates: Candidates::default(),
+            probes,
             origin: Origin::Engine,
             verified: if rule == WarmStart::Verify {
                 0
@@ -294,6 +327,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
         slice.ledger.counts.neighbour_calls = slice.calls.neighbours.get();
         slice.ledger.counts.bound_calls = slice.calls.bounds.get();
+        // A hit that only a probe found belies an engine that says it has covered everything.
+        let proved = stop_reason == StopReason::Covered && slice.archive.hidden() == 0;
+        let unseen = if proved {
+            Some(Unseen::nothing(slice.probes.count()))
+        } else {
+            slice.probes.estimate(problem, &slice.archive)
+        };
         slice.archive.rest();
         self.previous = Arc::new(slice.archive);
         self.slices += 1;
@@ -304,15 +344,17 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             seed: self.seed,
             slice: self.slices - 1,
             budget: slice.ledger.budget,
+            probe_share: slice.probes.share(),
             stop_reason,
             counts: slice.ledger.counts,
             elapsed,
             overshoot,
-            completeness: if stop_reason == StopReason::Covered {
+            completeness: if proved {
                 Completeness::Proved
             } else {
                 Completeness::Unknown
             },
+            unseen,
             trace: slice.ledger.trace,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             archive: Arc::clone(&self.previous),
@@ -334,6 +376,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         let limit = slice.ledger.remaining();
         if slice.verified < self.previous.len() {
             slice.propose_previous(problem, &self.previous, limit);
+            return true;
+        }
+        slice.candidates.probing = slice.probes.is_due(slice.ledger.counts.evaluations);
+        if slice.candidates.probing {
+            slice.probes.propose(problem, &mut slice.batch);
+            slice
+                .candidates
+                .prepare(problem, &slice.archive, &mut slice.batch, limit, true);
             return true;
         }
         slice.origin = Origin::Engine;
@@ -374,6 +424,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         slice
             .ledger
             .settle(problem, &mut slice.candidates, &mut slice.archive, observer);
+        if slice.candidates.probing {
+            slice
+                .probes
+                .take(problem, &slice.batch, &slice.candidates.outcomes, &slice.archive);
+            slice.ledger.counts.probes = slice.probes.count();
+            return;
+        }
         if slice.origin == Origin::WarmStart {
             slice.ledger.counts.verified = slice.verified as u64;
             if slice.batch.is_empty() {

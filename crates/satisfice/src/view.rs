@@ -137,7 +137,7 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         self.evaluations
     }
     fn hits(&self) -> usize {
-        self.archive.len()
+        self.archive.len() - self.archive.hidden()
     }
     fn is_deleted(&self, position: &[P::Scalar]) -> bool {
         !self.archive.is_empty()

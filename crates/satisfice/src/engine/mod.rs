@@ -85,6 +85,11 @@ pub trait Engine<S: Real>: Send {
         WarmStart::default()
     }
 
+    /// The share of the evaluations that this engine wants spent on [uniform probes](crate::Search::probes), 0 to 0.5.
+    fn probes(&self) -> f64 {
+        0.0
+    }
+
     /// Appends all that changes while the engine runs.
     fn save(&self, state: &mut State);
 

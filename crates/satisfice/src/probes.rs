@@ -1,0 +1,211 @@
+//! Uniform probes: a small share of the evaluations by which a slice measures what its engine has not found.
+//!
+//! The engine never learns of them: their hits are in C and in the report, but [hidden](Archive::enter) from the engine,
+//! which gets them as new if it finds them itself. So the engine's hits E do not depend on where the probes fell, and the
+//! probes are a uniform sample that is independent of E: what the estimates of [`Unseen`] rest on. Had the engine followed
+//! up a probe's hit, it would have turned the evidence of unseen hits into known ones.
+
+use num_traits::Zero;
+
+use crate::archive::Archive;
+use crate::batch::{Batch, Outcome};
+use crate::error::Error;
+use crate::identity::Identity;
+use crate::problem::SatisficingProblem;
+use crate::seed::SearchRng;
+use crate::unseen::{Sample, Unseen};
+
+/// Streams of the probes' generators, one a slice; far from those of islands, which count from 0.
+const STREAM: u64 = 0x7072_6f62_6573_0000;
+/// Probes come in batches that grow with their number, so that a short run has some and a long one keeps threads busy.
+const GROWTH: u64 = 16;
+const LARGEST_BATCH: u64 = 64;
+/// The largest share.
+const MOST: f64 = 0.5;
+
+/// The probes of one slice.
+#[derive(Debug)]
+pub(crate) struct Probes {
+    share: f64,
+    rng: SearchRng,
+    /// The evaluation count from which the next batch is due.
+    due: u64,
+    sample: Sample,
+    /// Hits that a probe found first, by their index in C, ascending.
+    first: Vec<First>,
+}
+
+/// A hit that a probe found first.
+#[derive(Debug, Clone, Copy)]
+struct First {
+    index: usize,
+    /// Probes that hit it.
+    probes: u64,
+    /// Those that hit the one point that stands for it.
+    own: u64,
+}
+
+impl Probes {
+    /// # Errors
+    /// [`Error::Parameter`] for a share outside [0, 1/2].
+    pub(crate) fn new(share: f64, seed: u64, slice: u64) -> Result<Self, Error> {
+        if !(0.0..=MOST).contains(&share) {
+            return Err(Error::parameter("probes", share, "a share from 0 to 0.5"));
+        }
+        let mut probes = Self {
+            share,
+            rng: SearchRng::stream(seed, STREAM.wrapping_add(slice)),
+            due: 0,
+            sample: Sample::default(),
+            first: Vec::new(),
+        };
+        probes.schedule();
+        Ok(probes)
+    }
+
+    pub(crate) fn share(&self) -> f64 {
+        self.share
+    }
+
+    pub(crate) fn count(&self) -> u64 {
+        self.sample.probes
+    }
+
+    /// Whether the next batch is to be made before the engine's next.
+    #[inline]
+    pub(crate) fn is_due(&self, evaluations: u64) -> bool {
+        evaluations >= self.due
+    }
+
+    fn batch(&self) -> u64 {
+        (self.sample.probes / GROWTH).clamp(1, LARGEST_BATCH)
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive, and a conversion from float saturates: no probes are due at 2^64"
+    )]
+    fn schedule(&mut self) {
+        self.due = ((self.sample.probes + self.batch()) as f64 / self.share).ceil() as u64;
+    }
+
+    pub(crate) fn propose<P: SatisficingProblem>(&mut self, problem: &P, out: &mut Batch<P::Scalar>) {
+        out.clear();
+        for _ in 0..self.batch() {
+            out.push_with(|position| self.rng.position(problem.space(), position));
+        }
+    }
+
+    /// Takes what became of the probes of `batch`.
+    pub(crate) fn take<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        batch: &Batch<P::Scalar>,
+        outcomes: &[Outcome<P::Scalar>],
+        archive: &Archive<P::Solution>,
+    ) {
+        let space = problem.space();
+        let mut values = vec![P::Scalar::zero(); space.dimension()];
+        for (point, outcome) in batch.points().zip(outcomes) {
+            if *outcome == Outcome::NotEvaluated {
+                continue;
+            }
+            self.sample.probes += 1;
+            if !matches!(outcome, Outcome::Hit(_) | Outcome::Deleted | Outcome::Known(_)) {
+                continue;
+            }
+            space.values(point, &mut values);
+            let solution = problem.decode(&values);
+            let canonical = problem.canonical(solution.clone());
+            let index = archive
+                .position(&solution)
+                .or_else(|| archive.position(&canonical));
+            // None only where the archive is full or the problem is not pure.
+            let Some((index, hit)) = index.and_then(|index| Some((index, archive.solutions().get(index)?)))
+            else {
+                continue;
+            };
+            let place = self.place(problem, &values, hit, &canonical);
+            self.enter(index, archive.is_hidden(index), place);
+        }
+        self.schedule();
+    }
+
+    /// Whether `values` are the one point that stands for `hit`. On a lattice on which several points decode to one
+    /// solution, counting only that point gives every solution the same chance.
+    fn place<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        values: &[P::Scalar],
+        hit: &P::Solution,
+        canonical: &P::Solution,
+    ) -> bool {
+        let mut own = vec![P::Scalar::zero(); values.len()];
+        if self.sample.blurred || problem.space().cardinality().is_none() {
+            return true; // no lattice, or no use of it: nobody asks
+        }
+        if !problem.encode(hit, &mut own) || own == values {
+            return true; // where no encoding is offered, every point is taken to be a solution of its own
+        }
+        // Another point stands for this hit. It has to be a point of the lattice that decodes to it...
+        let mut other = vec![P::Scalar::zero(); values.len()];
+        let stands = own
+            .iter()
+            .zip(problem.space().axes())
+            .all(|(&x, axis)| axis.lower() <= x && x <= axis.upper() && axis.value(x) == x)
+            && problem.canonical(problem.decode(&own)).same(hit)
+            // ...and this solution has to have the same one: if it has its own, the two are the same only roughly.
+            && problem.encode(canonical, &mut other)
+            && own == other;
+        self.sample.blurred |= !stands;
+        false
+    }
+
+    fn enter(&mut self, index: usize, hidden: bool, own: bool) {
+        let own = u64::from(own);
+        if !hidden {
+            self.sample.recaptures += 1;
+            self.sample.own_recaptures += own;
+            return;
+        }
+        let at = match self.first.binary_search_by_key(&index, |first| first.index) {
+            Ok(at) => at,
+            Err(at) => {
+                let new = First {
+                    index,
+                    probes: 0,
+                    own: 0,
+                };
+                self.first.insert(at, new);
+                at
+            }
+        };
+        self.first[at].probes += 1;
+        self.first[at].own += own;
+    }
+
+    /// What the probes say of the hits that are not in C now. `None` without a probe.
+    pub(crate) fn estimate<P: SatisficingProblem>(
+        &self,
+        problem: &P,
+        archive: &Archive<P::Solution>,
+    ) -> Option<Unseen> {
+        let mut sample = self.sample.clone();
+        sample.points = problem.space().cardinality();
+        sample.known = (archive.len() - archive.hidden()) as u64;
+        for first in &self.first {
+            if archive.is_hidden(first.index) {
+                sample.distinct += 1;
+                sample.fresh += first.probes;
+                sample.own_fresh += first.own;
+                sample.once += u64::from(first.probes == 1);
+                sample.twice += u64::from(first.probes == 2);
+            } else {
+                sample.recaptures += first.probes;
+                sample.own_recaptures += first.own;
+            }
+        }
+        sample.estimate()
+    }
+}
