@@ -2,10 +2,12 @@
 
 use satisfice::{Axis, Description, Error, SatisficingProblem, Space};
 
-/// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices.
+/// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices. Or the random keys of a
+/// permutation of `0..D`: reals whose ranks are the solution.
 #[derive(Debug, Clone)]
 pub(crate) struct Lattice {
     space: Space<f64>,
+    keys: bool,
 }
 
 impl Lattice {
@@ -14,35 +16,90 @@ impl Lattice {
         let axes = cells.into_iter().map(|m| Axis::integer(0, m as i64 - 1));
         Ok(Self {
             space: Space::new(axes)?,
+            keys: false,
         })
+    }
+
+    /// The random keys of the permutations of `0..n`: the solution at n reals in [0, 1] is the rank of each (Bean 1994,
+    /// doi 10.1287/ijoc.6.2.154); equal keys rank by their place.
+    pub(crate) fn permutations(n: usize) -> Result<Self, Error> {
+        Ok(Self {
+            space: Space::cube(n, 0.0, 1.0)?,
+            keys: true,
+        })
+    }
+
+    /// Whether solutions are permutations by random keys.
+    pub(crate) fn has_keys(&self) -> bool {
+        self.keys
     }
 
     pub(crate) fn space(&self) -> &Space<f64> {
         &self.space
     }
 
-    /// Whether these are cells of this lattice: solutions may come from outside, from a report for instance.
+    /// Whether these are cells of this lattice, or ranks: solutions may come from outside, from a report for instance.
     #[inline]
     pub(crate) fn holds(&self, cells: &[u32]) -> bool {
         let axes = self.space.axes();
-        cells.len() == axes.len()
-            && (axes.iter().zip(cells)).all(|(axis, &cell)| f64::from(cell) <= axis.upper())
+        if cells.len() != axes.len() {
+            return false;
+        }
+        if self.keys {
+            return cells.iter().all(|&rank| (rank as usize) < axes.len());
+        }
+        (axes.iter().zip(cells)).all(|(axis, &cell)| f64::from(cell) <= axis.upper())
     }
 
+    /// Cost: O(D), with keys O(D^2).
     #[inline]
-    pub(crate) fn decode_into(values: &[f64], cells: &mut Vec<u32>) {
+    pub(crate) fn decode_into(&self, values: &[f64], cells: &mut Vec<u32>) {
         cells.clear();
-        cells.extend(values.iter().map(|&x| x as u32));
+        if self.keys {
+            let rank = |(place, key): (usize, &f64)| {
+                let before = values[..place].iter().filter(|other| *other <= key).count();
+                let after = values[place + 1..].iter().filter(|other| *other < key).count();
+                (before + after) as u32
+            };
+            cells.extend(values.iter().enumerate().map(rank));
+        } else {
+            cells.extend(values.iter().map(|&x| x as u32));
+        }
     }
 
     pub(crate) fn encode(&self, cells: &[u32], values: &mut [f64]) -> bool {
         if !self.holds(cells) || values.len() != cells.len() {
             return false;
         }
+        let repeats = |(place, rank): (usize, &u32)| cells[..place].contains(rank);
+        if self.keys && cells.iter().enumerate().any(repeats) {
+            return false;
+        }
         for (value, &cell) in values.iter_mut().zip(cells) {
-            *value = f64::from(cell);
+            *value = if self.keys {
+                (f64::from(cell) + 0.5) / cells.len() as f64
+            } else {
+                f64::from(cell)
+            };
         }
         true
+    }
+
+    /// Visits all that differ in one variable, or, of permutations, by one exchange.
+    pub(crate) fn changes(&self, of: &[u32], visit: &mut dyn FnMut(Vec<u32>)) {
+        let mut change = |edit: &dyn Fn(&mut [u32])| {
+            let mut changed = of.to_vec();
+            edit(&mut changed);
+            visit(changed);
+        };
+        for (j, (axis, &here)) in self.space.axes().iter().zip(of).enumerate() {
+            if self.keys {
+                (0..j).for_each(|i| change(&|changed| changed.swap(i, j)));
+            } else {
+                let others = (0..=axis.upper() as u32).filter(|there| *there != here);
+                others.for_each(|there| change(&|changed| changed[j] = there));
+            }
+        }
     }
 }
 
@@ -58,12 +115,12 @@ macro_rules! lattice_methods {
         }
         fn decode(&self, values: &[f64]) -> Vec<u32> {
             let mut cells = Vec::with_capacity(values.len());
-            $crate::lattice::Lattice::decode_into(values, &mut cells);
+            self.lattice.decode_into(values, &mut cells);
             cells
         }
         #[inline]
         fn decode_into(&self, values: &[f64], cells: &mut Vec<u32>) {
-            $crate::lattice::Lattice::decode_into(values, cells);
+            self.lattice.decode_into(values, cells);
         }
         fn threshold(&self) -> f64 {
             self.threshold
@@ -237,6 +294,22 @@ mod tests {
             }
             assert_eq!(minima.minimum(1.0, 0.0), f64::INFINITY);
         }
+    }
+
+    #[test]
+    fn keys_and_permutations() {
+        let lattice = Lattice::permutations(4).unwrap();
+        let mut ranks = Vec::new();
+        lattice.decode_into(&[0.5, 0.1, 0.5, 0.2], &mut ranks);
+        assert_eq!(ranks, [2, 0, 3, 1]);
+        let (mut keys, mut back) = ([0.0; 4], Vec::new());
+        assert!(lattice.encode(&ranks, &mut keys));
+        lattice.decode_into(&keys, &mut back);
+        assert_eq!(back, ranks);
+        assert!(!lattice.encode(&[0, 0, 1, 2], &mut keys) && !lattice.encode(&[4, 0, 1, 2], &mut keys));
+        let mut count = 0;
+        lattice.changes(&ranks, &mut |other| count += usize::from(other != ranks));
+        assert_eq!(count, 6);
     }
 
     #[test]

@@ -26,7 +26,10 @@ mod level_sets;
 pub mod number;
 mod roots;
 
-pub use constraints::Queens;
+pub use constraints::{
+    Backtracking, Costas, Encoding, Extendable, Formula, Graph, GraphColouring, Langford, LatinSquare,
+    MagicSquare, Queens, Sat, backtrack,
+};
 pub use design::{Parts, SallenKey, Window};
 pub use falsification::Falsification;
 pub use kinematics::Arm;

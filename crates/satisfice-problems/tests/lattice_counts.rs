@@ -356,7 +356,6 @@ fn queens() {
     ] {
         assert_eq!(Queens::new(n).unwrap().reference_hits(), Some(hits));
     }
-    assert_eq!(Queens::new(8).unwrap().backtrack(&mut |_| ()), 2_057);
     for n in [4, 5, 6, 7] {
         let queens = Queens::new(n).unwrap();
         assert_eq!(count_hits(&queens, ENUMERABLE), queens.reference_hits());

@@ -1,0 +1,205 @@
+//! Satisfiability of random and given formulas.
+
+use core::fmt::Write;
+
+use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, SearchRng, Values};
+
+use super::{Extendable, Violations, constraint_methods, counted, dimacs};
+use crate::lattice::{Lattice, description};
+
+/// A formula in conjunctive normal form.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Formula {
+    /// Number of variables, n.
+    pub variables: usize,
+    /// Clauses of literals: `v + 1` says that variable `v` is true, `-(v + 1)` that it is false.
+    pub clauses: Vec<Vec<i32>>,
+}
+
+impl Formula {
+    /// A uniform random 3-SAT formula: each clause has three different variables, each negated with probability 1/2.
+    /// Satisfiable and unsatisfiable formulas are equally likely at 4.267 clauses a variable (Mézard, Parisi, Zecchina
+    /// 2002, doi 10.1126/science.1073287), for many variables.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for fewer than 3 variables.
+    pub fn random(variables: usize, clauses: usize, seed: u64) -> Result<Self, Error> {
+        if !(3..=100_000).contains(&variables) {
+            return Err(Error::parameter(
+                "variables",
+                variables,
+                "a whole number from 3 to 100000",
+            ));
+        }
+        let mut rng = SearchRng::new(seed);
+        let mut clause = || {
+            let mut clause: Vec<i32> = Vec::with_capacity(3);
+            while clause.len() < 3 {
+                let variable = rng.below(variables) as i32 + 1;
+                let (_, negated) = rng.uniform_and_sign();
+                if clause.iter().all(|literal| literal.abs() != variable) {
+                    clause.push(if negated { -variable } else { variable });
+                }
+            }
+            clause
+        };
+        Ok(Self {
+            variables,
+            clauses: (0..clauses).map(|_| clause()).collect(),
+        })
+    }
+
+    /// The formula of a DIMACS `cnf` file.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] about the parameter `file` where it cannot be read or is not in that format.
+    pub fn read_dimacs(path: &str) -> Result<Self, Error> {
+        let (variables, clauses) = dimacs::clauses(path, &dimacs::read(path)?)?;
+        Ok(Self { variables, clauses })
+    }
+
+    /// The formula in DIMACS `cnf` format.
+    #[must_use]
+    pub fn dimacs(&self) -> String {
+        let mut text = format!("p cnf {} {}\n", self.variables, self.clauses.len());
+        for clause in &self.clauses {
+            for literal in clause {
+                // Writing to a string does not fail.
+                let _ = write!(text, "{literal} ");
+            }
+            text.push_str("0\n");
+        }
+        text
+    }
+}
+
+/// All models of a formula in conjunctive normal form: random 3-SAT near the threshold by default, or a DIMACS file.
+///
+/// F is the number of clauses that are not satisfied, a hit is F < 1. A solution is 0 or 1 for each variable; a neighbour has
+/// one flipped. Reference counts are by backtracking over the variables with a check of every clause that is complete.
+///
+/// Source: Cook 1971, doi 10.1145/800157.805047; the random family: Mitchell, Selman, Levesque 1992.
+#[derive(Debug, Clone)]
+pub struct Sat {
+    lattice: Lattice,
+    threshold: f64,
+    description: Description,
+    clauses: Vec<Vec<i32>>,
+    /// For each variable the clauses of which it is the last.
+    ends: Vec<Vec<usize>>,
+    /// Clauses without a literal: never satisfied.
+    empty: bool,
+}
+
+impl Sat {
+    /// The models of `formula`.
+    ///
+    /// # Errors
+    /// [`Error::NoAxis`] without a variable, [`Error::Parameter`] for a literal that is none.
+    pub fn new(formula: Formula) -> Result<Self, Error> {
+        Self::described([("variables", formula.variables.to_string())], formula)
+    }
+
+    fn described<const N: usize>(parameters: [(&str, String); N], formula: Formula) -> Result<Self, Error> {
+        let mut ends = vec![Vec::new(); formula.variables];
+        for (number, clause) in formula.clauses.iter().enumerate() {
+            let outside =
+                |literal: &&i32| !(1..=formula.variables).contains(&(literal.unsigned_abs() as usize));
+            if let Some(literal) = clause.iter().find(outside) {
+                let allowed = format!("from 1 to {}, or its negative", formula.variables);
+                return Err(Error::parameter("literal", literal, allowed));
+            }
+            if let Some(last) = clause.iter().map(|literal| literal.unsigned_abs()).max() {
+                ends[last as usize - 1].push(number);
+            }
+        }
+        Ok(Self {
+            lattice: Lattice::new(vec![2; formula.variables])?,
+            threshold: 1.0,
+            description: description(Self::NAME, parameters),
+            empty: formula.clauses.iter().any(Vec::is_empty),
+            clauses: formula.clauses,
+            ends,
+        })
+    }
+}
+
+/// The variable of a literal, and the value that makes it true.
+#[inline]
+fn wanted(literal: i32) -> (usize, u32) {
+    (literal.unsigned_abs() as usize - 1, u32::from(literal > 0))
+}
+
+impl Violations for Sat {
+    /// Cost: one step a literal.
+    #[inline]
+    fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32 {
+        let falsified = |clause: &&Vec<i32>| {
+            clause.iter().all(|&literal| {
+                let (variable, wanted) = wanted(literal);
+                value(variable).is_some_and(|value| value != wanted)
+            })
+        };
+        self.clauses.iter().filter(falsified).count() as u32
+    }
+}
+
+impl Extendable for Sat {
+    fn values(&self, variable: usize) -> Option<u32> {
+        (variable < self.ends.len()).then_some(2)
+    }
+    fn extends(&self, partial: &[u32]) -> bool {
+        let satisfied = |&clause: &usize| {
+            self.clauses[clause].iter().any(|&literal| {
+                let (variable, wanted) = wanted(literal);
+                partial[variable] == wanted
+            })
+        };
+        !self.empty && self.ends[partial.len() - 1].iter().all(satisfied)
+    }
+}
+
+impl SatisficingProblem for Sat {
+    constraint_methods!();
+}
+
+impl Catalogued for Sat {
+    const NAME: &'static str = "sat";
+    const SUMMARY: &'static str = "models of a random 3-SAT formula near the threshold, or of a DIMACS file";
+    const SOURCE: &'static str = "Mitchell, Selman, Levesque 1992 (AAAI); counts by backtracking";
+    const PARAMETERS: &'static [Parameter] = &[
+        Parameter::integer("variables", "number of variables, n", 20, 3, 10_000),
+        Parameter::real(
+            "ratio",
+            "clauses a variable; half of all formulas are satisfiable near 4.267",
+            4.267,
+            0.0,
+            100.0,
+        ),
+        Parameter::integer("formula-seed", "which random formula", 2, 0, i64::MAX),
+        Parameter::text(
+            "file",
+            "path of a formula in DIMACS `cnf` format, instead of a random one",
+            "",
+        ),
+    ];
+
+    fn from_values(values: &Values) -> Result<Self, Error> {
+        let file = values.text("file");
+        if !file.is_empty() {
+            return Self::described([("file", file.to_owned())], Formula::read_dimacs(file)?);
+        }
+        let (variables, seed) = (values.count("variables"), values.count("formula-seed"));
+        let clauses = (values.real("ratio") * variables as f64).round() as usize;
+        let parameters = [
+            ("variables", variables.to_string()),
+            ("ratio", values.real("ratio").to_string()),
+            ("formula-seed", seed.to_string()),
+        ];
+        Self::described(parameters, Formula::random(variables, clauses, seed as u64)?)
+    }
+
+    fn reference_hits(&self) -> Option<u64> {
+        counted(self)
+    }
+}
