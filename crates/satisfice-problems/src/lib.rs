@@ -19,7 +19,6 @@
 mod constraints;
 mod design;
 mod falsification;
-pub mod interval;
 mod kinematics;
 mod lattice;
 mod level_sets;

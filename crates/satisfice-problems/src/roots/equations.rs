@@ -1,10 +1,10 @@
 //! A square system e(x) = 0 in a box, as a satisficing problem: what all root problems share.
 
+use satisfice::interval::{Interval, IntervalOps, lower_bound, side};
 use satisfice::{Axis, Error, Located, Region, Space};
 
 use super::newton;
-use crate::interval::Interval;
-use crate::number::Dual;
+use crate::number::{Dual, Number};
 
 /// Systems have at most this many unknowns, so that evaluation needs no allocation.
 pub(crate) const UNKNOWNS: usize = 24;
@@ -109,15 +109,15 @@ impl Equations {
         if region.lower.len() != n || region.upper.len() != n {
             return None;
         }
-        let mut x = [Interval::new(0.0, 0.0); UNKNOWNS];
-        for (x, (&lower, &upper)) in x.iter_mut().zip(region.lower.iter().zip(&region.upper)) {
-            *x = Interval::new(lower, upper);
+        let zero = Interval::new(0.0, 0.0);
+        let mut x = [zero; UNKNOWNS];
+        for (axis, x) in x[..n].iter_mut().enumerate() {
+            *x = side(region, axis);
         }
-        let mut residuals = [Interval::ENTIRE; UNKNOWNS];
+        let mut residuals = [zero; UNKNOWNS];
         (self.functions.interval)(&x[..n], &mut residuals[..n]);
         let squares = residuals[..n].iter().map(|e| e.square());
-        let sum = squares.fold(Interval::new(0.0, 0.0), |sum, square| sum + square);
-        Some(sum.lower.max(0.0))
+        lower_bound(squares.fold(zero, |sum, square| sum + square))
     }
 
     /// The root that Newton's method finds from a hit; the hit itself where it finds none inside the box.
