@@ -234,33 +234,32 @@ pub(super) fn least(x: f64, y: f64) -> f64 {
     if x < y { x } else { y }
 }
 
-/// Whether the segment `p q` provably passes through the triangle `t`, all in the coordinates of a frame with this
-/// `rho`.
+/// The first edge of `hull`, as a pair of its vertices, that provably passes through the triangle `t`; all in the
+/// coordinates of a frame with this `rho`.
 ///
 /// Each sign is that of a determinant of three differences of components at most `2 rho`. A component is wrong by at most
-/// `4.01 u rho`; the determinant, six products of three, by at most `6 (3 * 4.01 u rho * (2 rho)^2 + 5.1 u (2.01 rho)^3)` for the
-/// components and its own rounding, below `540 u rho^3`; we ask for `1024 u rho^3`.
-pub(super) fn pierces(p: Point, q: Point, t: &[Point; 3], rho: f64) -> bool {
+/// `4.01 u rho`; the determinant, six products of three, by at most `6 (3 * 4.01 u rho * (2.01 rho)^2 + 5.1 u (2.01 rho)^3)` for the
+/// components and its own rounding, below `545 u rho^3`; we ask for `1024 u rho^3`.
+pub(super) fn piercing(hull: &[Point], edges: &[[usize; 2]], t: &[Point; 3], rho: f64) -> Option<[usize; 2]> {
     let bound = 512.0 * f64::EPSILON * rho * rho * rho;
-    let sign = |x: f64| {
-        if x > bound {
-            1
-        } else if x < -bound {
-            -1
-        } else {
-            0
-        }
-    };
-    let volume = |a: Point, b: Point, c: Point, d: Point| sign(dot(cross(sub(b, a), sub(c, a)), sub(d, a)));
-    if volume(t[0], t[1], t[2], p) * volume(t[0], t[1], t[2], q) != -1 {
-        return false;
+    let sign = |x: f64| i8::from(x > bound) - i8::from(x < -bound);
+    let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
+    let mut sides = [0; 3];
+    for (side, &p) in sides.iter_mut().zip(hull) {
+        *side = sign(dot(n, sub(p, t[0])));
     }
-    let turn = volume(p, q, t[0], t[1]);
-    turn != 0 && turn == volume(p, q, t[1], t[2]) && turn == volume(p, q, t[2], t[0])
+    let volume = |a: Point, b: Point, c: Point, d: Point| sign(dot(cross(sub(b, a), sub(c, a)), sub(d, a)));
+    edges.iter().copied().find(|&[i, k]| {
+        let (p, q) = (hull[i], hull[k]);
+        sides[i] * sides[k] == -1 && {
+            let turn = volume(p, q, t[0], t[1]);
+            turn != 0 && turn == volume(p, q, t[1], t[2]) && turn == volume(p, q, t[2], t[0])
+        }
+    })
 }
 
 /// Where the segment `p q` crosses the plane of `t`: the parameter on the segment and barycentric weights, approximately.
-/// Meaningful where `pierces` holds.
+/// Meaningful for an edge from `piercing`.
 pub(super) fn crossing(p: Point, q: Point, t: &[Point; 3]) -> (f64, [f64; 3]) {
     let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
     let (from, to) = (dot(n, sub(p, t[0])).abs(), dot(n, sub(q, t[0])).abs());

@@ -136,21 +136,17 @@ pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Poi
 
 /// Weights of a common point, if an edge of one provably passes through the face of the other.
 fn pierced<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Option<([f64; 3], [f64; 3])> {
-    if let Ok(&face) = <&[Point; 3]>::try_from(&frame.b[..]) {
-        for &[i, k] in edges(M) {
-            if frame::pierces(frame.a[i], frame.a[k], &face, frame.rho) {
-                let (edge, face) = frame::crossing(frame.a[i], frame.a[k], &face);
-                return Some((on_edge(i, k, edge), face));
-            }
-        }
+    if let Ok(face) = <&[Point; 3]>::try_from(&frame.b[..])
+        && let Some([i, k]) = frame::piercing(&frame.a, edges(M), face, frame.rho)
+    {
+        let (t, weights) = frame::crossing(frame.a[i], frame.a[k], face);
+        return Some((on_edge(i, k, t), weights));
     }
-    if let Ok(&face) = <&[Point; 3]>::try_from(&frame.a[..]) {
-        for &[j, k] in edges(N) {
-            if frame::pierces(frame.b[j], frame.b[k], &face, frame.rho) {
-                let (edge, face) = frame::crossing(frame.b[j], frame.b[k], &face);
-                return Some((face, on_edge(j, k, edge)));
-            }
-        }
+    if let Ok(face) = <&[Point; 3]>::try_from(&frame.a[..])
+        && let Some([j, k]) = frame::piercing(&frame.b, edges(N), face, frame.rho)
+    {
+        let (t, weights) = frame::crossing(frame.b[j], frame.b[k], face);
+        return Some((weights, on_edge(j, k, t)));
     }
     None
 }

@@ -3,6 +3,7 @@
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 pub mod families;
+pub mod fuzzing;
 pub mod referee;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
