@@ -145,6 +145,16 @@ impl<T: Identity> Archive<T> {
         })
     }
 
+    /// Whether a hit that is the same as `solution` passes `test`.
+    pub(crate) fn any_same(&self, solution: &T, mut test: impl FnMut(&T) -> bool) -> bool {
+        solution.visit_keys(&mut |key| {
+            self.table
+                .iter_hash(key)
+                .map(|&i| &self.solutions[i as usize])
+                .any(|hit| hit.same(solution) && test(hit))
+        })
+    }
+
     /// Adds a solution unless one that is the same is here; returns whether it was new. Amortised cost: O(1).
     ///
     /// At 2^32 - 1 hits, the archive is full and takes no more.

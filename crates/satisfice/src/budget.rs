@@ -19,7 +19,7 @@ use crate::error::Error;
 pub struct Budget {
     /// Wall time, from the start of the slice.
     pub time: Option<Duration>,
-    /// Candidates that reach the ledger, deleted ones included.
+    /// Candidates that reach the ledger, deleted ones included, and bounds that the problem gave.
     pub evaluations: Option<u64>,
     /// Distinct hits.
     pub hits: Option<u64>,

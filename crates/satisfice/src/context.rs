@@ -31,8 +31,20 @@ pub trait Context<S: Real> {
     /// Whether the problem names neighbours of its own.
     fn offers_neighbours(&self) -> bool;
 
-    /// The problem's lower bound of F in a region of values, if it offers one. Every call is counted.
+    /// The problem's lower bound of F in a region of values, if it offers one. Every answer is counted, and
+    /// uses up the budget like an evaluation.
     fn lower_bound(&self, region: &Region<S>) -> Option<S>;
+
+    /// Whether every point of a region of values is known to be the same answer as one hit in C, so that nothing new is
+    /// there. `false` where that is not so, or where the problem does not say.
+    fn covers(&self, _region: &Region<S>) -> bool {
+        false
+    }
+
+    /// How many evaluations and calls of bounds the budget still allows.
+    fn evaluations_left(&self) -> u64 {
+        u64::MAX
+    }
 
     /// Number of hits of the slice before this one, C_prev.
     fn previous_hits(&self) -> usize;

@@ -223,20 +223,44 @@ impl Ledger {
         }
     }
 
-    /// How many more evaluations the budget allows.
+    /// How many more evaluations the budget allows; calls of bounds count as such.
     #[inline]
     pub(crate) fn remaining(&self) -> usize {
         let left = self
             .budget
             .evaluations
-            .map_or(u64::MAX, |limit| limit - self.counts.evaluations);
+            .map_or(u64::MAX, |limit| limit.saturating_sub(self.spent()));
         usize::try_from(left).unwrap_or(usize::MAX)
+    }
+
+    #[inline]
+    fn spent(&self) -> u64 {
+        self.counts.evaluations + self.counts.bound_calls
+    }
+
+    /// Enters the calls of bounds so far: each counts like an evaluation, and takes time.
+    #[inline]
+    pub(crate) fn count_bounds(&mut self, calls: u64) {
+        let new = calls - self.counts.bound_calls;
+        if new > 0 {
+            self.counts.bound_calls = calls;
+            self.pass(usize::try_from(new).unwrap_or(usize::MAX));
+        }
+    }
+
+    /// Whether nothing more may be proposed.
+    #[inline]
+    pub(crate) fn is_over(&mut self) -> bool {
+        if self.stop.is_none() && !self.interrupted() && self.remaining() == 0 {
+            self.stop = Some(StopReason::Evaluations);
+        }
+        self.stop.is_some()
     }
 
     /// Share of the budget used, as of the last look at the clock.
     #[inline]
     pub(crate) fn share(&self) -> f64 {
-        self.budget.share(self.counts.evaluations, self.clock.seen())
+        self.budget.share(self.spent(), self.clock.seen())
     }
 
     /// Looks whether somebody has ended the slice from outside.
@@ -385,7 +409,7 @@ impl Ledger {
                 self.next_count = next_count(self.next_count);
             }
         }
-        if self.budget.evaluations == Some(self.counts.evaluations) && self.stop.is_none() {
+        if self.remaining() == 0 && self.stop.is_none() {
             self.stop = Some(StopReason::Evaluations);
         }
         let seen = self.clock.seen();

@@ -5,6 +5,7 @@ use core::hash::{BuildHasher, Hash};
 use foldhash::fast::FixedState;
 
 use crate::scalar::Real;
+use crate::space::Region;
 
 /// The seed of every key; fixed, so that a run is the same on every machine.
 const KEYS: FixedState = FixedState::with_seed(0x5a71_5f1c_e000_2012);
@@ -63,6 +64,37 @@ impl<S: Real> Located<S> {
         }
     }
 
+    /// Whether all points of `region` are the same as this one: whether its farthest corner is.
+    ///
+    /// That decides for all of them, rounding included: differences, quotients, squares and sums are monotone in every
+    /// coordinate on either side of this point, and rounding keeps the order.
+    #[must_use]
+    pub fn covers(&self, region: &Region<S>) -> bool {
+        let ends = region.lower.iter().zip(&region.upper);
+        let farthest = self.coordinates.iter().zip(ends).map(|(&x, (&lower, &upper))| {
+            if (x - lower).abs() > (x - upper).abs() {
+                lower
+            } else {
+                upper
+            }
+        });
+        region.lower.len() == self.coordinates.len() && self.is_within(farthest)
+    }
+
+    #[inline]
+    fn is_within(&self, other: impl Iterator<Item = S>) -> bool {
+        let mut pairs = self.coordinates.iter().zip(other);
+        if self.separation == S::zero() {
+            return pairs.all(|(&a, b)| a == b);
+        }
+        // Divided before it is squared: the square of a small or of a large radius is no number of use.
+        let square = pairs.fold(S::zero(), |sum, (&a, b)| {
+            let d = (a - b) / self.separation;
+            sum + d * d
+        });
+        square <= S::one()
+    }
+
     /// The cell of `x` on one axis. Monotone in `x`, roundings included.
     fn cell(&self, x: S) -> S {
         let edge = self.separation * S::of(EDGE);
@@ -104,16 +136,7 @@ impl<S: Real> Identity for Located<S> {
     }
 
     fn same(&self, other: &Self) -> bool {
-        let pairs = self.coordinates.iter().zip(&other.coordinates);
-        if self.separation == S::zero() {
-            return pairs.into_iter().all(|(a, b)| a == b);
-        }
-        // Divided before it is squared: the square of a small or of a large radius is no number of use.
-        let square = pairs.fold(S::zero(), |sum, (&a, &b)| {
-            let d = (a - b) / self.separation;
-            sum + d * d
-        });
-        square <= S::one()
+        self.is_within(other.coordinates.iter().copied())
     }
 
     fn visit_keys(&self, visit: &mut dyn FnMut(u64) -> bool) -> bool {

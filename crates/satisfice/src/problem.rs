@@ -87,6 +87,13 @@ pub trait SatisficingProblem: Sync {
         None
     }
 
+    /// Whether every point of `region` decodes to a solution that is the same as `hit`; `false` where that is not so or not
+    /// known. With it, and with bounds, a search of continuous axes can prove that no hit is missing. Where solutions are
+    /// [`Located`] at the values themselves: [`Located::covers`].
+    fn covers(&self, _hit: &Self::Solution, _region: &Region<Self::Scalar>) -> bool {
+        false
+    }
+
     /// The representative of a hit, for instance a root polished; called for hits only. Two hits with the same
     /// representative count once.
     fn canonical(&self, hit: Self::Solution) -> Self::Solution {
@@ -211,6 +218,9 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
         values.copy_from_slice(&solution.coordinates);
         true
+    }
+    fn covers(&self, hit: &Located<S>, region: &Region<S>) -> bool {
+        hit.covers(region)
     }
     fn description(&self) -> Description {
         Description {

@@ -49,7 +49,7 @@ pub struct Counts {
     pub probes: u64,
     /// Calls of the problem's neighbours.
     pub neighbour_calls: u64,
-    /// Calls of the problem's bounds.
+    /// Calls of the problem's bounds that it answered; each uses up the budget like an evaluation.
     pub bound_calls: u64,
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::archive::Archive;
-use crate::batch::Batch;
+use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
 use crate::error::Error;
@@ -326,7 +326,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         let (elapsed, overshoot) = slice.ledger.close(slice.archive.len());
         let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
         slice.ledger.counts.neighbour_calls = slice.calls.neighbours.get();
-        slice.ledger.counts.bound_calls = slice.calls.bounds.get();
+        slice.ledger.count_bounds(slice.calls.bounds.get());
         // A hit that only a probe found belies an engine that says it has covered everything.
         let proved = stop_reason == StopReason::Covered && slice.archive.hidden() == 0;
         let unseen = if proved {
@@ -370,7 +370,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         let Some(slice) = &mut self.slice else {
             return false;
         };
-        if slice.ledger.stop.is_some() {
+        if slice.ledger.is_over() {
             return false;
         }
         let limit = slice.ledger.remaining();
@@ -387,9 +387,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             return true;
         }
         slice.origin = Origin::Engine;
-        for _ in 0..EMPTY_ASKS {
-            if slice.last != Ask::More {
-                break;
+        let mut idle = 0;
+        while slice.last == Ask::More && idle < EMPTY_ASKS {
+            if slice.ledger.is_over() {
+                return false;
             }
             let mut batch = core::mem::replace(&mut slice.batch, Batch::new(1));
             batch.clear();
@@ -397,13 +398,19 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
                 .engine
                 .ask(&slice.view(problem, &self.previous), &mut self.rng, &mut batch);
             slice.batch = batch;
+            let before = slice.ledger.counts.bound_calls;
+            slice.ledger.count_bounds(slice.calls.bounds.get());
             if !slice.batch.is_empty() {
+                let limit = slice.ledger.remaining();
                 let deletes = self.engine.deletes();
                 slice
                     .candidates
                     .prepare(problem, &slice.archive, &mut slice.batch, limit, deletes);
                 return true;
             }
+            // An engine that works on bounds has not come to its end.
+            let works = slice.ledger.counts.bound_calls > before;
+            idle = if works { 0 } else { idle + 1 };
         }
         let covered = slice.last == Ask::Covered;
         slice.ledger.stop = Some(if covered {
@@ -437,6 +444,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
                 return; // a problem that does not encode: the engine has nothing to see
             }
         }
+        if slice.origin == Origin::Engine
+            && slice.last == Ask::Covered
+            && !slice.candidates.outcomes.contains(&Outcome::NotEvaluated)
+        {
+            // That was the last of the space, even where the budget ends with it.
+            slice.ledger.stop = Some(StopReason::Covered);
+        }
         let view = slice.view(problem, &self.previous);
         self.engine
             .tell(&view, &slice.batch, &slice.candidates.outcomes, slice.origin);
@@ -455,6 +469,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             previous,
             evaluations: self.ledger.counts.evaluations,
             share: self.ledger.share(),
+            limit: self.ledger.budget.evaluations.unwrap_or(u64::MAX),
             calls: &self.calls,
             scratches: &self.scratches,
         }

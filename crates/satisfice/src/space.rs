@@ -107,7 +107,9 @@ impl<S: Real> Axis<S> {
     #[must_use]
     pub fn position(&self, value: S) -> S {
         if self.is_integer() {
-            value + S::of(0.5)
+            // Where halves are not representable, the value itself.
+            let centre = value + S::of(0.5);
+            if centre.floor() == value { centre } else { value }
         } else {
             value
         }
@@ -363,6 +365,21 @@ pub struct Region<S> {
 }
 
 impl<S: Real> Region<S> {
+    /// The value in the middle of axis `axis` of a region of `space`, rounded down on an integer axis.
+    ///
+    /// # Panics
+    /// If region or space have no such axis.
+    #[must_use]
+    pub fn middle(&self, space: &Space<S>, axis: usize) -> S {
+        let (lower, upper) = (self.lower[axis], self.upper[axis]);
+        let half = (upper - lower) / S::of(2.0);
+        if space.axes[axis].is_integer() {
+            lower + half.floor()
+        } else {
+            lower + half
+        }
+    }
+
     /// Whether a point of values lies inside.
     #[must_use]
     pub fn contains(&self, values: &[S]) -> bool {

@@ -32,6 +32,8 @@ pub(crate) struct View<'a, P: SatisficingProblem> {
     pub(crate) previous: &'a Archive<P::Solution>,
     pub(crate) evaluations: u64,
     pub(crate) share: f64,
+    /// Evaluations and calls of bounds that the budget allows.
+    pub(crate) limit: u64,
     pub(crate) calls: &'a Calls,
     pub(crate) scratches: &'a Scratches<P::Scalar, P::Solution>,
 }
@@ -158,8 +160,25 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         })
     }
     fn lower_bound(&self, region: &Region<P::Scalar>) -> Option<P::Scalar> {
+        let bound = self.problem.lower_bound(region)?;
         self.calls.bounds.set(self.calls.bounds.get() + 1);
-        self.problem.lower_bound(region)
+        Some(bound)
+    }
+    fn covers(&self, region: &Region<P::Scalar>) -> bool {
+        if self.archive.is_empty() {
+            return false;
+        }
+        self.with_scratch(&region.lower, |scratch| {
+            self.problem.space().positions(&mut scratch.values);
+            let (corner, _) = self.decode(scratch);
+            // A hit that covers the region is the same as its corner.
+            self.archive
+                .any_same(corner, |hit| self.problem.covers(hit, region))
+        })
+    }
+    fn evaluations_left(&self) -> u64 {
+        self.limit
+            .saturating_sub(self.evaluations + self.calls.bounds.get())
     }
     fn previous_hits(&self) -> usize {
         self.previous.len()

@@ -182,6 +182,12 @@ static ENGINES: &[Entry] = &[
         "the paper's swarm: quantum-behaved, attracted by the latest hit, hits deleted",
         "Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539"
     ),
+    entry!(
+        branch_and_bound,
+        "branch-and-bound",
+        "exact: best-first over regions by the problem's lower bounds; enumeration where there are none",
+        "Land, Doig 1960, doi 10.2307/1910129"
+    ),
 ];
 
 /// The entry with this name.

@@ -7,6 +7,7 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
 
+mod branch_and_bound;
 mod descent;
 mod descent_flood;
 mod entry;
@@ -23,6 +24,7 @@ mod qpso;
 mod qpso_deletion;
 mod quantum_swarm;
 mod random;
+mod region_tree;
 mod schedule;
 mod spso_2011;
 mod swarm;
