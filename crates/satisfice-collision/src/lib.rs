@@ -14,6 +14,7 @@ pub mod order;
 mod placement;
 pub mod problem;
 pub mod sampling;
+pub mod scene;
 
 pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, Mesh};

@@ -69,6 +69,17 @@ pub(crate) struct BoxTree {
     pub(crate) order: Vec<u32>,
     /// From the items up to the one group of the root.
     pub(crate) levels: Vec<Vec<Group>>,
+    /// Which lanes of each group hold an item that moved at the last refit.
+    moved: Vec<Vec<u8>>,
+}
+
+/// Which items of a tree count as moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Moved {
+    All,
+    None,
+    /// Those marked at the last refit.
+    Marked,
 }
 
 impl BoxTree {
@@ -85,10 +96,12 @@ impl BoxTree {
         let mut tree = Self {
             order: items.iter().map(|item| item.id).collect(),
             levels: Vec::new(),
+            moved: Vec::new(),
         };
         let mut groups = boxes.len().div_ceil(8);
         while groups > 0 {
             tree.levels.push(vec![Group::EMPTY; groups]);
+            tree.moved.push(vec![0xff; groups]);
             groups = if groups == 1 { 0 } else { groups.div_ceil(8) };
         }
         tree.refit(boxes, threads);
@@ -132,6 +145,40 @@ impl BoxTree {
                     .for_each(bound);
             }
             below = level;
+        }
+    }
+
+    /// Marks the items that moved, level by level. Cost: O(n).
+    pub(crate) fn mark(&mut self, moved: impl Fn(u32) -> bool) {
+        let pack = |lanes: &mut dyn Iterator<Item = bool>| {
+            lanes
+                .enumerate()
+                .fold(0_u8, |mask, (lane, moved)| mask | (u8::from(moved) << lane))
+        };
+        for level in 0..self.moved.len() {
+            let (below, level_and_above) = self.moved.split_at_mut(level);
+            for (group, mask) in level_and_above[0].iter_mut().enumerate() {
+                *mask = match below.last() {
+                    None => {
+                        let items = &self.order[group * 8..self.order.len().min(group * 8 + 8)];
+                        pack(&mut items.iter().map(|&id| moved(id)))
+                    }
+                    Some(below) => {
+                        let children = &below[group * 8..below.len().min(group * 8 + 8)];
+                        pack(&mut children.iter().map(|&mask| mask != 0))
+                    }
+                };
+            }
+        }
+    }
+
+    /// The lanes of a group that count as moved.
+    #[inline(always)]
+    pub(crate) fn moved(&self, which: Moved, level: u8, group: u32) -> u32 {
+        match which {
+            Moved::All => 0xff,
+            Moved::None => 0,
+            Moved::Marked => u32::from(self.moved[level as usize][group as usize]),
         }
     }
 

@@ -41,7 +41,7 @@ impl Runs {
                 .reduce(|| true, |a, b| a & b)
         };
         if !finite {
-            first_offender(points)?;
+            check_finite(points)?;
         }
         self.whole = self.boxes.iter().copied().reduce(|a, b| union(&a, &b));
         Ok(())
@@ -58,7 +58,11 @@ impl Runs {
     }
 }
 
-fn first_offender(points: &[[f64; 3]]) -> Result<(), Error> {
+/// Names the first point that is not finite.
+///
+/// # Errors
+/// [`Error::NonFiniteVertex`].
+pub(crate) fn check_finite(points: &[[f64; 3]]) -> Result<(), Error> {
     for (vertex, point) in points.iter().enumerate() {
         if let Some(k) = point.iter().position(|c| !c.is_finite()) {
             return Err(Error::NonFiniteVertex {

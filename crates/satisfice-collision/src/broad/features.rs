@@ -40,6 +40,21 @@ enum Elements {
     Triangles(Vec<[u32; 3]>),
 }
 
+impl Elements {
+    /// The vertices of a feature, the last repeated to make three.
+    #[inline]
+    fn corners(&self, feature: u32) -> [u32; 3] {
+        match self {
+            Self::Vertices => [feature; 3],
+            Self::Edges(edges) => {
+                let [a, b] = edges[feature as usize];
+                [a, b, b]
+            }
+            Self::Triangles(triangles) => triangles[feature as usize],
+        }
+    }
+}
+
 /// A box tree over the features of one kind of one body, in the body's own coordinates.
 #[derive(Debug)]
 pub struct FeatureTree {
@@ -49,7 +64,18 @@ pub struct FeatureTree {
     pub(crate) frame: Frame,
     boxes: Vec<Box32>,
     placed: Vec<[f32; 3]>,
+    /// Whether each vertex moved at the last refit.
+    moved: Vec<bool>,
     pub(crate) tree: BoxTree,
+}
+
+/// What a refit saw.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Refit {
+    /// Vertices whose coordinates changed.
+    pub moved: usize,
+    /// No vertex moved further than this.
+    pub motion: f64,
 }
 
 impl FeatureTree {
@@ -69,6 +95,7 @@ impl FeatureTree {
             frame: Frame::unit(&bounds),
             boxes: Vec::new(),
             placed: Vec::new(),
+            moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
         };
         tree.measure();
@@ -80,7 +107,7 @@ impl FeatureTree {
     ///
     /// # Errors
     /// [`Error::NonFiniteVertex`], or [`Error::Parameter`] if the number of vertices differs; the tree is then as before.
-    pub fn refit(&mut self, vertices: &[Point]) -> Result<(), Error> {
+    pub fn refit(&mut self, vertices: &[Point]) -> Result<Refit, Error> {
         if vertices.len() != self.vertices.len() {
             return Err(Error::parameter(
                 "number of vertices",
@@ -92,10 +119,30 @@ impl FeatureTree {
         if let Some(bounds) = self.runs.whole() {
             self.frame = Frame::unit(&bounds);
         }
+        let mut refit = Refit::default();
+        for ((moved, old), new) in self.moved.iter_mut().zip(&self.vertices).zip(vertices) {
+            *moved = old != new;
+            refit.moved += usize::from(*moved);
+            let square: f64 = (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum();
+            refit.motion = if square > refit.motion {
+                square
+            } else {
+                refit.motion
+            };
+        }
+        // rounded up; squares that underflow belong to motions below 1e-153
+        refit.motion = if refit.moved == 0 {
+            0.0
+        } else {
+            refit.motion.sqrt() * (1.0 + 1e-12) + 1e-153
+        };
         self.vertices.copy_from_slice(vertices);
         self.measure();
         self.tree.refit(&self.boxes, rayon::current_num_threads());
-        Ok(())
+        let (moved, elements) = (&self.moved, &self.elements);
+        self.tree
+            .mark(|feature| elements.corners(feature).iter().any(|&v| moved[v as usize]));
+        Ok(refit)
     }
 
     fn measure(&mut self) {
@@ -173,5 +220,17 @@ impl FeatureTree {
             Elements::Triangles(triangles) => triangles[t as usize].map(|v| self.point(v)),
             _ => [self.point(t); 3],
         }
+    }
+
+    /// The vertices of a feature, the last repeated to make three.
+    #[inline]
+    pub(crate) fn corners(&self, feature: u32) -> [u32; 3] {
+        self.elements.corners(feature)
+    }
+
+    /// Whether a feature moved at the last refit.
+    #[inline]
+    pub(crate) fn has_moved(&self, feature: u32) -> bool {
+        self.corners(feature).iter().any(|&v| self.moved[v as usize])
     }
 }

@@ -3,6 +3,7 @@
 mod boxes;
 mod cells;
 mod clip;
+mod couple;
 mod exact;
 mod features;
 mod frame;
@@ -19,7 +20,26 @@ mod trees;
 #[cfg(test)]
 mod tests;
 
-pub use features::{FeatureKind, FeatureTree};
+pub(crate) use boxes::Moved;
+pub(crate) use clip::{check_finite, inflate, intersection};
+pub(crate) use couple::Couple;
+pub use couple::Keep;
+pub use features::{FeatureKind, FeatureTree, Refit};
 pub use order::Pair;
 pub use points::{PointGrid, PointWork};
-pub use trees::{Keep, TreeJoin, TreeWork};
+pub(crate) use traverse::Visit;
+pub use trees::{TreeJoin, TreeWork};
+
+/// How pairs are enumerated. No method changes an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// The cheapest by a measured cost model.
+    #[default]
+    Auto,
+    /// Every pair is decided.
+    BruteForce,
+    /// A uniform grid, new each frame; vertices only, other features use the tree.
+    Grid,
+    /// A box tree, kept and refitted.
+    Tree,
+}

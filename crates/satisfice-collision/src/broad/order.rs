@@ -32,7 +32,7 @@ impl Packing {
     }
 
     #[inline(always)]
-    fn unpack(self, key: u64) -> Pair {
+    pub(crate) fn unpack(self, key: u64) -> Pair {
         Pair {
             a: (key >> self.shift) as u32,
             b: (key & ((1 << self.shift) - 1)) as u32,

@@ -1,6 +1,6 @@
 //! Two box trees, or one with itself, descended together: which items can be within the threshold.
 
-use super::boxes::{BoxTree, Group};
+use super::boxes::{BoxTree, Group, Moved};
 use super::frame::Filter;
 use super::lanes::{Lanes, Work};
 use super::relative::Relative;
@@ -20,6 +20,10 @@ pub(crate) trait Candidates {
     const POINTS: bool;
     /// Takes a pair of items; `sure` if it is within the threshold for certain.
     fn candidate(&mut self, a: u32, b: u32, sure: bool);
+    /// Whether enough has been found.
+    fn enough(&self) -> bool {
+        false
+    }
 }
 
 /// Two trees and how they lie.
@@ -31,6 +35,8 @@ pub(crate) struct Trees<'a> {
     pub(crate) filter: &'a Filter,
     /// Whether both are the same tree, and each pair of different items is wanted once.
     pub(crate) one_body: bool,
+    /// Pairs of which neither item moved are not visited.
+    pub(crate) moved: [Moved; 2],
 }
 
 impl Trees<'_> {
@@ -71,9 +77,12 @@ impl<C: Candidates> Work for Descend<'_, C> {
             relative,
             filter,
             one_body,
+            moved,
+            ..
         } = self.trees;
         let mut visits = 0;
         while visits < self.most as u64
+            && !self.visit.enough()
             && let Some(at) = self.stack.pop()
         {
             visits += 1;
@@ -81,6 +90,8 @@ impl<C: Candidates> Work for Descend<'_, C> {
             let group_b = &b.levels[at.level_b as usize][at.b as usize];
             let same = one_body && at.a == at.b && at.level_a == at.level_b;
             let lanes_a = (level_len(a, at.level_a) - at.a as usize * 8).min(8);
+            let moved_a = a.moved(moved[0], at.level_a, at.a);
+            let moved_b = b.moved(moved[1], at.level_b, at.b);
             if at.level_a == 0 && at.level_b == 0 {
                 leaf(lanes, self.trees, at, group_a, group_b, lanes_a, same, self.visit);
                 continue;
@@ -92,6 +103,9 @@ impl<C: Candidates> Work for Descend<'_, C> {
                 let mut mask = lanes.boxes_within(lower(group_b), upper(group_b), min, max, filter.limit);
                 if same {
                     mask &= !((1 << i) - 1);
+                }
+                if moved_a >> i & 1 == 0 {
+                    mask &= moved_b;
                 }
                 any |= mask;
                 if at.level_b > at.level_a {
@@ -178,8 +192,11 @@ fn leaf<L: Lanes, C: Candidates>(
         b,
         relative,
         filter,
+        moved,
         ..
     } = trees;
+    let moved_a = a.moved(moved[0], 0, at.a);
+    let moved_b = b.moved(moved[1], 0, at.b);
     let (ids_a, ids_b) = (&a.order[at.a as usize * 8..], &b.order[at.b as usize * 8..]);
     let points = if C::POINTS {
         relative.points(&group_a.lower)
@@ -201,6 +218,9 @@ fn leaf<L: Lanes, C: Candidates>(
         };
         if same {
             mask &= !1 << i;
+        }
+        if moved_a >> i & 1 == 0 {
+            mask &= moved_b;
         }
         while mask != 0 {
             let j = mask.trailing_zeros() as usize & 7;

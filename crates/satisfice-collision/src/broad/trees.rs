@@ -1,14 +1,12 @@
 //! All pairs of features within a threshold by kept box trees, of bodies that may have been posed since.
 
-use super::boxes::BoxTree;
-use super::features::{FeatureKind, FeatureTree};
+use super::boxes::{BoxTree, Moved};
+use super::couple::{Couple, Keep, Visitor};
+use super::features::FeatureTree;
 use super::lanes::dispatch;
-use super::order::{Packing, Pair};
-use super::relative::Relative;
-use super::traverse::{Candidates, Descend, Trees, Visit};
-use crate::distance::{
-    Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge, vertex_triangle, vertex_vertex,
-};
+use super::order::Pair;
+use super::traverse::{Descend, Trees, Visit};
+use crate::distance::Threshold;
 use crate::{Error, Placement};
 
 /// What a traversal had to do.
@@ -21,9 +19,6 @@ pub struct TreeWork {
     /// Pairs that the distance itself had to decide.
     pub decisions: u64,
 }
-
-/// Which pairs of features count at all; `None` for all of them.
-pub type Keep<'a> = Option<&'a (dyn Fn(u32, u32) -> bool + Sync)>;
 
 /// Finds pairs of features of kept trees. Keeps its memory from call to call.
 #[derive(Debug, Default)]
@@ -74,92 +69,81 @@ impl TreeJoin {
     /// [`Error::NonFiniteVertex`] if a pose takes a vertex out of range.
     pub fn between(
         &mut self,
-        (a, pose_a): (&FeatureTree, &Placement),
-        (b, pose_b): (&FeatureTree, &Placement),
+        a: (&FeatureTree, &Placement),
+        b: (&FeatureTree, &Placement),
         threshold: Threshold,
         keep: Keep<'_>,
     ) -> Result<&[Pair], Error> {
-        for (tree, pose) in [(a, pose_a), (b, pose_b)] {
-            check_pose(tree, pose)?;
-        }
-        if apart((a, pose_a), (b, pose_b), threshold.get()) {
-            self.work = TreeWork::default();
-            self.pairs.clear();
-            return Ok(&self.pairs);
-        }
-        // the body with the coarser frame is at rest
-        let flip = b.frame.scale > a.frame.scale;
-        let ((moving, pose_m), (rest, pose_r)) = if flip {
-            ((b, pose_b), (a, pose_a))
-        } else {
-            ((a, pose_a), (b, pose_b))
-        };
-        let (relative, filter) = Relative::new(&moving.frame, pose_m, &rest.frame, pose_r, threshold.get());
-        let trees = Trees {
-            a: &moving.tree,
-            b: &rest.tree,
-            relative: &relative,
-            filter: &filter,
+        let couple = Couple {
+            a,
+            b,
             one_body: false,
+            threshold,
+            keep,
+            moved: [Moved::All; 2],
         };
-        self.run(
-            trees,
-            &Judge {
-                a,
-                pose_a,
-                b,
-                pose_b,
-                threshold,
-                keep,
-                flip,
-                one_body: false,
-            },
-        );
+        couple.check()?;
+        self.all(&couple);
         Ok(&self.pairs)
     }
 
     /// All pairs `i < j` of features of one body, where it was put last, that are within the threshold and kept.
     pub fn within(&mut self, body: &FeatureTree, threshold: Threshold, keep: Keep<'_>) -> &[Pair] {
-        let filter = body.frame.filter(threshold.get());
-        let trees = Trees {
-            a: &body.tree,
-            b: &body.tree,
-            relative: &Relative::same(),
-            filter: &filter,
-            one_body: true,
-        };
-        let pose = &Placement::IDENTITY;
-        let judge = Judge {
+        let body = (body, &Placement::IDENTITY);
+        let couple = Couple {
             a: body,
-            pose_a: pose,
             b: body,
-            pose_b: pose,
+            one_body: true,
             threshold,
             keep,
-            flip: false,
-            one_body: true,
+            moved: [Moved::All; 2],
         };
-        self.run(trees, &judge);
+        self.all(&couple);
         &self.pairs
     }
 
-    fn run(&mut self, trees: Trees<'_>, judge: &Judge<'_>) {
-        let points = judge.a.kind() == FeatureKind::Vertex && judge.b.kind() == FeatureKind::Vertex;
-        if points {
-            self.descend::<true>(trees, judge);
-        } else {
-            self.descend::<false>(trees, judge);
+    /// The same without a tree, for a comparison or for a handful of features: every pair is decided. A couple of one body
+    /// gives each pair once.
+    pub(crate) fn brute_force(&mut self, couple: &Couple<'_>) -> &[Pair] {
+        self.pairs.clear();
+        self.work = TreeWork::default();
+        for a in 0..couple.a.0.len() as u32 {
+            let first = if couple.one_body { a + 1 } else { 0 };
+            for b in first..couple.b.0.len() as u32 {
+                if couple.keeps(a, b) {
+                    self.work.decisions += 1;
+                    if couple.within(a, b) {
+                        self.pairs.push(Pair { a, b });
+                    }
+                }
+            }
         }
+        &self.pairs
     }
 
-    fn descend<const POINTS: bool>(&mut self, trees: Trees<'_>, judge: &Judge<'_>) {
-        let packing = Packing::new(judge.a.len(), judge.b.len());
+    /// All pairs of a couple.
+    pub(crate) fn all(&mut self, couple: &Couple<'_>) -> &[Pair] {
+        if couple.apart() {
+            self.work = TreeWork::default();
+            self.pairs.clear();
+        } else if couple.points() {
+            couple.lay(|trees, flip| self.descend::<true>(trees, couple, flip));
+        } else {
+            couple.lay(|trees, flip| self.descend::<false>(trees, couple, flip));
+        }
+        &self.pairs
+    }
+
+    fn descend<const POINTS: bool>(&mut self, trees: Trees<'_>, couple: &Couple<'_>, flip: bool) {
+        let packing = couple.packing();
         let go = |task: &mut Task, most: usize| {
             let Task { stack, found, work } = task;
             let mut visit = Visitor::<POINTS> {
-                judge,
+                couple,
+                flip,
                 packing,
                 found,
+                enough: usize::MAX,
                 work: *work,
             };
             let visits = dispatch(Descend {
@@ -212,122 +196,5 @@ impl TreeJoin {
         }
         let found = self.tasks.iter().map(|task| task.found.as_slice());
         packing.sort(found, &mut self.keys, &mut self.pairs, self.threads);
-    }
-}
-
-/// Whether the balls around the two posed bodies prove them apart: the cheapest of all tests.
-fn apart(
-    (a, pose_a): (&FeatureTree, &Placement),
-    (b, pose_b): (&FeatureTree, &Placement),
-    delta: f64,
-) -> bool {
-    let (centre_a, centre_b) = (pose_a.apply(a.frame.origin), pose_b.apply(b.frame.origin));
-    let reach = (a.radius() + b.radius() + delta) * (1.0 + 1e-9);
-    let size = |c: &[f64; 3]| c[0].abs() + c[1].abs() + c[2].abs();
-    // posing rounds in proportion to the lengths involved; an overflow to infinity or NaN proves nothing
-    let slack = 1e-14 * (size(&centre_a) + size(&centre_b) + size(&a.frame.origin) + size(&b.frame.origin));
-    (0..3).any(|k| (centre_a[k] - centre_b[k]).abs() > reach + slack)
-}
-
-/// Refuses a pose that takes a vertex out of the range of `f64`.
-fn check_pose(tree: &FeatureTree, pose: &Placement) -> Result<(), Error> {
-    let farthest =
-        tree.frame.half / tree.frame.scale + tree.frame.origin.iter().fold(0.0, |m, c| c.abs().max(m));
-    let moved = pose.translation().iter().fold(0.0_f64, |m, c| c.abs().max(m));
-    if (4.0 * farthest + moved).is_finite() {
-        return Ok(());
-    }
-    for (vertex, &point) in tree.vertices().iter().enumerate() {
-        let posed = pose.apply(point);
-        if let Some(k) = posed.iter().position(|c| !c.is_finite()) {
-            return Err(Error::NonFiniteVertex {
-                vertex,
-                axis: ['x', 'y', 'z'][k],
-                value: posed[k],
-            });
-        }
-    }
-    Ok(())
-}
-
-/// The question asked of every candidate.
-struct Judge<'a> {
-    a: &'a FeatureTree,
-    pose_a: &'a Placement,
-    b: &'a FeatureTree,
-    pose_b: &'a Placement,
-    threshold: Threshold,
-    keep: Keep<'a>,
-    /// Whether the first tree of the traversal is `b`.
-    flip: bool,
-    one_body: bool,
-}
-
-impl Judge<'_> {
-    fn within(&self, i: u32, j: u32) -> bool {
-        let (a, b, threshold) = (self.a, self.b, self.threshold);
-        let at_a = |p| self.pose_a.apply(p);
-        let at_b = |p| self.pose_b.apply(p);
-        match (a.kind(), b.kind()) {
-            (FeatureKind::Vertex, FeatureKind::Vertex) => {
-                vertex_vertex::within(&at_a(a.point(i)), &at_b(b.point(j)), threshold)
-            }
-            (FeatureKind::Vertex, FeatureKind::Edge) => {
-                vertex_edge::within(&at_a(a.point(i)), &b.segment(j).map(at_b), threshold)
-            }
-            (FeatureKind::Edge, FeatureKind::Vertex) => {
-                vertex_edge::within(&at_b(b.point(j)), &a.segment(i).map(at_a), threshold)
-            }
-            (FeatureKind::Vertex, FeatureKind::Triangle) => {
-                vertex_triangle::within(&at_a(a.point(i)), &b.triangle(j).map(at_b), threshold)
-            }
-            (FeatureKind::Triangle, FeatureKind::Vertex) => {
-                vertex_triangle::within(&at_b(b.point(j)), &a.triangle(i).map(at_a), threshold)
-            }
-            (FeatureKind::Edge, FeatureKind::Edge) => {
-                edge_edge::within(&a.segment(i).map(at_a), &b.segment(j).map(at_b), threshold)
-            }
-            (FeatureKind::Edge, FeatureKind::Triangle) => {
-                edge_triangle::within(&a.segment(i).map(at_a), &b.triangle(j).map(at_b), threshold)
-            }
-            (FeatureKind::Triangle, FeatureKind::Edge) => {
-                edge_triangle::within(&b.segment(j).map(at_b), &a.triangle(i).map(at_a), threshold)
-            }
-            (FeatureKind::Triangle, FeatureKind::Triangle) => {
-                triangle_triangle::within(&a.triangle(i).map(at_a), &b.triangle(j).map(at_b), threshold)
-            }
-        }
-    }
-}
-
-struct Visitor<'a, const POINTS: bool> {
-    judge: &'a Judge<'a>,
-    packing: Packing,
-    found: &'a mut Vec<u64>,
-    work: TreeWork,
-}
-
-impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
-    const POINTS: bool = POINTS;
-
-    #[inline]
-    fn candidate(&mut self, first: u32, second: u32, sure: bool) {
-        let swap = if self.judge.one_body {
-            first > second
-        } else {
-            self.judge.flip
-        };
-        let (a, b) = if swap { (second, first) } else { (first, second) };
-        self.work.candidates += 1;
-        if self.judge.keep.is_some_and(|keep| !keep(a, b)) {
-            return;
-        }
-        if !sure {
-            self.work.decisions += 1;
-            if !self.judge.within(a, b) {
-                return;
-            }
-        }
-        self.found.push(self.packing.pack(a, b));
     }
 }

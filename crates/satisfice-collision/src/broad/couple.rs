@@ -1,0 +1,273 @@
+//! Two posed bodies, or one with itself, and the question asked of every pair of their features.
+
+use super::boxes::Moved;
+use super::features::{FeatureKind, FeatureTree};
+use super::lanes::dispatch;
+use super::order::{Packing, Pair};
+use super::relative::Relative;
+use super::traverse::{Candidates, Descend, Trees, Visit};
+use super::trees::TreeWork;
+use crate::distance::{
+    Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge, vertex_triangle, vertex_vertex,
+};
+use crate::{Error, Placement};
+
+/// Which pairs of features count at all; `None` for all of them.
+pub type Keep<'a> = Option<&'a (dyn Fn(u32, u32) -> bool + Sync)>;
+
+/// What is asked.
+#[derive(Clone, Copy)]
+pub(crate) struct Couple<'a> {
+    pub(crate) a: (&'a FeatureTree, &'a Placement),
+    pub(crate) b: (&'a FeatureTree, &'a Placement),
+    /// Whether `a` and `b` are one tree, and each pair of different features is wanted once.
+    pub(crate) one_body: bool,
+    pub(crate) threshold: Threshold,
+    pub(crate) keep: Keep<'a>,
+    /// Only pairs of which one feature counts as moved are wanted.
+    pub(crate) moved: [Moved; 2],
+}
+
+impl Couple<'_> {
+    /// Refuses poses that take a vertex out of the range of `f64`.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for (tree, pose) in [self.a, self.b] {
+            check_pose(tree, pose)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the cheapest of all tests proves the bodies apart.
+    pub(crate) fn apart(&self) -> bool {
+        !self.one_body && apart(self.a, self.b, self.threshold.get())
+    }
+
+    /// Whether every feature is a point.
+    pub(crate) fn points(&self) -> bool {
+        self.a.0.kind() == FeatureKind::Vertex && self.b.0.kind() == FeatureKind::Vertex
+    }
+
+    pub(crate) fn packing(&self) -> Packing {
+        Packing::new(self.a.0.len(), self.b.0.len())
+    }
+
+    pub(crate) fn keeps(&self, a: u32, b: u32) -> bool {
+        self.keep.is_none_or(|keep| keep(a, b))
+    }
+
+    /// Brings both trees into one frame: that of the body with the coarser one. `then` is told whether the first of the trees
+    /// is `b`.
+    pub(crate) fn lay<R>(&self, then: impl FnOnce(Trees<'_>, bool) -> R) -> R {
+        let ((a, pose_a), (b, pose_b)) = (self.a, self.b);
+        if self.one_body {
+            let filter = &a.frame.filter(self.threshold.get());
+            let relative = &Relative::same();
+            return then(
+                Trees {
+                    a: &a.tree,
+                    b: &a.tree,
+                    relative,
+                    filter,
+                    one_body: true,
+                    moved: self.moved,
+                },
+                false,
+            );
+        }
+        let flip = b.frame.scale > a.frame.scale;
+        let [moved_a, moved_b] = self.moved;
+        let ((a, pose_a, moved_a), (b, pose_b, moved_b)) = if flip {
+            ((b, pose_b, moved_b), (a, pose_a, moved_a))
+        } else {
+            ((a, pose_a, moved_a), (b, pose_b, moved_b))
+        };
+        let (relative, filter) = &Relative::new(&a.frame, pose_a, &b.frame, pose_b, self.threshold.get());
+        let moved = [moved_a, moved_b];
+        then(
+            Trees {
+                a: &a.tree,
+                b: &b.tree,
+                relative,
+                filter,
+                one_body: false,
+                moved,
+            },
+            flip,
+        )
+    }
+
+    /// Goes on with a descent that `stack` holds: at most `most` visits, at most about `enough` pairs, which are appended to
+    /// `found` without order. The descent starts with `start` and has ended when the stack is empty.
+    pub(crate) fn step(
+        &self,
+        stack: &mut Vec<Visit>,
+        most: usize,
+        enough: usize,
+        found: &mut Vec<Pair>,
+    ) -> TreeWork {
+        let packing = self.packing();
+        let mut keys = Vec::new();
+        let work = self.lay(|trees, flip| {
+            let mut go = |points: bool| {
+                let work = TreeWork::default();
+                if points {
+                    let mut visit = Visitor::<true> {
+                        couple: self,
+                        flip,
+                        packing,
+                        found: &mut keys,
+                        enough,
+                        work,
+                    };
+                    let visits = dispatch(Descend {
+                        trees,
+                        stack,
+                        most,
+                        visit: &mut visit,
+                    });
+                    TreeWork { visits, ..visit.work }
+                } else {
+                    let mut visit = Visitor::<false> {
+                        couple: self,
+                        flip,
+                        packing,
+                        found: &mut keys,
+                        enough,
+                        work,
+                    };
+                    let visits = dispatch(Descend {
+                        trees,
+                        stack,
+                        most,
+                        visit: &mut visit,
+                    });
+                    TreeWork { visits, ..visit.work }
+                }
+            };
+            go(self.points())
+        });
+        found.extend(keys.into_iter().map(|key| packing.unpack(key)));
+        work
+    }
+
+    /// Where a descent starts.
+    pub(crate) fn start(&self, stack: &mut Vec<Visit>) {
+        stack.clear();
+        if !self.apart() {
+            self.lay(|trees, _| trees.start(stack));
+        }
+    }
+
+    /// Whether feature `i` of `a` and feature `j` of `b` are closer than the threshold: the exact decision.
+    pub(crate) fn within(&self, i: u32, j: u32) -> bool {
+        let ((a, pose_a), (b, pose_b), threshold) = (self.a, self.b, self.threshold);
+        let at_a = |p| pose_a.apply(p);
+        let at_b = |p| pose_b.apply(p);
+        match (a.kind(), b.kind()) {
+            (FeatureKind::Vertex, FeatureKind::Vertex) => {
+                vertex_vertex::within(&at_a(a.point(i)), &at_b(b.point(j)), threshold)
+            }
+            (FeatureKind::Vertex, FeatureKind::Edge) => {
+                vertex_edge::within(&at_a(a.point(i)), &b.segment(j).map(at_b), threshold)
+            }
+            (FeatureKind::Edge, FeatureKind::Vertex) => {
+                vertex_edge::within(&at_b(b.point(j)), &a.segment(i).map(at_a), threshold)
+            }
+            (FeatureKind::Vertex, FeatureKind::Triangle) => {
+                vertex_triangle::within(&at_a(a.point(i)), &b.triangle(j).map(at_b), threshold)
+            }
+            (FeatureKind::Triangle, FeatureKind::Vertex) => {
+                vertex_triangle::within(&at_b(b.point(j)), &a.triangle(i).map(at_a), threshold)
+            }
+            (FeatureKind::Edge, FeatureKind::Edge) => {
+                edge_edge::within(&a.segment(i).map(at_a), &b.segment(j).map(at_b), threshold)
+            }
+            (FeatureKind::Edge, FeatureKind::Triangle) => {
+                edge_triangle::within(&a.segment(i).map(at_a), &b.triangle(j).map(at_b), threshold)
+            }
+            (FeatureKind::Triangle, FeatureKind::Edge) => {
+                edge_triangle::within(&b.segment(j).map(at_b), &a.triangle(i).map(at_a), threshold)
+            }
+            (FeatureKind::Triangle, FeatureKind::Triangle) => {
+                triangle_triangle::within(&a.triangle(i).map(at_a), &b.triangle(j).map(at_b), threshold)
+            }
+        }
+    }
+}
+
+/// Decides the candidates of a descent.
+pub(crate) struct Visitor<'a, const POINTS: bool> {
+    pub(crate) couple: &'a Couple<'a>,
+    /// Whether the first tree of the descent is `b`.
+    pub(crate) flip: bool,
+    pub(crate) packing: Packing,
+    pub(crate) found: &'a mut Vec<u64>,
+    /// Pairs after which the descent pauses.
+    pub(crate) enough: usize,
+    pub(crate) work: TreeWork,
+}
+
+impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
+    const POINTS: bool = POINTS;
+
+    #[inline]
+    fn enough(&self) -> bool {
+        self.found.len() >= self.enough
+    }
+
+    #[inline]
+    fn candidate(&mut self, first: u32, second: u32, sure: bool) {
+        let swap = if self.couple.one_body {
+            first > second
+        } else {
+            self.flip
+        };
+        let (a, b) = if swap { (second, first) } else { (first, second) };
+        self.work.candidates += 1;
+        if !self.couple.keeps(a, b) {
+            return;
+        }
+        if !sure {
+            self.work.decisions += 1;
+            if !self.couple.within(a, b) {
+                return;
+            }
+        }
+        self.found.push(self.packing.pack(a, b));
+    }
+}
+
+/// Whether the balls around the two posed bodies prove them apart: the cheapest of all tests.
+fn apart(
+    (a, pose_a): (&FeatureTree, &Placement),
+    (b, pose_b): (&FeatureTree, &Placement),
+    delta: f64,
+) -> bool {
+    let (centre_a, centre_b) = (pose_a.apply(a.frame.origin), pose_b.apply(b.frame.origin));
+    let reach = (a.radius() + b.radius() + delta) * (1.0 + 1e-9);
+    let size = |c: &[f64; 3]| c[0].abs() + c[1].abs() + c[2].abs();
+    // posing rounds in proportion to the lengths involved; an overflow to infinity or NaN proves nothing
+    let slack = 1e-14 * (size(&centre_a) + size(&centre_b) + size(&a.frame.origin) + size(&b.frame.origin));
+    (0..3).any(|k| (centre_a[k] - centre_b[k]).abs() > reach + slack)
+}
+
+/// Refuses a pose that takes a vertex out of the range of `f64`.
+fn check_pose(tree: &FeatureTree, pose: &Placement) -> Result<(), Error> {
+    let farthest =
+        tree.frame.half / tree.frame.scale + tree.frame.origin.iter().fold(0.0, |m, c| c.abs().max(m));
+    let moved = pose.translation().iter().fold(0.0_f64, |m, c| c.abs().max(m));
+    if (4.0 * farthest + moved).is_finite() {
+        return Ok(());
+    }
+    for (vertex, &point) in tree.vertices().iter().enumerate() {
+        let posed = pose.apply(point);
+        if let Some(k) = posed.iter().position(|c| !c.is_finite()) {
+            return Err(Error::NonFiniteVertex {
+                vertex,
+                axis: ['x', 'y', 'z'][k],
+                value: posed[k],
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,203 @@
+//! A frame under a budget: the likeliest pairs first, and an exact resume.
+
+use super::link::{Near, couple, keeps};
+use super::{Completeness, Contact, Frame, Scene, Skips};
+use crate::Error;
+use crate::broad::{Pair, Visit};
+
+/// Pairs verified between two questions to the budget.
+const STRIDE: usize = 64;
+/// Pairs of groups of eight boxes visited between two questions to the budget.
+const VISITS: usize = 16;
+
+/// A frame that is being enumerated piece by piece. First the pairs of the last frame are verified, those of the pairs of
+/// bodies with most contacts first; then the bodies are searched in the same order.
+pub struct Pass {
+    frame: u64,
+    order: Vec<usize>,
+    /// For each link the pairs delivered so far.
+    delivered: Vec<Vec<Pair>>,
+    contacts: Vec<Contact>,
+    phase: Phase,
+    skips: Skips,
+}
+
+enum Phase {
+    /// Verifying pair `next` of the link at `turn` of the order.
+    Verify {
+        turn: usize,
+        next: usize,
+    },
+    /// Descending; the stack is empty between links. `verified` counts the pairs of this link from the first phase.
+    Search {
+        turn: usize,
+        stack: Vec<Visit>,
+        started: bool,
+        verified: usize,
+    },
+    Done,
+}
+
+impl Pass {
+    /// The contacts found so far, in the order in which they were found; nothing twice.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// `Proved` once every pair has been decided or excluded.
+    #[must_use]
+    pub fn completeness(&self) -> Completeness {
+        match self.phase {
+            Phase::Done => Completeness::Proved,
+            _ => Completeness::Unknown,
+        }
+    }
+
+    /// What was skipped so far, and why.
+    #[must_use]
+    pub fn skips(&self) -> Skips {
+        self.skips
+    }
+
+    /// The contacts so far as an answer, sorted.
+    #[must_use]
+    pub fn into_frame(self) -> Frame {
+        let completeness = self.completeness();
+        let mut contacts = self.contacts;
+        contacts.sort_unstable();
+        Frame {
+            contacts,
+            completeness,
+            skips: self.skips,
+        }
+    }
+}
+
+impl Scene {
+    /// Starts the frame that `place` and `deform` described. Nothing is searched yet.
+    #[must_use]
+    pub fn pass(&mut self) -> Pass {
+        self.settle();
+        let mut order: Vec<usize> = (0..self.links.len()).collect();
+        order.sort_by_key(|&at| (std::cmp::Reverse(self.links[at].pairs.len()), at));
+        Pass {
+            frame: self.frame,
+            order,
+            delivered: vec![Vec::new(); self.links.len()],
+            contacts: Vec::new(),
+            phase: Phase::Verify { turn: 0, next: 0 },
+            skips: self.start_skips(),
+        }
+    }
+
+    /// Goes on with a pass until it is complete or `stop` says so; `stop` is asked every few microseconds and may look at a
+    /// clock, a counter or `found` contacts. Called again, it goes on exactly where it stopped: however often it is interrupted,
+    /// a pass delivers the same contacts in the same order. What it delivered is what the next pass tries first.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the scene has moved since the pass began.
+    pub fn advance(
+        &mut self,
+        pass: &mut Pass,
+        stop: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<Completeness, Error> {
+        if pass.frame != self.frame || !self.linked || pass.delivered.len() != self.links.len() {
+            return Err(Error::parameter(
+                "pass",
+                pass.frame,
+                "a pass of the present frame",
+            ));
+        }
+        while !matches!(pass.phase, Phase::Done) && !stop(pass.contacts.len()) {
+            self.piece(pass)?;
+        }
+        Ok(pass.completeness())
+    }
+
+    /// Ends a pass: its contacts are what the next frame starts from, complete or not.
+    pub fn finish(&mut self, pass: Pass) -> Frame {
+        let done = matches!(pass.phase, Phase::Done);
+        if pass.frame == self.frame && pass.delivered.len() == self.links.len() {
+            for (link, pairs) in self.links.iter_mut().zip(&pass.delivered) {
+                link.pairs.clone_from(pairs);
+                link.pairs.sort_unstable();
+                link.forget(done.then_some(self.frame));
+            }
+        }
+        pass.into_frame()
+    }
+
+    fn piece(&mut self, pass: &mut Pass) -> Result<(), Error> {
+        match &mut pass.phase {
+            Phase::Verify { turn, next } => {
+                let Some(&at) = pass.order.get(*turn) else {
+                    pass.phase = Phase::Search {
+                        turn: 0,
+                        stack: Vec::new(),
+                        started: false,
+                        verified: 0,
+                    };
+                    return Ok(());
+                };
+                let link = &self.links[at];
+                let end = link.pairs.len().min(*next + STRIDE);
+                for &pair in &link.pairs[*next..end] {
+                    if self.decide(link, pair) {
+                        pass.delivered[at].push(pair);
+                        pass.contacts.push(link.contact(pair));
+                    }
+                }
+                *next = end;
+                if end == link.pairs.len() {
+                    (*turn, *next) = (*turn + 1, 0);
+                }
+            }
+            Phase::Search {
+                turn,
+                stack,
+                started,
+                verified,
+            } => {
+                let Some(&at) = pass.order.get(*turn) else {
+                    pass.phase = Phase::Done;
+                    return Ok(());
+                };
+                let delivered = &mut pass.delivered[at];
+                if !*started {
+                    *verified = delivered.len();
+                    if self.boxes_apart(at) {
+                        pass.skips.boxes_apart += 1;
+                        *turn += 1;
+                        return Ok(());
+                    }
+                    let (a, b) = (self.links[at].a, self.links[at].b);
+                    self.ready(a, b)?;
+                }
+                let link = &self.links[at];
+                let (one, two, one_body) = (&self.states[link.a], &self.states[link.b], link.a == link.b);
+                let near = Near::default();
+                let keep = |i: u32, j: u32| keeps(self.kind, one, two, one_body, Pair { a: i, b: j }, &near);
+                if let Some(couple) = couple(self.kind, one, two, one_body, self.threshold, &keep) {
+                    if !*started {
+                        couple.start(stack);
+                    }
+                    let mut found = Vec::new();
+                    couple.step(stack, VISITS, usize::MAX, &mut found);
+                    for pair in found {
+                        // the last frame's pairs are sorted, and so are those of them that were verified
+                        if delivered[..*verified].binary_search(&pair).is_err() {
+                            delivered.push(pair);
+                            pass.contacts.push(link.contact(pair));
+                        }
+                    }
+                }
+                near.count(&mut pass.skips);
+                *started = !stack.is_empty();
+                *turn += usize::from(stack.is_empty());
+            }
+            Phase::Done => {}
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,280 @@
+//! A body inside a scene: where it is, what of it moved, and the trees kept over it.
+
+use super::body::{Body, Motion};
+use crate::broad::{FeatureKind, FeatureTree, Moved};
+use crate::distance::{Point, Segment, Triangle};
+use crate::{Aabb, Adjacency, Error, Placement};
+
+/// A body, its place at the last frame, and what is kept about it.
+pub(super) struct State {
+    pub(super) body: Body,
+    /// Where each vertex of the mesh is, before the placement.
+    pub(super) vertices: Vec<Point>,
+    pub(super) placement: Placement,
+    next_vertices: Vec<Point>,
+    has_next: bool,
+    next_placement: Option<Placement>,
+    /// What moved between the last two frames.
+    pub(super) moved: Moved,
+    /// Share of the vertices that moved.
+    pub(super) share: f64,
+    /// No vertex moved further than this.
+    pub(super) motion: f64,
+    /// The box of the posed vertices, roundings included.
+    pub(super) bounds: Aabb,
+    local: Aabb,
+    posed: Vec<Point>,
+    posed_is_current: bool,
+    trees: [Option<Kept>; 3],
+    /// Vertices within the excluded ring of each vertex.
+    pub(super) rings: Option<Adjacency>,
+}
+
+struct Kept {
+    tree: FeatureTree,
+    current: bool,
+}
+
+impl State {
+    pub(super) fn new(body: Body) -> Self {
+        let vertices = body.mesh.vertices().to_vec();
+        let local = body.mesh.bounds();
+        let rings = body
+            .ring
+            .filter(|&width| width > 0)
+            .map(|width| body.mesh.adjacency().rings(width));
+        let placement = body.placement;
+        let mut state = Self {
+            body,
+            vertices,
+            placement,
+            next_vertices: Vec::new(),
+            has_next: false,
+            next_placement: None,
+            moved: Moved::All,
+            share: 1.0,
+            motion: f64::INFINITY,
+            bounds: local,
+            local,
+            posed: Vec::new(),
+            posed_is_current: false,
+            trees: [None, None, None],
+            rings,
+        };
+        state.bounds = state.posed_bounds(&placement);
+        state
+    }
+
+    /// Remembers where the vertices go at the next frame.
+    pub(super) fn deform(&mut self, vertices: &[Point]) -> Result<(), Error> {
+        if self.body.motion != Motion::Deforming {
+            return Err(Error::parameter(
+                "body",
+                "not deforming",
+                "only a deforming body has moving vertices",
+            ));
+        }
+        if vertices.len() != self.vertices.len() {
+            return Err(Error::parameter(
+                "number of vertices",
+                vertices.len(),
+                "a frame has as many vertices as its body",
+            ));
+        }
+        crate::broad::check_finite(vertices)?;
+        self.next_vertices.clear();
+        self.next_vertices.extend_from_slice(vertices);
+        self.has_next = true;
+        Ok(())
+    }
+
+    /// Remembers where the body goes at the next frame.
+    pub(super) fn place(&mut self, placement: Placement) -> Result<(), Error> {
+        if self.body.motion != Motion::Rigid {
+            return Err(Error::parameter(
+                "body",
+                "not rigid",
+                "only a rigid body has a moving placement",
+            ));
+        }
+        let bounds = self.posed_bounds(&placement);
+        if bounds.min.iter().chain(&bounds.max).any(|c| !c.is_finite()) {
+            for (vertex, &point) in self.vertices.iter().enumerate() {
+                let posed = placement.apply(point);
+                if let Some(k) = posed.iter().position(|c| !c.is_finite()) {
+                    return Err(Error::NonFiniteVertex {
+                        vertex,
+                        axis: ['x', 'y', 'z'][k],
+                        value: posed[k],
+                    });
+                }
+            }
+        }
+        self.next_placement = Some(placement);
+        Ok(())
+    }
+
+    /// Whether a next frame has been given.
+    pub(super) fn is_pending(&self) -> bool {
+        self.has_next || self.next_placement.is_some()
+    }
+
+    /// Goes to the next frame.
+    pub(super) fn settle(&mut self) {
+        (self.moved, self.share, self.motion) = (Moved::None, 0.0, 0.0);
+        if let Some(placement) = self.next_placement.take()
+            && placement != self.placement
+        {
+            self.motion = self.motion_to(&placement);
+            (self.moved, self.share) = (Moved::All, 1.0);
+            self.placement = placement;
+            self.posed_is_current = false;
+            self.bounds = self.posed_bounds(&placement);
+        }
+        if std::mem::take(&mut self.has_next) {
+            let (mut count, mut square) = (0, 0.0);
+            for (old, new) in self.vertices.iter().zip(&self.next_vertices) {
+                let d: f64 = (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum();
+                count += usize::from(old != new);
+                square = if d > square { d } else { square };
+            }
+            if count > 0 {
+                std::mem::swap(&mut self.vertices, &mut self.next_vertices);
+                self.moved = Moved::Marked;
+                self.share = count as f64 / self.vertices.len() as f64;
+                // rounded up; squares that underflow belong to motions below 1e-153
+                self.motion = square.sqrt() * (1.0 + 1e-12) + 1e-153;
+                if let Some(bounds) = Aabb::of_points(self.vertices.iter().copied()) {
+                    (self.local, self.bounds) = (bounds, bounds);
+                }
+                self.trees
+                    .iter_mut()
+                    .flatten()
+                    .for_each(|kept| kept.current = false);
+            }
+        }
+    }
+
+    /// The tree over features of this kind, refitted if the vertices have moved since.
+    pub(super) fn ready(&mut self, kind: FeatureKind) -> Result<(), Error> {
+        let slot = &mut self.trees[kind as usize];
+        match slot {
+            Some(kept) if kept.current => {}
+            Some(kept) => {
+                kept.tree.refit(&self.vertices)?;
+                kept.current = true;
+            }
+            None => {
+                let mesh = if self.body.motion == Motion::Deforming {
+                    &self.body.mesh.with_vertices(self.vertices.clone())?
+                } else {
+                    &self.body.mesh
+                };
+                *slot = Some(Kept {
+                    tree: FeatureTree::new(mesh, kind),
+                    current: true,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The tree; `ready` has to come first.
+    pub(super) fn tree(&self, kind: FeatureKind) -> Option<&FeatureTree> {
+        self.trees[kind as usize].as_ref().map(|kept| &kept.tree)
+    }
+
+    /// Computes the posed vertices if they are out of date.
+    pub(super) fn pose(&mut self) {
+        if self.placement != Placement::IDENTITY && !self.posed_is_current {
+            self.posed.clear();
+            self.posed
+                .extend(self.vertices.iter().map(|&p| self.placement.apply(p)));
+            self.posed_is_current = true;
+        }
+    }
+
+    /// The posed vertices; `pose` has to come first.
+    pub(super) fn posed(&self) -> &[Point] {
+        if self.placement == Placement::IDENTITY {
+            &self.vertices
+        } else {
+            &self.posed
+        }
+    }
+
+    /// Where a vertex is in the world.
+    #[inline]
+    pub(super) fn vertex(&self, v: u32) -> Point {
+        self.placement.apply(self.vertices[v as usize])
+    }
+
+    /// The ends of an edge in the world.
+    #[inline]
+    pub(super) fn segment(&self, e: u32) -> Segment {
+        self.body.mesh.edges()[e as usize].map(|v| self.vertex(v))
+    }
+
+    /// The corners of a triangle in the world.
+    #[inline]
+    pub(super) fn triangle(&self, t: u32) -> Triangle {
+        self.body.mesh.triangles()[t as usize].map(|v| self.vertex(v))
+    }
+
+    /// The vertices of a feature, the last repeated to make three.
+    #[inline]
+    pub(super) fn corners_of(&self, kind: FeatureKind, feature: u32) -> [u32; 3] {
+        match kind {
+            FeatureKind::Vertex => [feature; 3],
+            FeatureKind::Edge => {
+                let [a, b] = self.body.mesh.edges()[feature as usize];
+                [a, b, b]
+            }
+            FeatureKind::Triangle => self.body.mesh.triangles()[feature as usize],
+        }
+    }
+
+    /// How many features of a kind there are.
+    pub(super) fn count(&self, kind: FeatureKind) -> usize {
+        match kind {
+            FeatureKind::Vertex => self.vertices.len(),
+            FeatureKind::Edge => self.body.mesh.edges().len(),
+            FeatureKind::Triangle => self.body.mesh.triangles().len(),
+        }
+    }
+
+    fn corners(&self) -> [Point; 8] {
+        let sides = [self.local.min, self.local.max];
+        std::array::from_fn(|c| [sides[c & 1][0], sides[c >> 1 & 1][1], sides[c >> 2][2]])
+    }
+
+    /// A rotated box is the hull of its rotated corners; posing rounds in proportion to the lengths involved.
+    fn posed_bounds(&self, placement: &Placement) -> Aabb {
+        if *placement == Placement::IDENTITY {
+            return self.local;
+        }
+        let mut bounds = Aabb::point(placement.apply(self.corners()[0]));
+        self.corners()
+            .iter()
+            .for_each(|&corner| bounds.include(placement.apply(corner)));
+        let slack = self.rounding(placement);
+        Aabb {
+            min: bounds.min.map(|c| c - slack),
+            max: bounds.max.map(|c| c + slack),
+        }
+    }
+
+    fn rounding(&self, placement: &Placement) -> f64 {
+        let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        1e-14 * (largest(&self.local.min) + largest(&self.local.max) + largest(&placement.translation()))
+    }
+
+    /// The displacement between two placements is an affine function of the point, so its length is largest at a corner.
+    fn motion_to(&self, next: &Placement) -> f64 {
+        let square = self.corners().iter().fold(0.0_f64, |most, &corner| {
+            let (old, new) = (self.placement.apply(corner), next.apply(corner));
+            most.max((0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum())
+        });
+        square.sqrt() * (1.0 + 1e-12) + 4.0 * (self.rounding(&self.placement) + self.rounding(next)) + 1e-153
+    }
+}

@@ -1,0 +1,425 @@
+//! Scenes over several frames against brute force over all pairs of features, by every method and query.
+#![allow(clippy::unwrap_used)]
+
+use super::{Body, Completeness, Contact, Scene};
+use crate::broad::Method;
+use crate::distance::{
+    PairKind, Point, Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex,
+};
+use crate::{Error, Mesh, Placement, generate};
+
+const KINDS: [PairKind; 4] = [
+    PairKind::VertexVertex,
+    PairKind::VertexTriangle,
+    PairKind::EdgeEdge,
+    PairKind::TriangleTriangle,
+];
+
+/// What the referee knows of a body: its posed mesh and whether it collides with itself, beyond which ring.
+struct Posed {
+    mesh: Mesh,
+    ring: Option<usize>,
+}
+
+fn features(mesh: &Mesh, kind: PairKind, second: bool) -> Vec<Vec<u32>> {
+    match (kind, second) {
+        (PairKind::VertexVertex, _) | (PairKind::VertexTriangle, false) => {
+            (0..mesh.vertices().len() as u32).map(|v| vec![v]).collect()
+        }
+        (PairKind::EdgeEdge, _) => mesh.edges().iter().map(|e| e.to_vec()).collect(),
+        _ => mesh.triangles().iter().map(|t| t.to_vec()).collect(),
+    }
+}
+
+fn within(kind: PairKind, a: &[Point], b: &[Point], threshold: Threshold) -> bool {
+    match kind {
+        PairKind::VertexVertex => vertex_vertex::within(&a[0], &b[0], threshold),
+        PairKind::VertexTriangle => vertex_triangle::within(&a[0], &[b[0], b[1], b[2]], threshold),
+        PairKind::EdgeEdge => edge_edge::within(&[a[0], a[1]], &[b[0], b[1]], threshold),
+        _ => triangle_triangle::within(&[a[0], a[1], a[2]], &[b[0], b[1], b[2]], threshold),
+    }
+}
+
+/// All contacts, by trying everything.
+fn referee(bodies: &[Posed], kind: PairKind, delta: f64) -> Vec<Contact> {
+    let threshold = Threshold::new(delta).unwrap();
+    let symmetric = kind != PairKind::VertexTriangle;
+    let mut contacts = Vec::new();
+    for (body_a, one) in bodies.iter().enumerate() {
+        for (body_b, two) in bodies.iter().enumerate() {
+            if (symmetric && body_a > body_b) || (body_a == body_b && one.ring.is_none()) {
+                continue;
+            }
+            let (of_a, of_b) = (features(&one.mesh, kind, false), features(&two.mesh, kind, true));
+            for (i, a) in of_a.iter().enumerate() {
+                let ring: Vec<u32> = match (body_a == body_b, one.ring) {
+                    (true, Some(width)) => a
+                        .iter()
+                        .flat_map(|&v| [one.mesh.adjacency().ring(v, width), vec![v]].concat())
+                        .collect(),
+                    _ => Vec::new(),
+                };
+                for (j, b) in of_b.iter().enumerate() {
+                    if (body_a == body_b && symmetric && j <= i) || b.iter().any(|v| ring.contains(v)) {
+                        continue;
+                    }
+                    let points =
+                        |mesh: &Mesh, of: &[u32]| of.iter().map(|&v| mesh.vertex(v)).collect::<Vec<_>>();
+                    if within(kind, &points(&one.mesh, a), &points(&two.mesh, b), threshold) {
+                        contacts.push(Contact {
+                            body_a,
+                            body_b,
+                            a: i as u32,
+                            b: j as u32,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    contacts.sort_unstable();
+    contacts
+}
+
+fn turn(angle: f64, by: [f64; 3]) -> Placement {
+    Placement::from_axis_angle([0.2, 1.0, 0.3], angle)
+        .unwrap()
+        .moved(by)
+        .unwrap()
+}
+
+/// Frames in which bodies rest, creep, jump, part, deform in one corner and deform everywhere. Calls `check` after each.
+fn play(scene: &mut Scene, mut check: impl FnMut(&mut Scene, &[Posed], usize)) {
+    let torus = generate::torus(1.0, 0.35, 14, 8).unwrap();
+    let ball = generate::icosphere(0.5, 1).unwrap();
+    let sheet = generate::cloth(2.0, 2.0, 9, 9).unwrap();
+    let fixed = scene.add(Body::fixed(torus.clone()).at(turn(0.4, [0.0, 0.1, 0.0])));
+    let rigid = scene.add(Body::rigid(ball.clone()));
+    let soft = scene.add(Body::deforming(sheet.clone()).beyond_ring(1));
+    assert_eq!((fixed, rigid, soft), (0, 1, 2));
+    let mut posed = vec![
+        Posed {
+            mesh: turn(0.4, [0.0, 0.1, 0.0]).place(&torus).unwrap(),
+            ring: None,
+        },
+        Posed {
+            mesh: ball.clone(),
+            ring: None,
+        },
+        Posed {
+            mesh: sheet.clone(),
+            ring: Some(1),
+        },
+    ];
+    let mut points = sheet.vertices().to_vec();
+    let centre = |points: &[Point]| points[40];
+    for frame in 0..14 {
+        let t = frame as f64;
+        let place = match frame {
+            0..=3 => Some(turn(0.3, [0.4 + 0.002 * t, 0.1, 0.05])),
+            5 => Some(turn(1.0, [-0.6, 0.2, 0.1])),
+            8 => Some(turn(1.0, [50.0, 0.0, 0.0])),
+            10 => Some(turn(0.2, [0.1, -0.3, 0.2])),
+            _ => None,
+        };
+        if let Some(place) = place {
+            scene.place(rigid, place).unwrap();
+            posed[1].mesh = place.place(&ball).unwrap();
+        }
+        let deform = match frame {
+            2 | 3 | 6 => {
+                points[..5].iter_mut().for_each(|p| p[2] += 0.03);
+                true
+            }
+            7 | 10 | 11 => {
+                let c = centre(&points);
+                points.iter_mut().enumerate().for_each(|(i, p)| {
+                    for k in 0..3 {
+                        p[k] = c[k] + (p[k] - c[k]) * 0.6 + 0.01 * ((i * 7 + k) % 5) as f64;
+                    }
+                });
+                true
+            }
+            12 | 13 => {
+                points.iter_mut().for_each(|p| p[0] += 0.001);
+                true
+            }
+            _ => false,
+        };
+        if deform {
+            scene.deform(soft, &points).unwrap();
+            posed[2].mesh = sheet.with_vertices(points.clone()).unwrap();
+        }
+        check(scene, &posed, frame);
+    }
+}
+
+#[test]
+fn every_method_agrees_with_brute_force_in_every_frame() {
+    for kind in KINDS {
+        for method in [Method::Auto, Method::BruteForce, Method::Grid, Method::Tree] {
+            let delta = 0.12;
+            let mut scene = Scene::new(kind, Threshold::new(delta).unwrap()).with_method(method);
+            let mut total = 0;
+            play(&mut scene, |scene, posed, frame| {
+                let answer = scene.contacts().unwrap();
+                let expected = referee(posed, kind, delta);
+                assert!(
+                    answer.contacts == expected,
+                    "{kind} {method:?} frame {frame}: {} of {}",
+                    answer.contacts.len(),
+                    expected.len()
+                );
+                assert_eq!(answer.completeness, Completeness::Proved);
+                total += expected.len();
+            });
+            assert!(total > 500, "{kind}: {total}");
+        }
+    }
+}
+
+#[test]
+fn what_need_not_be_done_is_skipped_and_counted() {
+    let kind = PairKind::VertexVertex;
+    let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap()).with_method(Method::Tree);
+    let mut all = Vec::new();
+    play(&mut scene, |scene, _, frame| {
+        let skips = scene.contacts().unwrap().skips;
+        assert_eq!(skips.rigid_self, 2);
+        if frame == 4 || frame == 9 {
+            assert_eq!(skips.unmoved_bodies, 4, "frame {frame}");
+        }
+        if frame == 8 {
+            assert_eq!(skips.boxes_apart, 2);
+        }
+        all.push(skips);
+    });
+    let sum = |of: fn(&super::Skips) -> u64| all.iter().map(of).sum::<u64>();
+    assert!(
+        sum(|s| s.skin_lists) >= 2,
+        "a creeping body is answered from a list"
+    );
+    assert!(
+        sum(|s| s.unmoved_pairs) > 0,
+        "a cloth that moves in one corner keeps the other pairs"
+    );
+    assert!(sum(|s| s.mesh_neighbours) > 0);
+    let reasons = all[0].by_reason();
+    assert!(
+        reasons
+            .iter()
+            .enumerate()
+            .all(|(i, (name, _))| reasons[..i].iter().all(|(other, _)| other != name))
+    );
+}
+
+#[test]
+fn queries_agree_with_the_complete_answer() {
+    for kind in KINDS {
+        let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap());
+        play(&mut scene, |scene, posed, frame| {
+            let expected = referee(posed, kind, 0.12);
+            let mut touching: Vec<_> = expected
+                .iter()
+                .map(|c| (c.body_a.min(c.body_b), c.body_a.max(c.body_b)))
+                .collect();
+            touching.sort_unstable();
+            touching.dedup();
+            assert_eq!(scene.touching().unwrap(), touching, "{kind} frame {frame}");
+            let first = scene.first().unwrap();
+            assert_eq!(first.is_some(), !expected.is_empty());
+            assert!(first.is_none_or(|contact| expected.contains(&contact)));
+            let mut by_distance: Vec<_> = expected
+                .iter()
+                .map(|&contact| (scene.proximity(contact).unwrap().distance, contact))
+                .collect();
+            by_distance.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for k in [0, 1, 7, 10_000] {
+                let closest: Vec<_> = scene
+                    .closest(k)
+                    .unwrap()
+                    .into_iter()
+                    .map(|(contact, p)| (p.distance, contact))
+                    .collect();
+                assert_eq!(
+                    closest,
+                    by_distance[..k.min(by_distance.len())],
+                    "{kind} frame {frame}"
+                );
+            }
+            if frame % 3 == 0 {
+                assert_eq!(scene.contacts().unwrap().contacts, expected);
+            }
+        });
+    }
+}
+
+#[test]
+fn an_interrupted_pass_resumes_exactly() {
+    for kind in KINDS {
+        let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap());
+        let mut twin = Scene::new(kind, Threshold::new(0.12).unwrap());
+        let mut orders = Vec::new();
+        play(&mut twin, |twin, _, _| {
+            let mut pass = twin.pass();
+            twin.advance(&mut pass, &mut |_| false).unwrap();
+            orders.push(pass.contacts().to_vec());
+            twin.finish(pass);
+        });
+        play(&mut scene, |scene, posed, frame| {
+            let mut pass = scene.pass();
+            let mut interruptions = 0;
+            loop {
+                let mut asked = 0;
+                let state = scene
+                    .advance(&mut pass, &mut |_| {
+                        asked += 1;
+                        asked > 2
+                    })
+                    .unwrap();
+                if state == Completeness::Proved {
+                    break;
+                }
+                interruptions += 1;
+            }
+            assert!(interruptions > 0);
+            assert_eq!(pass.contacts(), orders[frame], "{kind} frame {frame}");
+            let answer = scene.finish(pass);
+            assert_eq!(
+                answer.contacts,
+                referee(posed, kind, 0.12),
+                "{kind} frame {frame}"
+            );
+            assert_eq!(answer.completeness, Completeness::Proved);
+        });
+    }
+}
+
+#[test]
+fn a_budget_cut_finds_last_frames_contacts_first() {
+    let sheet = generate::cloth(2.0, 2.0, 60, 60).unwrap();
+    let fold = |t: f64| -> Vec<Point> {
+        let place = |p: &Point| {
+            [
+                p[0],
+                p[1],
+                0.02 * (9.0 * p[0] + t).sin() + 0.02 * (11.0 * p[1] - t).cos(),
+            ]
+        };
+        sheet.vertices().iter().map(place).collect()
+    };
+    let threshold = Threshold::new(0.04).unwrap();
+    let mut scene = Scene::new(PairKind::VertexVertex, threshold);
+    let body = scene.add(Body::deforming(sheet.clone()));
+    scene.deform(body, &fold(0.0)).unwrap();
+    let all = scene.contacts().unwrap().contacts.len();
+    scene.deform(body, &fold(0.05)).unwrap();
+    let mut pass = scene.pass();
+    // as many questions as the verification of last frame's pairs takes
+    let mut left = all / 64 + 1;
+    scene
+        .advance(&mut pass, &mut |_| {
+            left -= 1;
+            left == 0
+        })
+        .unwrap();
+    let cut = pass.into_frame();
+    assert_eq!(cut.completeness, Completeness::Unknown);
+    let now = scene.contacts().unwrap();
+    assert!(
+        all > 2000
+            && cut
+                .contacts
+                .iter()
+                .all(|contact| now.contacts.binary_search(contact).is_ok())
+    );
+    assert!(
+        cut.contacts.len() * 10 > now.contacts.len() * 6,
+        "{} of {}",
+        cut.contacts.len(),
+        now.contacts.len()
+    );
+}
+
+#[test]
+fn filters_leave_out_bodies_and_vertices() {
+    let ball = generate::icosphere(0.5, 1).unwrap();
+    let threshold = Threshold::new(0.1).unwrap();
+    let kind = PairKind::VertexVertex;
+    let mut scene = Scene::new(kind, threshold);
+    for (groups, mask) in [(1, 2), (2, 1), (2, 2), (4, 0)] {
+        scene.add(Body::rigid(ball.clone()).in_groups(groups, mask));
+    }
+    let bodies = |scene: &mut Scene| scene.touching().unwrap();
+    assert_eq!(bodies(&mut scene), [(0, 1)]);
+    assert_eq!(scene.contacts().unwrap().skips.filtered_bodies, 5);
+    scene.exclude(1, 0).unwrap();
+    assert_eq!(bodies(&mut scene), []);
+
+    let mut scene = Scene::new(kind, threshold);
+    scene.add(Body::rigid(ball.clone()).with_vertices(|v| v % 3 == 0));
+    scene.add(Body::fixed(ball.clone()));
+    let answer = scene.contacts().unwrap();
+    let all = referee(
+        &[
+            Posed {
+                mesh: ball.clone(),
+                ring: None,
+            },
+            Posed {
+                mesh: ball,
+                ring: None,
+            },
+        ],
+        kind,
+        0.1,
+    );
+    let expected: Vec<_> = all.into_iter().filter(|contact| contact.a % 3 == 0).collect();
+    assert!(answer.contacts == expected && answer.skips.filtered_vertices > 0);
+}
+
+#[test]
+fn wrong_calls_are_refused_and_change_nothing() {
+    let ball = generate::icosphere(0.5, 1).unwrap();
+    let count = ball.vertices().len();
+    let mut scene = Scene::new(PairKind::EdgeEdge, Threshold::new(0.1).unwrap());
+    assert!(scene.contacts().unwrap().contacts.is_empty() && scene.is_empty());
+    let fixed = scene.add(Body::fixed(ball.clone()));
+    let rigid = scene.add(Body::rigid(ball.clone()));
+    let soft = scene.add(Body::deforming(ball.clone()));
+    let before = scene.contacts().unwrap().contacts;
+    let away = Placement::from_translation([9.0, 0.0, 0.0]).unwrap();
+    assert!(matches!(scene.place(fixed, away), Err(Error::Parameter { .. })));
+    assert!(matches!(scene.place(7, away), Err(Error::Parameter { .. })));
+    assert!(matches!(
+        scene.deform(rigid, ball.vertices()),
+        Err(Error::Parameter { .. })
+    ));
+    assert!(matches!(
+        scene.deform(soft, &ball.vertices()[1..]),
+        Err(Error::Parameter { .. })
+    ));
+    let mut bad = ball.vertices().to_vec();
+    bad[count - 1][2] = f64::NAN;
+    assert!(matches!(
+        scene.deform(soft, &bad),
+        Err(Error::NonFiniteVertex { axis: 'z', .. })
+    ));
+    let far = Placement::from_translation([f64::MAX, 0.0, 0.0]).unwrap();
+    let farther = Placement::from_translation([f64::MAX, f64::MAX, f64::MAX]).unwrap();
+    assert!(scene.place(rigid, far).is_ok() && scene.place(rigid, farther).is_ok());
+    scene.place(rigid, Placement::IDENTITY).unwrap();
+    assert_eq!(scene.contacts().unwrap().contacts, before);
+    let none = Contact {
+        body_a: 0,
+        body_b: 1,
+        a: 1 << 30,
+        b: 0,
+    };
+    assert!(matches!(scene.proximity(none), Err(Error::Parameter { .. })));
+    let stale = scene.pass();
+    scene.place(rigid, away).unwrap();
+    scene.touching().unwrap();
+    let mut stale = stale;
+    assert!(scene.advance(&mut stale, &mut |_| false).is_err());
+}
