@@ -1,5 +1,6 @@
 //! Collision as a satisficing problem; the only part of this crate that knows the search framework.
 
+mod side;
 mod teapots;
 mod vertex_pairs;
 

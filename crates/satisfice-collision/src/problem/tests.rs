@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use satisfice::{Budget, Catalogued, SatisficingProblem, Search, Values, engine};
+use satisfice::{Budget, Catalogued, SatisficingProblem, Search, Values, engine, testing};
 
 use super::*;
 use crate::distance::Threshold;
@@ -280,6 +280,33 @@ fn a_moved_body_keeps_its_places() {
     let mut own = VertexPairs::within(&ball, 0.3, 1).unwrap();
     own.move_b(&place(7.0)).unwrap();
     assert_eq!(own.a(), &place(7.0));
+}
+
+#[test]
+fn the_laws_of_a_problem_hold() {
+    let cloth = generate::cloth(1.0, 1.0, 12, 9).unwrap();
+    let ball = generate::icosphere(0.5, 2).unwrap();
+    let points = cloud(&[[0, 0, 0], [1, 0, 0], [0, 0, 0]]);
+    let some = VertexPairs::between(&cloth, &ball, 0.1).unwrap();
+    for problem in [
+        some.clone(),
+        some.with_vertices(&[3, 5, 90], &[1])
+            .unwrap()
+            .with_joint_moves(true),
+        VertexPairs::within(&cloth, 0.2, 1).unwrap(),
+        VertexPairs::within(&cloth, 0.2, 1)
+            .unwrap()
+            .with_joint_moves(true),
+        VertexPairs::within(&points, 0.2, 0).unwrap(),
+    ] {
+        assert_eq!(
+            testing::problem::check(&problem, 1),
+            [],
+            "{:?}",
+            problem.description()
+        );
+    }
+    assert_eq!(testing::problem::check(&teapots(&[]).unwrap(), 1), []);
 }
 
 // Teapots

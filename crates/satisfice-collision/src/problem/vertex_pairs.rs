@@ -2,6 +2,7 @@
 
 use satisfice::{SatisficingProblem, Space};
 
+use super::side::{Side, square};
 use crate::distance::{Threshold, vertex_vertex};
 use crate::error::Error;
 use crate::mesh::{Adjacency, Mesh};
@@ -54,122 +55,6 @@ enum Bodies {
         excluded: Adjacency,
         far: f64,
     },
-}
-
-/// A body and the order of its chosen vertices.
-#[derive(Debug, Clone)]
-struct Side {
-    mesh: Mesh,
-    order: VertexOrder,
-    /// Position to vertex.
-    vertex_at: Vec<u32>,
-    /// Vertex to position, [`ABSENT`] for a vertex that was not chosen.
-    position_of: Vec<u32>,
-    /// Mesh edges between chosen vertices.
-    neighbours: Adjacency,
-}
-
-const ABSENT: u32 = u32::MAX;
-
-impl Side {
-    fn new(mesh: &Mesh, order: VertexOrder, chosen: &[u32]) -> Self {
-        let points: Vec<[f64; 3]> = chosen.iter().map(|&v| mesh.vertex(v)).collect();
-        let vertex_at: Vec<u32> = order
-            .permutation(&points)
-            .into_iter()
-            .map(|k| chosen[k as usize])
-            .collect();
-        let mut position_of = vec![ABSENT; mesh.vertices().len()];
-        for (position, &v) in vertex_at.iter().enumerate() {
-            position_of[v as usize] = position as u32;
-        }
-        let neighbours = mesh.adjacency().restricted(|v| position_of[v as usize] != ABSENT);
-        Self {
-            mesh: mesh.clone(),
-            order,
-            vertex_at,
-            position_of,
-            neighbours,
-        }
-    }
-
-    fn all(mesh: &Mesh) -> Self {
-        Self::new(
-            mesh,
-            VertexOrder::default(),
-            &(0..mesh.vertices().len() as u32).collect::<Vec<_>>(),
-        )
-    }
-
-    /// The chosen vertices by number.
-    fn chosen(&self) -> Vec<u32> {
-        let mut chosen = self.vertex_at.clone();
-        chosen.sort_unstable();
-        chosen
-    }
-
-    fn choose(&self, vertices: &[u32]) -> Result<Self, Error> {
-        let mut chosen = vertices.to_vec();
-        chosen.sort_unstable();
-        chosen.dedup();
-        let total = self.mesh.vertices().len();
-        match chosen.last() {
-            None => Err(Error::parameter(
-                "chosen vertices",
-                0,
-                "at least one vertex of each body",
-            )),
-            Some(&last) if last as usize >= total => Err(Error::parameter(
-                "chosen vertices",
-                last,
-                "vertex numbers below the number of vertices",
-            )),
-            Some(_) => Ok(Self::new(&self.mesh, self.order, &chosen)),
-        }
-    }
-
-    #[inline]
-    fn vertex(&self, value: f64) -> u32 {
-        // A float beyond the range saturates; the last position takes what is too large.
-        self.vertex_at[(value as usize).min(self.vertex_at.len() - 1)]
-    }
-
-    fn position(&self, vertex: u32) -> Option<f64> {
-        let position = self.position_of.get(vertex as usize)?;
-        (*position != ABSENT).then(|| f64::from(*position))
-    }
-
-    #[inline]
-    fn point(&self, vertex: u32) -> Option<&[f64; 3]> {
-        self.mesh.vertices().get(vertex as usize)
-    }
-
-    fn chosen_points(&self) -> (Vec<u32>, Vec<[f64; 3]>) {
-        let chosen = self.chosen();
-        let points = chosen.iter().map(|&v| self.mesh.vertex(v)).collect();
-        (chosen, points)
-    }
-
-    /// The median length of the edges; infinite where it overflows, 0 without edges.
-    fn spacing(&self) -> f64 {
-        let mut squares: Vec<f64> = self
-            .mesh
-            .edges()
-            .iter()
-            .map(|&[i, j]| square(&self.mesh.vertex(i), &self.mesh.vertex(j)))
-            .collect();
-        if squares.is_empty() {
-            return 0.0;
-        }
-        let middle = squares.len() / 2;
-        squares.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt()
-    }
-}
-
-#[inline]
-fn square(p: &[f64; 3], q: &[f64; 3]) -> f64 {
-    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    x * x + y * y + z * z
 }
 
 impl VertexPairs {
