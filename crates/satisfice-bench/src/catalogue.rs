@@ -1,6 +1,10 @@
 //! Every problem that has a name. One line each in [`all`].
 
 use satisfice::{Catalogued, Parameter, Values};
+use satisfice_collision::problem::Teapots;
+use satisfice_problems::{
+    Arm, Falsification, Himmelblau, Islands, Needles, Queens, Rastrigin, Roots, SallenKey, Shell,
+};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -53,7 +57,19 @@ impl Entry {
     }
 }
 
-static PROBLEMS: &[Entry] = &[entry::<satisfice_collision::problem::Teapots>()];
+static PROBLEMS: &[Entry] = &[
+    entry::<Teapots>(),
+    entry::<Rastrigin>(),
+    entry::<Shell>(),
+    entry::<Islands>(),
+    entry::<Needles>(),
+    entry::<Arm>(),
+    entry::<SallenKey>(),
+    entry::<Falsification>(),
+    entry::<Queens>(),
+    entry::<Roots>(),
+    entry::<Himmelblau>(),
+];
 
 /// Every problem, in the order of the docs.
 #[must_use]

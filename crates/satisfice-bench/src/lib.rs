@@ -18,6 +18,7 @@
 pub mod catalogue;
 mod error;
 mod instance;
+pub mod json;
 pub mod listing;
 pub mod plot;
 pub mod record;

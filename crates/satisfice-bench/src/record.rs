@@ -1,6 +1,6 @@
 //! The record of a run: plain data, the `--json` contract of the command.
 
-use satisfice::{Completeness, Counts, StopReason, TracePoint};
+use satisfice::{Completeness, Counts, Method, StopReason, TracePoint, Unseen};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -26,6 +26,8 @@ pub struct Record {
     pub seed: u64,
     /// What it might spend.
     pub budget: Limits,
+    /// The share of the evaluations spent on uniform probes.
+    pub probe_share: f64,
     /// What was counted, summed over the slices.
     #[serde(flatten)]
     pub counts: Counts,
@@ -43,10 +45,14 @@ pub struct Record {
     pub recall: Option<f64>,
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
-    /// Estimated number of hits not seen; 0 where completeness is proved, `null` where nothing is known.
+    /// Estimated number of hits not seen; 0 where completeness is proved, `null` where nothing was probed.
     pub unseen_estimate: Option<f64>,
-    /// Its interval.
-    pub unseen_interval: Option<[f64; 2]>,
+    /// Its interval; no upper end where nothing bounds it.
+    pub unseen_interval: Option<(f64, Option<f64>)>,
+    /// The chance with which the interval holds the truth, at least.
+    pub unseen_confidence: Option<f64>,
+    /// How it was estimated.
+    pub unseen_method: Option<Method>,
     /// Distinct hits against evaluations and time, over all slices.
     pub trace: Vec<TracePoint>,
     /// The slices one by one, where there are several.
@@ -105,11 +111,75 @@ pub struct Solution {
 }
 
 impl Record {
+    /// Enters what is estimated to be missing from the last C, of which `found_elsewhere` hits are listed as well.
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    pub(crate) fn set_unseen(&mut self, unseen: Option<&Unseen>, found_elsewhere: u64) {
+        // How many there are in all stays the same: what is listed beyond C is no longer missing.
+        let less = |missing: f64| (missing - found_elsewhere as f64).max(0.0);
+        self.unseen_estimate = unseen.map(|unseen| less(unseen.estimate));
+        self.unseen_interval = unseen.map(|Unseen { interval: (a, b), .. }| (less(*a), b.map(less)));
+        self.unseen_confidence = unseen.map(|unseen| unseen.confidence);
+        self.unseen_method = unseen.map(|unseen| unseen.method);
+    }
+
     /// Enters how many hits there are, and the recall that follows.
     pub fn set_reference(&mut self, reference: Option<u64>) {
         self.reference_hits = reference;
         self.recall = reference.and_then(|reference| recall(self.hits, reference));
     }
+}
+
+impl Record {
+    /// Adds a run on another problem, whose solutions are all different ones, as if it had followed this one.
+    pub fn append(&mut self, next: Self) {
+        let (evaluations, seconds, hits) = (self.counts.evaluations, self.elapsed_seconds, self.hits);
+        self.trace.extend(next.trace.into_iter().map(|point| TracePoint {
+            evaluations: evaluations + point.evaluations,
+            elapsed_seconds: seconds + point.elapsed_seconds,
+            hits: hits + point.hits,
+        }));
+        self.solutions
+            .extend(next.solutions.into_iter().map(|found| Solution {
+                evaluation: evaluations + found.evaluation,
+                seconds: seconds + found.seconds,
+                ..found
+            }));
+        add(&mut self.counts, &next.counts);
+        self.elapsed_seconds += next.elapsed_seconds;
+        self.overshoot_seconds += next.overshoot_seconds;
+        self.stop_reason = next.stop_reason;
+        self.hits += next.hits;
+        if next.completeness == Completeness::Unknown {
+            self.completeness = Completeness::Unknown;
+        }
+        self.unseen_estimate = self.unseen_estimate.zip(next.unseen_estimate).map(|(a, b)| a + b);
+        self.unseen_interval = self
+            .unseen_interval
+            .zip(next.unseen_interval)
+            .map(|((a, b), (c, d))| (a + c, b.zip(d).map(|(b, d)| b + d)));
+        // Both intervals hold the truth at once no less often than this.
+        self.unseen_confidence = self
+            .unseen_confidence
+            .zip(next.unseen_confidence)
+            .map(|(a, b)| (a + b - 1.0).max(0.0));
+        if self.unseen_method == Some(Method::Proved) || next.unseen_method.is_none() {
+            self.unseen_method = next.unseen_method;
+        }
+        let reference = self.reference_hits.zip(next.reference_hits).map(|(a, b)| a + b);
+        self.set_reference(reference);
+    }
+}
+
+/// Adds counts to counts.
+pub(crate) fn add(sum: &mut Counts, counts: &Counts) {
+    sum.evaluations += counts.evaluations;
+    sum.fitness_calls += counts.fitness_calls;
+    sum.duplicates += counts.duplicates;
+    sum.non_finite += counts.non_finite;
+    sum.verified += counts.verified;
+    sum.probes += counts.probes;
+    sum.neighbour_calls += counts.neighbour_calls;
+    sum.bound_calls += counts.bound_calls;
 }
 
 /// `hits / reference`, `None` for a reference of 0.

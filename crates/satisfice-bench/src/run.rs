@@ -9,7 +9,7 @@ use satisfice::{
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::record::{Limits, Record, Slice, Solution};
+use crate::record::{Limits, Record, Slice, Solution, add};
 use crate::settings::Settings;
 
 /// What to run: engine, seed, threads, budget of a slice, slices.
@@ -23,6 +23,9 @@ pub struct Request {
     pub seed: u64,
     /// Threads that evaluate, 0 for as many as there are cores.
     pub threads: usize,
+    /// Share of the evaluations spent on uniform probes, by which unseen hits are estimated, from 0 to 0.5; `None` leaves it
+    /// to the engine.
+    pub probes: Option<f64>,
     /// What each slice may spend; its cancellation ends the whole run.
     pub budget: Budget,
     /// How many slices, each warm from the one before. Fewer are run once the space is covered, enough hits are found, or
@@ -39,6 +42,7 @@ impl Request {
             engine_settings: Vec::new(),
             seed: 0,
             threads: 1,
+            probes: None,
             budget,
             slices: 1,
         }
@@ -90,6 +94,9 @@ where
     let mut search = Search::new(entry.build(settings)?)
         .seed(request.seed)
         .threads(request.threads);
+    if let Some(share) = request.probes {
+        search = search.probes(share);
+    }
     let mut reports = Vec::new();
     for slice in 0..request.slices {
         let mut watcher = Watcher { slice, watch };
@@ -159,17 +166,10 @@ fn unite<T: Identity + Clone>(reports: &[Report<T>]) -> (Archive<T>, Vec<TracePo
 }
 
 fn sum(slices: &[Slice]) -> Counts {
-    let mut sum = Counts::default();
-    for Slice { counts, .. } in slices {
-        sum.evaluations += counts.evaluations;
-        sum.fitness_calls += counts.fitness_calls;
-        sum.duplicates += counts.duplicates;
-        sum.non_finite += counts.non_finite;
-        sum.verified += counts.verified;
-        sum.neighbour_calls += counts.neighbour_calls;
-        sum.bound_calls += counts.bound_calls;
-    }
-    sum
+    slices.iter().fold(Counts::default(), |mut sum, slice| {
+        add(&mut sum, &slice.counts);
+        sum
+    })
 }
 
 fn write_up<P>(
@@ -197,11 +197,11 @@ where
         })
         .collect::<Result<Vec<_>, Error>>()?;
     let proved = slices
-        .iter()
-        .any(|slice| slice.completeness == Completeness::Proved);
+        .last()
+        .is_some_and(|slice| slice.completeness == Completeness::Proved);
     let description = problem.description();
     let threshold = problem.threshold().f64();
-    Ok(Record {
+    let mut record = Record {
         problem: description.name,
         problem_parameters: Settings::typed(&description.parameters, &[]),
         engine: request.engine.clone(),
@@ -218,6 +218,7 @@ where
             hits: request.budget.hits,
             slices: request.slices,
         },
+        probe_share: reports.first().map_or(0.0, |report| report.probe_share),
         counts: sum(&slices),
         elapsed_seconds: slices.iter().map(|slice| slice.elapsed_seconds).sum(),
         overshoot_seconds: slices.iter().map(|slice| slice.overshoot_seconds).sum(),
@@ -232,8 +233,10 @@ where
         } else {
             Completeness::Unknown
         },
-        unseen_estimate: proved.then_some(0.0),
-        unseen_interval: proved.then_some([0.0, 0.0]),
+        unseen_estimate: None,
+        unseen_interval: None,
+        unseen_confidence: None,
+        unseen_method: None,
         trace,
         slices: if request.slices > 1 { slices } else { Vec::new() },
         solutions,
@@ -241,5 +244,10 @@ where
             .first()
             .map(|report| report.version.clone())
             .unwrap_or_default(),
-    })
+    };
+    // A slice that has covered the space is the last one.
+    if let Some(last) = reports.last() {
+        record.set_unseen(last.unseen.as_ref(), record.hits - last.hit_count() as u64);
+    }
+    Ok(record)
 }

@@ -6,7 +6,7 @@ mod solutions;
 use core::fmt;
 
 pub use books::books;
-pub use solutions::solutions;
+pub use solutions::{LISTED_BEFORE, solutions, solutions_by};
 
 use crate::record::{Record, recall};
 
@@ -22,7 +22,13 @@ pub struct Mismatch {
 }
 
 impl Mismatch {
-    fn new(place: impl Into<String>, found: impl fmt::Display, expected: impl fmt::Display) -> Self {
+    /// At `place`, `found` stands instead of `expected`.
+    #[must_use]
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a number or a text, by value or by reference"
+    )]
+    pub fn new(place: impl Into<String>, found: impl ToString, expected: impl ToString) -> Self {
         Self {
             place: place.into(),
             found: found.to_string(),

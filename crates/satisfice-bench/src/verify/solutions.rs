@@ -6,7 +6,7 @@ use satisfice::{Archive, Real, SatisficingProblem};
 use serde::de::DeserializeOwned;
 
 use super::Mismatch;
-use crate::record::Record;
+use crate::record::{Record, Solution};
 
 /// Two evaluations of one solution may differ by this much of delta, or of F where that is greater: mathematical
 /// functions are rounded differently on different platforms.
@@ -21,56 +21,75 @@ where
     P: SatisficingProblem,
     P::Solution: DeserializeOwned,
 {
-    let threshold = problem.threshold().f64();
     let mut mismatches = Vec::new();
-    if record.threshold != threshold.is_finite().then_some(threshold) {
-        let found = super::shown(record.threshold);
-        mismatches.push(Mismatch::new("threshold", found, threshold));
-    }
     if record.scalar != P::Scalar::NAME {
         mismatches.push(Mismatch::new("scalar", &record.scalar, P::Scalar::NAME));
     }
     let mut seen = Archive::default();
-    for (index, listed) in record.solutions.iter().enumerate() {
-        let place = |part: &str| format!("solutions[{index}].{part}");
-        let solution = match serde_json::from_value::<P::Solution>(listed.solution.clone()) {
-            Ok(solution) => solution,
-            Err(error) => {
-                mismatches.push(Mismatch::new(place("solution"), &listed.solution, error));
-                continue;
-            }
-        };
+    mismatches.extend(solutions_by(record, problem.threshold().f64(), |listed| {
+        let solution: P::Solution =
+            serde_json::from_value(listed.solution.clone()).map_err(|error| error.to_string())?;
         // A file may hold anything, and a problem need not stand what its own `decode` never gives.
         let evaluated = catch_unwind(AssertUnwindSafe(|| {
             is_inside(problem, &solution).then(|| problem.fitness(&solution).f64())
         }));
-        match evaluated.ok().flatten() {
-            None => {
-                let expected = "a solution inside the space of the problem";
+        let fitness = evaluated
+            .ok()
+            .flatten()
+            .ok_or("a solution inside the space of the problem")?;
+        if seen.insert(solution, listed.evaluation, listed.seconds) {
+            Ok(fitness)
+        } else {
+            Err(LISTED_BEFORE.to_owned())
+        }
+    }));
+    mismatches
+}
+
+/// What is expected of a solution that stands in a record for the second time.
+pub const LISTED_BEFORE: &str = "a solution that is not listed before";
+
+/// The same where the evaluation is given: `evaluate` returns F, or what it had expected of a solution that is none or is
+/// listed twice.
+pub fn solutions_by(
+    record: &Record,
+    threshold: f64,
+    mut evaluate: impl FnMut(&Solution) -> Result<f64, String>,
+) -> Vec<Mismatch> {
+    let mut mismatches = Vec::new();
+    if record.threshold != threshold.is_finite().then_some(threshold) {
+        mismatches.push(Mismatch::new(
+            "threshold",
+            super::shown(record.threshold),
+            threshold,
+        ));
+    }
+    for (index, listed) in record.solutions.iter().enumerate() {
+        let place = |part: &str| format!("solutions[{index}].{part}");
+        let fitness = match evaluate(listed) {
+            Ok(fitness) => fitness,
+            Err(expected) => {
                 mismatches.push(Mismatch::new(place("solution"), &listed.solution, expected));
                 continue;
             }
-            Some(fitness) => {
-                if !(fitness.is_finite() && fitness < threshold) {
-                    let found = format!("{} with F = {fitness}", listed.solution);
-                    let expected = format!("F < {threshold}");
-                    mismatches.push(Mismatch::new(place("solution"), found, expected));
-                }
-                let scale = fitness.abs().max(if threshold.is_finite() {
-                    threshold.abs()
-                } else {
-                    0.0
-                });
-                // Written so that NaN does not pass.
-                let agrees = (fitness - listed.fitness).abs() <= ROUNDING * scale;
-                if !agrees {
-                    mismatches.push(Mismatch::new(place("fitness"), listed.fitness, fitness));
-                }
-            }
+        };
+        if !(fitness.is_finite() && fitness < threshold) {
+            let found = format!("{} with F = {fitness}", listed.solution);
+            mismatches.push(Mismatch::new(
+                place("solution"),
+                found,
+                format!("F < {threshold}"),
+            ));
         }
-        if !seen.insert(solution, listed.evaluation, listed.seconds) {
-            let expected = "a solution that is not listed before";
-            mismatches.push(Mismatch::new(place("solution"), &listed.solution, expected));
+        let scale = if threshold.is_finite() {
+            fitness.abs().max(threshold.abs())
+        } else {
+            fitness.abs()
+        };
+        // Written so that NaN does not pass.
+        let agrees = (fitness - listed.fitness).abs() <= ROUNDING * scale;
+        if !agrees {
+            mismatches.push(Mismatch::new(place("fitness"), listed.fitness, fitness));
         }
     }
     mismatches
