@@ -1,0 +1,243 @@
+//! The command line: subcommands, options, help.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use satisfice::{Budget, Cancel};
+use satisfice_bench::Request;
+
+use crate::quantity;
+
+/// The time a search has where neither a time nor a number of evaluations is given.
+const DEFAULT_TIME: Duration = Duration::from_secs(1);
+
+/// Parses the command line.
+pub(crate) fn parse() -> Result<Command, clap::Error> {
+    Satisfice::try_parse().map(|satisfice| satisfice.command)
+}
+
+/// Find as many good-enough answers as you can before the deadline, and say honestly how complete the answer is.
+#[derive(Debug, Parser)]
+#[command(
+    name = "satisfice",
+    version,
+    propagate_version = true,
+    after_help = "\
+Examples:
+  satisfice list                                           what there is
+  satisfice run teapots --time 100ms                       what the default engine finds in a tenth of a second
+  satisfice run queens --set n=6 --evaluations 1e5 --json report.json
+  satisfice verify report.json                             is that report true?
+  satisfice collide a.obj b.ply --threshold 0.01           which vertices are closer than 0.01?
+
+Exit codes: 0 at least one hit (or nothing to complain of), 1 no hit (or a report that is false), 2 an error."
+)]
+pub(crate) struct Satisfice {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    List(ListArguments),
+    Run(RunArguments),
+    Collide(CollideArguments),
+    Verify(VerifyArguments),
+    Completions(CompletionsArguments),
+}
+
+/// List every engine and problem with its parameters, their defaults and ranges.
+#[derive(Debug, Args)]
+pub(crate) struct ListArguments {
+    /// As JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Search a problem of the catalogue for all solutions with F < delta.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  satisfice run teapots
+      A second of the default engine on two colliding teapots.
+  satisfice run queens --set n=6 --engine random --evaluations 200000 --json -
+      A report as JSON on stdout. Under a budget of evaluations the same command gives the same report, but for times, on any
+      machine and any number of threads.
+  satisfice run rastrigin --set dimension=2 --engine latest-hit-qpso --engine-set particles=60 --time 2s --plot hits.svg
+      Parameters of the problem and of the engine, and the curve of hits against evaluations and time.
+  satisfice run shell --time 50ms --slices 10 --threads 0
+      Ten time slices of 50 ms, each warm from the hits of the one before, on all cores.
+
+Ctrl-C ends the search and keeps what it found.")]
+pub(crate) struct RunArguments {
+    /// Name of the problem; `satisfice list` shows them all.
+    #[arg(value_name = "PROBLEM")]
+    pub(crate) problem: String,
+
+    /// Set a parameter of the problem; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// Name of the engine; `satisfice list` shows them all.
+    #[arg(long, value_name = "NAME", default_value = "latest-hit-qpso")]
+    pub(crate) engine: String,
+
+    #[command(flatten)]
+    pub(crate) search: SearchArguments,
+
+    /// Number of time slices, each with the whole budget and warm from the hits of the one before.
+    #[arg(long, value_name = "K", default_value = "1", value_parser = quantity::count, allow_hyphen_values = true)]
+    pub(crate) slices: u64,
+
+    /// Write the report as JSON; `-` is stdout and replaces the summary.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
+    pub(crate) json: Option<PathBuf>,
+
+    /// Draw hits against evaluations and time, as .svg or .png.
+    #[arg(long, value_name = "FILE.svg|.png", value_hint = ValueHint::FilePath)]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What every search takes.
+#[derive(Debug, Args)]
+pub(crate) struct SearchArguments {
+    /// Set a parameter of the engine; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
+    engine_set: Vec<(String, String)>,
+
+    /// Wall time, with its unit: 100us, 100ms, 1.5s, 3min, 1h [default: 1s, unless --evaluations is given].
+    #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
+    time: Option<Duration>,
+
+    /// Number of evaluations, such as 5000 or 1e6; repeated solutions count, too.
+    #[arg(long, value_name = "N", value_parser = quantity::count, allow_hyphen_values = true)]
+    evaluations: Option<u64>,
+
+    /// Stop at this number of distinct hits.
+    #[arg(long, value_name = "N", value_parser = quantity::count, allow_hyphen_values = true)]
+    hits: Option<u64>,
+
+    /// Seed of the random numbers, 0 to 2^64 - 1.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = quantity::seed, allow_hyphen_values = true)]
+    seed: u64,
+
+    /// Share of the evaluations spent on uniform probes, 0 to 0.5, from which the hits not seen are estimated [default: the
+    /// engine's own, which is 0 for most].
+    #[arg(long, value_name = "SHARE", value_parser = quantity::share, allow_hyphen_values = true)]
+    probes: Option<f64>,
+
+    /// Threads that evaluate; 0 takes all cores.
+    #[arg(long, value_name = "T", default_value = "1", value_parser = quantity::threads, allow_hyphen_values = true)]
+    threads: usize,
+}
+
+impl SearchArguments {
+    /// The request, of one slice, that `cancel` ends.
+    pub(crate) fn request(&self, engine: &str, cancel: &Cancel) -> anyhow::Result<Request> {
+        let time = match (self.time, self.evaluations) {
+            (None, None) => Some(DEFAULT_TIME),
+            (time, _) => time,
+        };
+        let budget = Budget {
+            time,
+            evaluations: self.evaluations,
+            hits: self.hits,
+            ..Budget::until(cancel)
+        };
+        let mut request = Request::new(engine, budget).seed(self.seed);
+        request.engine_settings.clone_from(&self.engine_set);
+        request.threads = self.threads;
+        request.probes = self.probes;
+        // What is wrong with the engine is said before anything is made.
+        let settings = self
+            .engine_set
+            .iter()
+            .map(|(name, value)| (name.as_str(), value.as_str()));
+        satisfice::engine::find(engine)?.build::<f64>(settings)?;
+        Ok(request)
+    }
+
+    /// Whether anything was given that only a search makes use of.
+    pub(crate) fn is_for_a_search(&self) -> bool {
+        !self.engine_set.is_empty()
+            || self.time.is_some()
+            || self.evaluations.is_some()
+            || self.hits.is_some()
+    }
+}
+
+/// Find the pairs of mesh features that are closer than a threshold.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  satisfice collide left.obj right.ply --threshold 0.01
+      All pairs of vertices, one of each mesh, with a distance below 0.01 in the unit of the meshes.
+  satisfice collide cloth.ply --self --threshold 0.005 --out pairs.csv
+      Pairs of vertices of one mesh that no edge joins.
+  satisfice collide a.stl b.stl --threshold 0.5 --method latest-hit-qpso --time 100ms --json -
+      As many pairs as a search engine finds in 100 ms.
+
+Meshes are .obj, .ply or .stl files; OBJ may hold points and lines alone.")]
+pub(crate) struct CollideArguments {
+    /// Mesh files: .obj, .ply or .stl.
+    #[arg(value_name = "MESH", required = true, value_hint = ValueHint::FilePath)]
+    pub(crate) meshes: Vec<PathBuf>,
+
+    /// A pair is found if its distance is below this, in the unit of the meshes.
+    #[arg(long, value_name = "D", value_parser = quantity::positive, allow_hyphen_values = true)]
+    pub(crate) threshold: f64,
+
+    /// Which features make pairs.
+    #[arg(long, value_name = "KIND", default_value = "vertex-vertex")]
+    pub(crate) pairs: PairKind,
+
+    /// Look for pairs within each mesh as well; vertices that an edge joins are no pair.
+    #[arg(long = "self")]
+    pub(crate) within: bool,
+
+    /// `exact` finds every pair; the name of an engine searches until the budget ends.
+    #[arg(long, value_name = "exact|ENGINE", default_value = "exact")]
+    pub(crate) method: String,
+
+    #[command(flatten)]
+    pub(crate) search: SearchArguments,
+
+    /// Write the report as JSON; `-` is stdout and replaces the summary.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
+    pub(crate) json: Option<PathBuf>,
+
+    /// Write the pairs as CSV: body and feature of a, body and feature of b, distance.
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// The kinds of pairs that exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PairKind {
+    /// Two vertices.
+    VertexVertex,
+}
+
+/// Evaluate every solution of a report anew and check its counts; says what does not fit.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  satisfice run queens --json report.json && satisfice verify report.json
+
+Exit code 0: the report is true; 1: it is false; 2: it cannot be read.")]
+pub(crate) struct VerifyArguments {
+    /// A report that `run --json` or `collide --json` has written; `-` is stdin.
+    #[arg(value_name = "REPORT.json", value_hint = ValueHint::FilePath)]
+    pub(crate) report: PathBuf,
+}
+
+/// Print a script that completes this command in a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  satisfice completions bash > ~/.local/share/bash-completion/completions/satisfice")]
+pub(crate) struct CompletionsArguments {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}

@@ -1,0 +1,68 @@
+//! The methods that search: an engine on each pair of bodies, with its share of the budget.
+
+use std::time::Duration;
+
+use anyhow::bail;
+use satisfice::StopReason;
+use satisfice_bench::record::Limits;
+use satisfice_bench::{Record, Request, search};
+use serde_json::json;
+
+use super::PROBLEM;
+use super::scene::Scene;
+use crate::progress::Bar;
+
+/// Searches each pair of bodies in turn. Time and evaluations are shared out evenly.
+pub(super) fn find(scene: &Scene, request: &Request) -> anyhow::Result<Record> {
+    // A body whose vertices are all joined has nothing to search for, and shall take no time from the others.
+    let mut jobs: Vec<_> = scene.jobs.iter().filter(|job| job.size() > 0).collect();
+    if jobs.is_empty() {
+        jobs = scene.jobs.iter().collect();
+    }
+    let parts = jobs.len() as u64;
+    let bar = Bar::new();
+    let mut all: Option<Record> = None;
+    for (part, job) in (0..).zip(jobs) {
+        let mut share = request.clone();
+        share.budget.time = request
+            .budget
+            .time
+            .map(|time| (time / u32::try_from(parts).unwrap_or(u32::MAX)).max(Duration::from_nanos(1)));
+        share.budget.evaluations = request
+            .budget
+            .evaluations
+            .map(|total| (total / parts + u64::from(part < total % parts)).max(1));
+        let found = all.as_ref().map_or(0, |all| all.hits);
+        share.budget.hits = request.budget.hits.map(|wanted| wanted - found);
+
+        let mut record = search(&job.problem, &share, &mut |progress| {
+            bar.show(progress, part, parts);
+        })?;
+        for found in &mut record.solutions {
+            let pair = serde_json::from_value(found.solution.take())?;
+            found.solution = json!(job.pair(pair));
+        }
+        let stop = record.stop_reason;
+        match &mut all {
+            Some(all) => all.append(record),
+            None => all = Some(record),
+        }
+        if matches!(stop, StopReason::Cancelled | StopReason::Hits) {
+            break;
+        }
+    }
+    let Some(all) = all else {
+        bail!("the scene has no pair of bodies")
+    };
+    Ok(Record {
+        problem: PROBLEM.to_owned(),
+        problem_parameters: scene.settings(),
+        budget: Limits {
+            time_seconds: request.budget.time.map(|time| time.as_secs_f64()),
+            evaluations: request.budget.evaluations.map(|total| total.max(parts)),
+            hits: request.budget.hits,
+            slices: 1,
+        },
+        ..all
+    })
+}

@@ -1,0 +1,36 @@
+//! `satisfice completions`: what a shell needs to complete the command, names of problems and engines included.
+
+use std::process::ExitCode;
+
+use clap::CommandFactory;
+use clap::builder::PossibleValuesParser;
+use satisfice::engine;
+use satisfice_bench::catalogue;
+
+use crate::arguments::{CompletionsArguments, Satisfice};
+use crate::output;
+
+pub(crate) fn completions(arguments: &CompletionsArguments) -> anyhow::Result<ExitCode> {
+    let engines = || engine::all().iter().map(|entry| entry.name);
+    let problems = || catalogue::all().iter().map(|entry| entry.name);
+    let mut command = Satisfice::command()
+        .mut_subcommand("run", |run| {
+            run.mut_arg("problem", |arg| {
+                arg.value_parser(PossibleValuesParser::new(problems()))
+            })
+            .mut_arg("engine", |arg| {
+                arg.value_parser(PossibleValuesParser::new(engines()))
+            })
+        })
+        .mut_subcommand("collide", |collide| {
+            collide.mut_arg("method", |arg| {
+                arg.value_parser(PossibleValuesParser::new(
+                    std::iter::once("exact").chain(engines()),
+                ))
+            })
+        });
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut command, "satisfice", &mut script);
+    output::print(&script)?;
+    Ok(ExitCode::SUCCESS)
+}

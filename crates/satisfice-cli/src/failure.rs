@@ -1,0 +1,80 @@
+//! How errors are told: one line on stderr that says what is wrong and how to mend it, exit code 2.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::CommandFactory;
+use clap::error::ErrorKind;
+
+use crate::arguments::Satisfice;
+
+/// Exit code of every error.
+const ERROR: u8 = 2;
+
+/// Tells what went wrong.
+pub(crate) fn report(error: &anyhow::Error) -> ExitCode {
+    let mut said = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        // Some errors repeat their cause in their own words.
+        if !said.contains(&cause) {
+            if !said.is_empty() {
+                said.push_str(": ");
+            }
+            said.push_str(&cause);
+        }
+    }
+    tell(&said)
+}
+
+/// Tells what is wrong with the command line; help and version, which arrive here too, go to stdout.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        // A closed pipe is not our reader's mistake.
+        drop(error.print());
+        return ExitCode::SUCCESS;
+    }
+    tell(&one_line(error))
+}
+
+/// The message, the tips and the way to the help; the usage in between is in the help as well.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let subcommands = || {
+        let command = Satisfice::command();
+        let names: Vec<_> = command.get_subcommands().map(clap::Command::get_name).collect();
+        format!("known: {}; see --help", names.join(", "))
+    };
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return format!("no subcommand is given; {}", subcommands());
+    }
+    let mut said = lines
+        .next()
+        .unwrap_or_default()
+        .trim_start_matches("error: ")
+        .to_owned();
+    for line in lines {
+        let known = line.strip_prefix("tip: ").or_else(|| {
+            // Lists such as the possible values, and the names of what is missing.
+            (!line.starts_with("Usage:") && !line.starts_with("For more information")).then_some(line)
+        });
+        if let Some(line) = known {
+            said.push_str(if said.ends_with(':') { " " } else { "; " });
+            said.push_str(line);
+        }
+    }
+    said.push_str("; ");
+    said.push_str(&if error.kind() == ErrorKind::InvalidSubcommand {
+        subcommands()
+    } else {
+        "see --help".to_owned()
+    });
+    said
+}
+
+fn tell(message: &str) -> ExitCode {
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    // Where stderr is closed there is nobody to tell.
+    drop(writeln!(std::io::stderr(), "error: {line}"));
+    ExitCode::from(ERROR)
+}

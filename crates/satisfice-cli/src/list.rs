@@ -1,0 +1,119 @@
+//! `satisfice list`: every engine and problem with its parameters.
+
+use std::fmt::Write;
+use std::process::ExitCode;
+
+use satisfice_bench::json;
+use satisfice_bench::listing::{Item, Range, Row, listing};
+
+use crate::arguments::ListArguments;
+use crate::output;
+
+pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<ExitCode> {
+    let listing = listing();
+    if arguments.json {
+        output::print(&json::to_vec(&listing)?)?;
+    } else {
+        let mut text = table(
+            "engine",
+            "--engine NAME --engine-set PARAMETER=VALUE",
+            &listing.engines,
+        );
+        text.push('\n');
+        text.push_str(&table(
+            "problem",
+            "run PROBLEM --set PARAMETER=VALUE",
+            &listing.problems,
+        ));
+        output::print(text.as_bytes())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The items one below the other, each with a table of its parameters.
+fn table(what: &str, usage: &str, items: &[Item]) -> String {
+    let mut text = format!("{} {what}s ({usage})\n", items.len());
+    // Writing to a string cannot fail.
+    for item in items {
+        let _ = writeln!(text, "\n  {}: {}", item.name, item.summary);
+        let _ = writeln!(text, "      source: {}", item.reference);
+        let rows: Vec<[String; 4]> = item.parameters.iter().map(columns).collect();
+        let width = |column: usize| {
+            rows.iter()
+                .map(|row| row[column].chars().count())
+                .max()
+                .unwrap_or(0)
+        };
+        let widths = [width(0), width(1), width(2)];
+        for [name, default, range, summary] in &rows {
+            let _ = writeln!(
+                text,
+                "      {name:<a$}  {default:<b$}  {range:<c$}  {summary}",
+                a = widths[0],
+                b = widths[1],
+                c = widths[2]
+            );
+        }
+    }
+    text
+}
+
+/// Name, default, range, summary.
+fn columns(row: &Row) -> [String; 4] {
+    let (default, range) = match row.values {
+        Range::Integer { default, min, max } => (default.to_string(), format!("{min} to {}", greatest(max))),
+        Range::Real { default, min, max } => (default.to_string(), format!("{} to {}", real(min), real(max))),
+        Range::Choice { default, of } => (default.to_owned(), of.join(" | ")),
+        Range::Text { default } => (format!("{default:?}"), "any text".to_owned()),
+    };
+    [row.name.to_owned(), default, range, row.summary.to_owned()]
+}
+
+/// Bounds that are there only because there is no greater number.
+fn greatest(max: i64) -> String {
+    if max == i64::MAX {
+        "2^63 - 1".to_owned()
+    } else {
+        max.to_string()
+    }
+}
+
+/// Great and small numbers by their power of ten.
+fn real(value: f64) -> String {
+    if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use satisfice::Parameter;
+
+    use super::*;
+
+    #[test]
+    fn a_table_is_readable() {
+        let rows = [
+            Parameter::integer("particles", "N", 30, 1, 10_000),
+            Parameter::integer("sample-seed", "seed of the sample", 1, 0, i64::MAX),
+            Parameter::real("alpha", "contraction-expansion coefficient", 1.0, 1e-12, 1e9),
+            Parameter::choice("attractor", "who attracts", "best", &["best", "latest-hit"]),
+            Parameter::text("mesh", "a file", ""),
+        ];
+        let swarm = Item {
+            name: "swarm",
+            summary: "a swarm",
+            reference: "somebody 1995",
+            parameters: rows.iter().map(Row::from).collect(),
+        };
+        let plain = Item {
+            name: "plain",
+            summary: "no parameters",
+            reference: "none needed",
+            parameters: Vec::new(),
+        };
+        insta::assert_snapshot!(table("engine", "--engine NAME", &[swarm, plain]));
+    }
+}

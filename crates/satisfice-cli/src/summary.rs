@@ -1,0 +1,125 @@
+//! What a person reads after a run.
+
+use std::fmt::Write;
+use std::process::ExitCode;
+
+use satisfice::Completeness;
+use satisfice_bench::Record;
+use satisfice_bench::record::Solution;
+
+/// So many hits are shown; all of them are in the JSON report.
+const SHOWN: usize = 5;
+
+/// The summary of a record.
+pub(crate) fn summary(record: &Record) -> String {
+    summary_with(record, |solution| solution.solution.to_string())
+}
+
+/// The summary of a record whose solutions have a form of their own.
+pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) -> String {
+    let mut text = format!("{} by {}, seed {}\n", record.problem, record.engine, record.seed);
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {name:<13} {value}");
+    };
+    let recall = match (record.reference_hits, record.recall) {
+        (Some(reference), Some(recall)) => format!(" of {reference} (recall {:.1} %)", 100.0 * recall),
+        (Some(reference), None) => format!(" of {reference}"),
+        (None, _) => " (how many there are is not known)".to_owned(),
+    };
+    line("hits", format!("{}{recall}", record.hits));
+    line(
+        "completeness",
+        match record.completeness {
+            Completeness::Proved => "proved: these are all".to_owned(),
+            Completeness::Unknown => match (record.unseen_estimate, record.unseen_interval) {
+                (Some(unseen), Some((low, high))) => {
+                    let high = high.map_or_else(|| "no known bound".to_owned(), |high| format!("{high:.0}"));
+                    format!("unknown: {unseen:.0} hits not seen by estimate, {low:.0} to {high}")
+                }
+                _ => "unknown: there may be more".to_owned(),
+            },
+        },
+    );
+    let counts = &record.counts;
+    line(
+        "evaluations",
+        format!(
+            "{} ({} calls of the fitness, {} duplicates, {} non-finite)",
+            counts.evaluations, counts.fitness_calls, counts.duplicates, counts.non_finite
+        ),
+    );
+    line(
+        "time",
+        format!(
+            "{}{}, stopped by {}",
+            time(record.elapsed_seconds),
+            rate(counts.evaluations, record.elapsed_seconds),
+            format!("{:?}", record.stop_reason).to_lowercase()
+        ),
+    );
+    for (index, slice) in record.slices.iter().enumerate() {
+        line(
+            &format!("slice {}", index + 1),
+            format!(
+                "{} hits, {} of them new, {} evaluations, {}",
+                slice.hits,
+                slice.new_hits,
+                slice.counts.evaluations,
+                time(slice.elapsed_seconds)
+            ),
+        );
+    }
+    for (index, found) in record.solutions.iter().take(SHOWN).enumerate() {
+        line(
+            &format!("hit {}", index + 1),
+            format!(
+                "{} with F = {:.6} at evaluation {}, {}",
+                show(found),
+                found.fitness,
+                found.evaluation,
+                time(found.seconds)
+            ),
+        );
+    }
+    if record.solutions.len() > SHOWN {
+        line(
+            "",
+            format!(
+                "and {} more; --json FILE lists them all",
+                record.solutions.len() - SHOWN
+            ),
+        );
+    }
+    text
+}
+
+/// 0 with a hit, 1 without.
+pub(crate) fn exit_code(record: &Record) -> ExitCode {
+    ExitCode::from(u8::from(record.hits == 0))
+}
+
+/// A time in a unit that suits it.
+fn time(seconds: f64) -> String {
+    if seconds < 1e-3 {
+        format!("{:.1} us", 1e6 * seconds)
+    } else if seconds < 1.0 {
+        format!("{:.1} ms", 1e3 * seconds)
+    } else {
+        format!("{seconds:.2} s")
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "shown to three digits")]
+fn rate(evaluations: u64, seconds: f64) -> String {
+    if seconds <= 0.0 {
+        return String::new();
+    }
+    let rate = evaluations as f64 / seconds;
+    let (value, unit) = match rate {
+        r if r >= 1e6 => (r / 1e6, "million "),
+        r if r >= 1e3 => (r / 1e3, "thousand "),
+        r => (r, ""),
+    };
+    format!(" ({value:.1} {unit}evaluations a second)")
+}

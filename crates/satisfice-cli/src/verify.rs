@@ -1,0 +1,64 @@
+//! `satisfice verify`: whether a report is true.
+
+use std::fmt::Write;
+use std::io::Read;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use satisfice_bench::{Mismatch, Record, catalogue};
+
+use crate::arguments::VerifyArguments;
+use crate::{collide, output};
+
+/// So many mismatches are shown.
+const SHOWN: usize = 20;
+
+pub(crate) fn verify(arguments: &VerifyArguments) -> anyhow::Result<ExitCode> {
+    let path = arguments.report.display();
+    let text = if arguments.report.as_os_str() == "-" {
+        let mut text = Vec::new();
+        std::io::stdin().read_to_end(&mut text).map(|_| text)
+    } else {
+        std::fs::read(&arguments.report)
+    }
+    .with_context(|| format!("cannot read {path}: name a report that `run --json` has written"))?;
+    let record: Record = serde_json::from_slice(&text)
+        .with_context(|| format!("{path} is no report that `run --json` or `collide --json` has written"))?;
+
+    // A problem that cannot stand a forged solution may panic; that is caught, told as a mismatch, and not shouted about.
+    std::panic::set_hook(Box::new(|_| {}));
+    let mismatches = mismatches(&record, &text);
+    drop(std::panic::take_hook());
+    let mismatches = mismatches?;
+
+    let mut said = String::new();
+    if mismatches.is_empty() {
+        let _ = writeln!(
+            said,
+            "{path} is true: {} hits of {} evaluated anew, each below the threshold and listed once; its counts and its trace agree",
+            record.hits, record.problem
+        );
+    } else {
+        let _ = writeln!(said, "{path} is false in {} places", mismatches.len());
+        for mismatch in mismatches.iter().take(SHOWN) {
+            let _ = writeln!(said, "  {mismatch}");
+        }
+        if mismatches.len() > SHOWN {
+            let _ = writeln!(said, "  and {} more", mismatches.len() - SHOWN);
+        }
+    }
+    output::print(said.as_bytes())?;
+    Ok(ExitCode::from(u8::from(!mismatches.is_empty())))
+}
+
+fn mismatches(record: &Record, text: &[u8]) -> anyhow::Result<Vec<Mismatch>> {
+    if record.problem == collide::PROBLEM {
+        return collide::verify(text);
+    }
+    let texts = record.problem_parameters.texts();
+    let settings = texts.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+    let problem = catalogue::find(&record.problem)
+        .and_then(|entry| entry.build(settings))
+        .context("the problem of the report cannot be built")?;
+    Ok(problem.verify(record, problem.reference_hits()))
+}

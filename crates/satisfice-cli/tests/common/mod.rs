@@ -1,0 +1,90 @@
+//! What every test of the command needs: to run it.
+
+#![allow(dead_code, reason = "each test file makes use of a part")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// What the command did.
+#[derive(Debug)]
+pub(crate) struct Done {
+    pub(crate) code: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl From<Output> for Done {
+    fn from(output: Output) -> Self {
+        Self {
+            code: output.status.code().unwrap_or(-1),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}
+
+/// The command with these arguments, separated by spaces, in this folder.
+pub(crate) fn command(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_satisfice"));
+    command.args(arguments.split_whitespace()).current_dir(folder);
+    command
+}
+
+/// Runs the command to its end.
+pub(crate) fn satisfice_in(folder: &Path, arguments: &str) -> Done {
+    command(folder, arguments).output().unwrap().into()
+}
+
+/// The same in a folder that does not matter.
+pub(crate) fn satisfice(arguments: &str) -> Done {
+    satisfice_in(Path::new(env!("CARGO_MANIFEST_DIR")), arguments)
+}
+
+/// Runs the command, which has to fail with exit code 2 and one line on stderr; returns the line.
+pub(crate) fn error_in(folder: &Path, arguments: &str) -> String {
+    let done = satisfice_in(folder, arguments);
+    assert_eq!(done.code, 2, "{arguments}: {done:?}");
+    assert_eq!(done.stdout, "", "{arguments}");
+    let line = done.stderr.strip_suffix('\n').unwrap_or_default();
+    assert!(
+        line.starts_with("error: ") && !line.contains('\n'),
+        "{arguments}: {}",
+        done.stderr
+    );
+    line.to_owned()
+}
+
+/// The same in a folder that does not matter.
+pub(crate) fn error(arguments: &str) -> String {
+    error_in(Path::new(env!("CARGO_MANIFEST_DIR")), arguments)
+}
+
+/// Runs the command, whose stdout has to be JSON.
+pub(crate) fn report(arguments: &str) -> Value {
+    let done = satisfice(arguments);
+    assert!(done.code <= 1, "{arguments}: {}", done.stderr);
+    serde_json::from_str(&done.stdout).unwrap()
+}
+
+/// Sets every time in a report to zero.
+pub(crate) fn without_times(mut report: Value) -> Value {
+    fn visit(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                for (key, value) in map {
+                    if ["elapsed_seconds", "overshoot_seconds", "seconds"].contains(&key.as_str()) {
+                        *value = 0.into();
+                    } else {
+                        visit(value);
+                    }
+                }
+            }
+            Value::Array(list) => list.iter_mut().for_each(visit),
+            _ => {}
+        }
+    }
+    visit(&mut report);
+    report
+}
