@@ -20,7 +20,7 @@ pub struct Unseen {
     /// Two-sided interval for the share of the space (of points, or of volume) whose points are hits that the engine has
     /// not found. It assumes nothing beyond uniform probes; 0 where proved.
     pub mass: (f64, f64),
-    /// The chance with which each interval holds the truth, at least: 0.9.
+    /// The chance with which each interval holds the truth, at least: 0.9, or 1 where proved.
     pub confidence: f64,
     /// How it was estimated.
     pub method: Method,
@@ -62,7 +62,7 @@ impl Unseen {
             estimate: 0.0,
             interval: (0.0, Some(0.0)),
             mass: (0.0, 0.0),
-            confidence: CONFIDENCE,
+            confidence: 1.0,
             method: Method::Proved,
             probes,
             recaptures: 0,
