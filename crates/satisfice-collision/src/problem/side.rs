@@ -13,7 +13,7 @@ pub(super) struct Side {
     pub(super) vertex_at: Vec<u32>,
     /// Vertex to position, [`ABSENT`] for a vertex that was not chosen.
     position_of: Vec<u32>,
-    /// Mesh edges between chosen vertices.
+    /// Chosen vertices next to each other, across the gaps that others leave.
     pub(super) neighbours: Adjacency,
 }
 
@@ -31,7 +31,7 @@ impl Side {
         for (position, &v) in vertex_at.iter().enumerate() {
             position_of[v as usize] = position as u32;
         }
-        let neighbours = mesh.adjacency().restricted(|v| position_of[v as usize] != ABSENT);
+        let neighbours = mesh.adjacency().bridged(|v| position_of[v as usize] != ABSENT);
         Self {
             mesh: mesh.clone(),
             order,

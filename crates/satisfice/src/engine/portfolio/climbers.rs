@@ -1,20 +1,19 @@
 //! Local searches, several at a time, restarted when they stall, hit, or come back to a known hit.
 
 use super::bandit::luby;
-use super::moves::Moves;
+use super::moves::{Move, Moves};
 use super::one_plus_one::Mutation;
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::Space;
 use crate::state::Saved;
 
-/// How many search at a time: as many candidates of a batch come from different climbers.
-const CLIMBERS: usize = 16;
 /// Barren evaluations an axis after which the shortest of the restart sequence's runs ends.
 const PATIENCE: u64 = 8;
+/// Likewise, this many times the number of neighbours.
+const NEIGHBOUR_PATIENCE: u64 = 2;
 /// A continuous search whose steps fall below this share of the axes has converged.
 const CONVERGED: f64 = 1e-9;
 /// First step of a continuous search, as a share of the axes.
@@ -22,17 +21,6 @@ const FIRST_STEP: f64 = 0.1;
 
 /// A move to a point that was evaluated before, and so cannot be a new hit, is drawn again at most this often.
 const DRAWS: usize = 4;
-
-/// What the last move of a climber was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Move {
-    Start,
-    /// On integer axes, of this kind.
-    Lattice(usize),
-    Continuous,
-    /// To a neighbour named by the problem.
-    Neighbour,
-}
 
 /// One local search: keeps its best point, accepts what is no worse.
 #[derive(Debug, Clone)]
@@ -43,37 +31,19 @@ struct Climber<S> {
     barren: u64,
     patience: u64,
     mutation: Mutation,
-    /// Neighbours not tried yet, in random order.
+    /// Neighbours not tried yet, in random order, once they are listed.
     neighbours: Vec<S>,
-    last: Move,
-}
-
-impl Saved for Move {
-    fn save(&self, state: &mut crate::state::State) {
-        let word: u64 = match *self {
-            Self::Start => 0,
-            Self::Continuous => 1,
-            Self::Neighbour => 2,
-            Self::Lattice(kind) => 3 + kind as u64,
-        };
-        word.save(state);
-    }
-    fn restore(from: &mut crate::state::Reader<'_>) -> Result<Self, crate::Error> {
-        Ok(match from.read::<u64>()? {
-            0 => Self::Start,
-            1 => Self::Continuous,
-            2 => Self::Neighbour,
-            word => Self::Lattice(usize::try_from(word - 3).unwrap_or(0)),
-        })
-    }
+    listed: bool,
+    /// The last move, none from a start.
+    last: Option<Move>,
 }
 
 crate::saved_struct!(Climber<S: Real> {
-    position, fitness, running, barren, patience, mutation, neighbours, last
+    position, fitness, running, barren, patience, mutation, neighbours, listed, last
 });
 
-/// Restarted local search. Where the problem names neighbours: first-improvement descent over them in random order. Else, on
-/// integer axes, adaptive [`Moves`]; on continuous axes, a [`Mutation`] that adapts its covariance.
+/// Restarted local search by adaptive [`Moves`]: along integer axes, to neighbours that the problem names, and by a
+/// [`Mutation`] that adapts its covariance along continuous axes.
 #[derive(Debug, Clone)]
 pub(super) struct Climbers<S> {
     climbers: Vec<Climber<S>>,
@@ -85,7 +55,8 @@ pub(super) struct Climbers<S> {
 }
 
 impl<S: Real> Climbers<S> {
-    pub(super) fn new() -> Self {
+    /// `count` searches at a time: as many candidates of a batch may come from them.
+    pub(super) fn new(count: usize) -> Self {
         let climber = Climber {
             position: Vec::new(),
             fitness: S::infinity(),
@@ -94,10 +65,11 @@ impl<S: Real> Climbers<S> {
             patience: 0,
             mutation: Mutation::default(),
             neighbours: Vec::new(),
-            last: Move::Start,
+            listed: false,
+            last: None,
         };
         Self {
-            climbers: vec![climber; CLIMBERS],
+            climbers: vec![climber; count],
             moves: Moves::default(),
             integer_axes: Vec::new(),
             restarts: 0,
@@ -151,26 +123,16 @@ impl<S: Real> Climbers<S> {
         let index = self.next;
         self.next = (index + 1) % self.climbers.len();
         let climber = &mut self.climbers[index];
-        if climber.running
-            && climber.last != Move::Start
-            && context.offers_neighbours()
-            && climber.neighbours.is_empty()
-        {
-            climber.running = false; // every neighbour was tried: a local minimum
-        }
         if !climber.running {
             self.restarts += 1;
             climber.start(luby(self.restarts), context, rng);
             out.push(&climber.position);
             return Some(index);
         }
-        if climber.last == Move::Start && context.offers_neighbours() {
-            climber.meet_neighbours(context, rng);
-        }
         let space = context.space();
         out.push_with(|position| {
             for _ in 0..DRAWS {
-                climber.step(&self.moves, &self.integer_axes, space, rng, position);
+                climber.step(&self.moves, &self.integer_axes, context, rng, position);
                 if visited.is_none_or(|visited| !visited.contains(space, position)) {
                     break;
                 }
@@ -184,7 +146,7 @@ impl<S: Real> Climbers<S> {
         let climber = &mut self.climbers[index];
         let fitness = outcome.fitness();
         let improved = fitness < climber.fitness;
-        if let Move::Lattice(kind) = climber.last {
+        if let Some(kind) = climber.last {
             self.moves.book(kind, improved);
         }
         // A hit is found; a known hit shows that this basin is.
@@ -192,26 +154,18 @@ impl<S: Real> Climbers<S> {
             climber.running = false;
             return;
         }
-        if climber.last == Move::Continuous {
+        let mutated = climber.last == Some(Move::Mutation);
+        if mutated {
             climber.mutation.adapt(fitness <= climber.fitness);
         }
         climber.barren = if improved { 0 } else { climber.barren + 1 };
-        // Moves to equal fitness cross plateaus, but among named neighbours they would go in circles.
-        if improved
-            || (fitness == climber.fitness && climber.last != Move::Neighbour)
-            || climber.last == Move::Start
-        {
+        // Moves to equal fitness cross plateaus.
+        if fitness <= climber.fitness {
             climber.position.copy_from_slice(position);
             climber.fitness = fitness;
-            climber.neighbours.clear();
-            climber.last = if climber.last == Move::Neighbour {
-                Move::Start
-            } else {
-                climber.last
-            };
+            climber.listed = false;
         }
-        let converged = climber.last == Move::Continuous && climber.mutation.sigma < CONVERGED;
-        if converged || climber.barren > climber.patience {
+        if (mutated && climber.mutation.sigma < CONVERGED) || climber.barren > climber.patience {
             climber.running = false;
         }
     }
@@ -227,59 +181,67 @@ impl<S: Real> Climber<S> {
         self.running = true;
         self.barren = 0;
         self.patience = length * PATIENCE * dimension as u64;
-        self.neighbours.clear();
-        self.last = Move::Start;
+        self.listed = false;
+        self.last = None;
         self.mutation.reset(dimension, FIRST_STEP);
     }
 
     /// Lists the neighbours of the current point in random order.
-    fn meet_neighbours(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) {
+    fn list_neighbours(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) {
         let dimension = self.position.len();
+        self.listed = true;
         self.neighbours.clear();
         context.neighbours(&self.position, &mut |neighbour| {
             self.neighbours.extend_from_slice(neighbour);
         });
         let count = self.neighbours.len() / dimension;
+        self.patience = self.patience.max(NEIGHBOUR_PATIENCE * count as u64);
         for i in (1..count).rev() {
             let other = rng.below(i + 1);
             for j in 0..dimension {
                 self.neighbours.swap(i * dimension + j, other * dimension + j);
             }
         }
-        // A local minimum of F among neighbours ends the run, patience or not.
-        self.patience = self.patience.max(count as u64);
     }
 
     fn step(
         &mut self,
         moves: &Moves,
         integer_axes: &[usize],
-        space: &Space<S>,
+        context: &dyn Context<S>,
         rng: &mut SearchRng,
         position: &mut [S],
     ) {
+        let space = context.space();
         let dimension = position.len();
-        if self.neighbours.len() >= dimension {
-            let start = self.neighbours.len() - dimension;
-            position.copy_from_slice(&self.neighbours[start..]);
-            self.neighbours.truncate(start);
-            self.last = Move::Neighbour;
-            return;
-        }
+        let offered = context.offers_neighbours() && !(self.listed && self.neighbours.is_empty());
+        let continuous = integer_axes.len() < dimension;
+        let chosen = moves.choose([!integer_axes.is_empty(), offered, continuous], rng);
+        self.last = Some(chosen);
         position.copy_from_slice(&self.position);
-        // On mixed axes either part moves in its turn, as often as it has axes.
-        if rng.below(dimension) < integer_axes.len() {
-            self.last = Move::Lattice(moves.apply(space, integer_axes, rng, position));
-        } else {
-            let widths = space.axes().iter().map(|axis| {
-                if axis.is_integer() {
-                    S::zero()
-                } else {
-                    axis.width()
+        match chosen {
+            Move::Neighbour => {
+                if !self.listed {
+                    self.list_neighbours(context, rng);
                 }
-            });
-            self.mutation.apply(rng, widths, position);
-            self.last = Move::Continuous;
+                // A point without neighbours stays where it is, which is no improvement.
+                let rest = self.neighbours.len().saturating_sub(dimension);
+                for (x, &there) in position.iter_mut().zip(&self.neighbours[rest..]) {
+                    *x = there;
+                }
+                self.neighbours.truncate(rest);
+            }
+            Move::Lattice(way) => Moves::along(way, space, integer_axes, rng, position),
+            Move::Mutation => {
+                let width = |axis: &crate::Axis<S>| {
+                    if axis.is_integer() {
+                        S::zero()
+                    } else {
+                        axis.width()
+                    }
+                };
+                self.mutation.apply(rng, space.axes().iter().map(width), position);
+            }
         }
         space.keep_inside(position);
     }

@@ -28,8 +28,8 @@ use crate::state::{Reader, Saved, State};
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::integer(
         "batch",
-        "candidates proposed at once, for as many threads to evaluate",
-        64,
+        "most candidates proposed at once: few learn sooner, many feed more threads",
+        32,
         1,
         65_536,
     ),
@@ -57,8 +57,8 @@ pub(super) const PARAMETERS: &[Parameter] = &[
     ),
 ];
 
-/// Candidates that come from one choice of source.
-const BLOCK: usize = 8;
+/// Choices of source without a candidate after which a batch is given up.
+const VAIN: usize = 100;
 
 /// Where a candidate comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,16 +106,18 @@ impl Saved for Source {
 ///
 /// - uniform points, on a lattice without repetition, so that a small one is covered and the result proved complete;
 /// - small swarms attracted by the latest hit of their own, after Chen et al. 2012;
-/// - restarted local searches: descent over the problem's neighbours, adaptive moves on integer axes, a covariance-adapting
-///   (1+1) strategy on continuous ones; a search that comes back to a known hit ends at once;
+/// - restarted local searches by adaptive moves: along integer axes, to the problem's own neighbours, by a covariance-adapting
+///   (1+1) strategy along continuous axes; a search that comes back to a known hit ends at once;
 /// - steps that have led from hit to hit, applied to every hit: neighbourhoods are exhausted by the short ones, and
 ///   repetitions and manifolds of hits followed by those that are learned from differences of hits;
-/// - neighbours of hits by the problem's own word, breadth first.
+/// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses.
 ///
 /// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
 #[derive(Debug)]
 pub(super) struct Portfolio<S> {
     batch: usize,
+    /// Candidates that come from one choice of source.
+    block: usize,
     without: String,
     arms: [Arm; 4],
     hits: Vec<S>,
@@ -132,17 +134,20 @@ pub(super) struct Portfolio<S> {
 }
 
 pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+    let batch = values.count("batch");
+    let block = batch.div_ceil(4);
     Ok(Box::new(Portfolio {
-        batch: values.count("batch"),
+        batch,
+        block,
         without: values.text("without").to_owned(),
         arms: [Arm::default(); 4],
         hits: Vec::new(),
         visited: None,
         scan: 0,
         swarms: Swarms::new(values),
-        climbers: Climbers::new(),
+        climbers: Climbers::new(block),
         steps: None,
-        neighbourhoods: Neighbourhoods::new(),
+        neighbourhoods: Neighbourhoods::default(),
         tags: Vec::new(),
         trials: Vec::new(),
         position: Vec::new(),
@@ -155,7 +160,7 @@ impl<S: Real> Portfolio<S> {
     }
 
     /// Draws a source, and which step of [`Source::Step`].
-    fn choose(&self, context: &dyn Context<S>, rng: &mut SearchRng) -> Tag {
+    fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |name: &str| self.without != name;
         let mut best = (self.arms[0].draw(rng), (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
@@ -178,10 +183,7 @@ impl<S: Real> Portfolio<S> {
         {
             offer(draw(rng, good, all), (Source::Step, index));
         }
-        if uses("neighbours")
-            && context.offers_neighbours()
-            && let Some((good, all)) = self.neighbourhoods.posterior(hits)
-        {
+        if let Some((good, all)) = self.neighbourhoods.posterior() {
             offer(draw(rng, good, all), (Source::Neighbour, 0));
         }
         best.1
@@ -256,12 +258,11 @@ impl<S: Real> Portfolio<S> {
                 Some(self.trials.len() / self.position.len() - 1)
             }
             Source::Neighbour => {
-                let visited = self.visited.as_mut();
-                if !self
-                    .neighbourhoods
-                    .propose(context, &self.hits, visited, &mut self.position)
-                {
+                if !self.neighbourhoods.propose(&mut self.position) {
                     return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
                 }
                 out.push(&self.position);
                 Some(0)
@@ -348,15 +349,21 @@ impl<S: Real> Engine<S> for Portfolio<S> {
         self.swarms.begin_batch();
         self.climbers.begin_batch();
         let mut in_vain = 0;
-        while out.len() < self.batch && in_vain < 2 * self.batch {
-            let tag = self.choose(context, rng);
+        while out.len() < self.batch && in_vain < VAIN {
+            let tag = self.choose(rng);
             let before = out.len();
-            for _ in 0..BLOCK.min(self.batch - before) {
+            for _ in 0..self.block.min(self.batch - before) {
                 if !self.propose(tag, context, rng, out) {
                     break;
                 }
             }
-            in_vain += usize::from(out.len() == before);
+            // A source that has given all it has for this batch ends the batch, rather than leave it to worse ones.
+            if out.len() == before {
+                if !out.is_empty() {
+                    break;
+                }
+                in_vain += 1;
+            }
         }
         if out.is_empty() {
             if self.visited.as_ref().is_some_and(Visited::is_all) {
@@ -385,9 +392,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                 visited.insert(space, position);
             }
         }
-        if origin == Origin::WarmStart {
-            self.note_near(context, batch, outcomes);
-        }
+        self.expand(context, batch, outcomes, origin);
         if origin != Origin::Engine {
             return;
         }
@@ -401,7 +406,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                         steps.book(index, outcome.is_hit());
                     }
                 }
-                Source::Neighbour => self.neighbourhoods.book(outcome.is_hit()),
+                Source::Neighbour => self.neighbourhoods.book(outcome.fitness(), outcome.is_hit()),
                 Source::Uniform | Source::Trial => {}
             }
         }
@@ -448,12 +453,28 @@ impl<S: Real> Engine<S> for Portfolio<S> {
 }
 
 impl<S: Real> Portfolio<S> {
-    /// Of the last slice's hits that are none any more, those within twice the threshold stay worth a look around them.
-    fn note_near(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
-        let limit = context.threshold() + context.threshold().abs();
-        for (position, outcome) in batch.points().zip(outcomes) {
-            if matches!(outcome, Outcome::Miss(fitness) if *fitness < limit) {
-                self.neighbourhoods.note_near(position);
+    /// Enters the neighbours of new hits, of candidates that were neighbours themselves, and of last slice's hits.
+    fn expand(
+        &mut self,
+        context: &dyn Context<S>,
+        batch: &Batch<S>,
+        outcomes: &[Outcome<S>],
+        origin: Origin,
+    ) {
+        if self.without == "neighbours" || !context.offers_neighbours() {
+            return;
+        }
+        for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
+            let is_near = match origin {
+                Origin::Engine => self.tags[i].0 == Source::Neighbour,
+                Origin::WarmStart | Origin::Exhaustion => true,
+            };
+            match *outcome {
+                Outcome::Hit(fitness) => self.neighbourhoods.expand(context, position, fitness, true),
+                Outcome::Miss(fitness) if is_near => {
+                    self.neighbourhoods.expand(context, position, fitness, false)
+                }
+                _ => {}
             }
         }
     }

@@ -1,15 +1,55 @@
-//! Moves of a local search on integer axes, chosen by how often each has brought an improvement.
+//! Moves of a local search, chosen by how often each has brought an improvement.
 
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
+use crate::state::{Reader, Saved, State};
 
-/// The kinds of moves.
-const KINDS: usize = 6;
+/// The kinds of moves: so many on integer axes, then the two others.
+const LATTICE: usize = 6;
+const KINDS: usize = LATTICE + 2;
 /// Every kind keeps at least this much weight beside its rate of improvement.
 const FLOOR: f64 = 0.02;
 /// Past trials of a kind are halved at this number.
 const MEMORY: f64 = 500.0;
+
+/// A kind of move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Move {
+    /// Along integer axes, in one of several ways.
+    Lattice(usize),
+    /// To a neighbour that the problem names.
+    Neighbour,
+    /// A draw of the covariance-adapting mutation along continuous axes.
+    Mutation,
+}
+
+impl Move {
+    fn index(self) -> usize {
+        match self {
+            Self::Lattice(way) => way,
+            Self::Neighbour => LATTICE,
+            Self::Mutation => LATTICE + 1,
+        }
+    }
+
+    fn of(index: usize) -> Self {
+        match index {
+            LATTICE => Self::Neighbour,
+            index if index > LATTICE => Self::Mutation,
+            way => Self::Lattice(way),
+        }
+    }
+}
+
+impl Saved for Move {
+    fn save(&self, state: &mut State) {
+        self.index().save(state);
+    }
+    fn restore(from: &mut Reader<'_>) -> Result<Self, crate::Error> {
+        from.read().map(Self::of)
+    }
+}
 
 /// Adaptive choice among moves: probability matching on the rate of strict improvements (Fialho 2010, chapter 3).
 #[derive(Debug, Clone)]
@@ -30,17 +70,37 @@ impl Default for Moves {
 }
 
 impl Moves {
-    /// Moves a position along some of `axes`, all integer, and returns the kind of move. The result may lie outside.
-    pub(super) fn apply<S: Real>(
-        &self,
+    /// Draws a kind of move among those that are usable: lattice moves, neighbours, mutations.
+    pub(super) fn choose(&self, usable: [bool; 3], rng: &mut SearchRng) -> Move {
+        let [lattice, neighbours, mutations] = usable;
+        let weight = |kind: usize| match Move::of(kind) {
+            Move::Lattice(_) if !lattice => 0.0,
+            Move::Neighbour if !neighbours => 0.0,
+            Move::Mutation if !mutations => 0.0,
+            _ => self.improvements[kind] / self.trials[kind] + FLOOR,
+        };
+        let mut left = rng.uniform() * (0..KINDS).map(weight).sum::<f64>();
+        let mut last = Move::Mutation;
+        for kind in (0..KINDS).filter(|&kind| weight(kind) > 0.0) {
+            last = Move::of(kind);
+            left -= weight(kind);
+            if left < 0.0 {
+                break;
+            }
+        }
+        last
+    }
+
+    /// Moves a position along some of `axes`, all integer, in one of the ways. The result may lie outside.
+    pub(super) fn along<S: Real>(
+        way: usize,
         space: &Space<S>,
         axes: &[usize],
         rng: &mut SearchRng,
         position: &mut [S],
-    ) -> usize {
-        let kind = self.choose(rng);
+    ) {
         let j = axes[rng.below(axes.len())];
-        match kind {
+        match way {
             0 => {
                 let (_, sign) = rng.uniform_and_sign();
                 position[j] = position[j] + if sign { S::one() } else { -S::one() };
@@ -59,23 +119,11 @@ impl Moves {
                 }
             }
         }
-        kind
-    }
-
-    fn choose(&self, rng: &mut SearchRng) -> usize {
-        let weight = |kind: usize| self.improvements[kind] / self.trials[kind] + FLOOR;
-        let mut left = rng.uniform() * (0..KINDS).map(weight).sum::<f64>();
-        for kind in 0..KINDS - 1 {
-            left -= weight(kind);
-            if left < 0.0 {
-                return kind;
-            }
-        }
-        KINDS - 1
     }
 
     /// Books a move of this kind.
-    pub(super) fn book(&mut self, kind: usize, improved: bool) {
+    pub(super) fn book(&mut self, of: Move, improved: bool) {
+        let kind = of.index();
         self.trials[kind] += 1.0;
         self.improvements[kind] += f64::from(u8::from(improved));
         if self.trials[kind] > MEMORY {

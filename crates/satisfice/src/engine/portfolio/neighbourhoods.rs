@@ -1,107 +1,238 @@
-//! Breadth-first exhaustion of the neighbourhoods that the problem itself names.
+//! Best-first exhaustion of the neighbourhoods that the problem itself names.
 
-use std::collections::VecDeque;
+use std::collections::BinaryHeap;
 
-use super::visited::Visited;
+use hashbrown::HashTable;
+
 use crate::context::Context;
 use crate::scalar::Real;
+use crate::state::{Reader, Saved, State};
 
-/// Past trials are halved at this number.
-const MEMORY: f64 = 400.0;
+/// Past trials are halved at this number. Long, because gaps between patches of hits take many: on the teapots, 64 finds 580 of
+/// 977 pairs in 10,000 evaluations, 256 finds 842, this 935.
+const MEMORY: f64 = 1000.0;
+/// Once so many candidates are known, only hits are expanded: some 60 MB at two axes.
+const MOST: usize = 1 << 20;
 
-/// Hits in the order found, and the neighbours of the next of them.
-#[derive(Debug, Clone)]
-pub(super) struct Neighbourhoods<S> {
-    /// Hits whose neighbours have been listed.
-    cursor: usize,
-    /// Points near to hits of the slice before, best first, and how many of them have been listed.
-    near: Vec<S>,
-    near_cursor: usize,
-    /// Neighbours not proposed yet, flat.
-    queue: VecDeque<S>,
-    trials: f64,
-    hits: f64,
+/// A neighbour of evaluated points.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    key: u64,
+    /// Sum of the fitness of its evaluated neighbours, and how many they are.
+    sum: f64,
+    count: u32,
+    proposed: bool,
 }
 
-crate::saved_struct!(Neighbourhoods<S: Real> { cursor, near, near_cursor, queue, trials, hits });
+crate::saved_struct!(Candidate {
+    key,
+    sum,
+    count,
+    proposed
+});
+
+/// An entry of the queue, best first: predicted fitness as ordered bits, then the order of entry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    /// Complemented, because the heap gives its greatest.
+    unfitness: u64,
+    unage: u64,
+    candidate: u32,
+    /// The candidate's count at entry: an entry that a later one has replaced is passed over.
+    count: u32,
+}
+
+crate::saved_struct!(Entry {
+    unfitness,
+    unage,
+    candidate,
+    count
+});
+
+/// The graph that the problem's neighbours span, explored from the hits, the candidate with the least predicted fitness
+/// first.
+///
+/// A candidate's fitness is predicted by the mean of its evaluated neighbours', shrunk by one observation towards the mean of
+/// all candidates so far. On the colliding teapots this finds 930 of 977 pairs in 7,500 evaluations where breadth-first
+/// order finds 770 to 805, and it crosses the gaps between patches of hits.
+#[derive(Debug, Default)]
+pub(super) struct Neighbourhoods<S> {
+    candidates: Vec<Candidate>,
+    positions: Vec<S>,
+    table: HashTable<u32>,
+    heap: BinaryHeap<Entry>,
+    entries: u64,
+    trials: f64,
+    hits: f64,
+    /// Sum and number of the fitness of evaluated candidates.
+    sum: f64,
+    count: f64,
+}
 
 impl<S: Real> Neighbourhoods<S> {
-    pub(super) fn new() -> Self {
-        Self {
-            cursor: 0,
-            near: Vec::new(),
-            near_cursor: 0,
-            queue: VecDeque::new(),
+    /// Forgets all.
+    pub(super) fn begin(&mut self) {
+        *self = Self {
             trials: 2.0,
             hits: 1.0,
+            ..Self::default()
+        };
+    }
+
+    /// Rate of hits lately as `(hits, trials)`, if there is a candidate to try.
+    pub(super) fn posterior(&self) -> Option<(f64, f64)> {
+        (!self.heap.is_empty()).then_some((self.hits, self.trials))
+    }
+
+    /// Enters the neighbours of an evaluated point.
+    pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: S, is_hit: bool) {
+        let fitness = fitness.f64();
+        if !is_hit && self.candidates.len() >= MOST {
+            return;
         }
+        let prior = if self.count > 0.0 {
+            self.sum / self.count
+        } else {
+            fitness
+        };
+        context.neighbours(position, &mut |neighbour| self.meet(neighbour, fitness, prior));
     }
 
-    pub(super) fn begin(&mut self) {
-        self.cursor = 0;
-        self.near.clear();
-        self.near_cursor = 0;
-        self.queue.clear();
-        self.trials = 2.0;
-        self.hits = 1.0;
+    fn meet(&mut self, position: &[S], fitness: f64, prior: f64) {
+        let index = self.index_of(position);
+        let candidate = &mut self.candidates[index as usize];
+        if candidate.proposed {
+            return;
+        }
+        candidate.sum += fitness;
+        candidate.count += 1;
+        let predicted = (candidate.sum + prior) / (f64::from(candidate.count) + 1.0);
+        self.entries += 1;
+        self.heap.push(Entry {
+            unfitness: !ordered(predicted),
+            unage: !self.entries,
+            candidate: index,
+            count: candidate.count,
+        });
     }
 
-    /// A point that is no hit any more, but near to being one; told best first.
-    pub(super) fn note_near(&mut self, position: &[S]) {
-        self.near.extend_from_slice(position);
+    /// The candidate at a position, new or known.
+    fn index_of(&mut self, position: &[S]) -> u32 {
+        let key = key(position);
+        let known = self.table.find(key, |&i| self.candidates[i as usize].key == key);
+        if let Some(&index) = known {
+            return index;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "2^32 candidates do not fit in memory"
+        )]
+        let index = self.candidates.len() as u32;
+        self.candidates.push(Candidate {
+            key,
+            sum: 0.0,
+            count: 0,
+            proposed: false,
+        });
+        self.positions.extend_from_slice(position);
+        self.table
+            .insert_unique(key, index, |&i| self.candidates[i as usize].key);
+        index
     }
 
-    /// Rate of hits as `(hits, trials)`, if there is a neighbour to try.
-    pub(super) fn posterior(&self, hits: usize) -> Option<(f64, f64)> {
-        let open = !self.queue.is_empty() || self.cursor < hits || self.near_cursor < self.near.len();
-        open.then_some((self.hits, self.trials))
-    }
-
-    /// Writes the next neighbour that has not been proposed; `false` when there is none left. `hits` are all hits, flat.
-    pub(super) fn propose(
-        &mut self,
-        context: &dyn Context<S>,
-        hits: &[S],
-        visited: Option<&mut Visited>,
-        position: &mut [S],
-    ) -> bool {
+    /// Writes the best candidate; `false` when there is none.
+    pub(super) fn propose(&mut self, position: &mut [S]) -> bool {
         let dimension = position.len();
-        let mut visited = visited;
-        while self.queue.len() < dimension {
-            let start = self.cursor * dimension;
-            let of = if let Some(hit) = hits.get(start..start + dimension) {
-                self.cursor += 1;
-                hit
-            } else if let Some(near) = self.near.get(self.near_cursor..self.near_cursor + dimension) {
-                self.near_cursor += dimension;
-                near
-            } else {
-                return false;
-            };
-            let queue = &mut self.queue;
-            context.neighbours(of, &mut |neighbour| {
-                let new = match &mut visited {
-                    Some(visited) => visited.insert(context.space(), neighbour),
-                    None => !context.is_deleted(neighbour),
-                };
-                if new {
-                    queue.extend(neighbour);
-                }
-            });
+        while let Some(entry) = self.heap.pop() {
+            let index = entry.candidate as usize;
+            let candidate = &mut self.candidates[index];
+            if !candidate.proposed && candidate.count == entry.count {
+                candidate.proposed = true;
+                position.copy_from_slice(&self.positions[index * dimension..(index + 1) * dimension]);
+                return true;
+            }
         }
-        for (x, next) in position.iter_mut().zip(self.queue.drain(..dimension)) {
-            *x = next;
-        }
-        true
+        false
     }
 
-    /// Books a neighbour.
-    pub(super) fn book(&mut self, hit: bool) {
+    /// Books a candidate's fitness.
+    pub(super) fn book(&mut self, fitness: S, hit: bool) {
         self.trials += 1.0;
         self.hits += f64::from(u8::from(hit));
         if self.trials > MEMORY {
             self.trials *= 0.5;
             self.hits *= 0.5;
         }
+        if fitness.is_finite() {
+            self.sum += fitness.f64();
+            self.count += 1.0;
+        }
+    }
+}
+
+impl<S: Real> Saved for Neighbourhoods<S> {
+    fn save(&self, state: &mut State) {
+        self.candidates.save(state);
+        self.positions.save(state);
+        // The order inside a heap does not matter: equal entries do not occur.
+        self.heap.clone().into_sorted_vec().save(state);
+        self.entries.save(state);
+        [self.trials, self.hits, self.sum, self.count].save(state);
+    }
+    fn restore(from: &mut Reader<'_>) -> Result<Self, crate::Error> {
+        let candidates: Vec<Candidate> = from.read()?;
+        let positions = from.read()?;
+        let heap = from.read::<Vec<Entry>>()?.into();
+        let entries = from.read()?;
+        let [trials, hits, sum, count] = from.read()?;
+        let mut table = HashTable::new();
+        for (index, candidate) in (0..).zip(&candidates) {
+            table.insert_unique(candidate.key, index, |&i: &u32| candidates[i as usize].key);
+        }
+        Ok(Self {
+            candidates,
+            positions,
+            table,
+            heap,
+            entries,
+            trials,
+            hits,
+            sum,
+            count,
+        })
+    }
+}
+
+/// A hash of a position; two that share one are taken for the same, at odds of 2^-64.
+fn key<S: Real>(position: &[S]) -> u64 {
+    position.iter().fold(0, |hash: u64, x| {
+        let hash = (hash.rotate_left(23) ^ x.to_word()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        hash ^ (hash >> 32)
+    })
+}
+
+/// Bits that are ordered as the numbers are.
+fn ordered(x: f64) -> u64 {
+    let bits = x.to_bits();
+    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_ordered_as_numbers_are() {
+        let numbers = [
+            f64::NEG_INFINITY,
+            -2.5,
+            -1e-300,
+            0.0,
+            1e-300,
+            1.0,
+            7.0,
+            f64::INFINITY,
+        ];
+        assert!(numbers.is_sorted_by(|&a, &b| ordered(a) < ordered(b)));
     }
 }
