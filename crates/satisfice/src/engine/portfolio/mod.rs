@@ -472,7 +472,7 @@ impl<S: Real> Portfolio<S> {
             match *outcome {
                 Outcome::Hit(fitness) => self.neighbourhoods.expand(context, position, fitness, true),
                 Outcome::Miss(fitness) if is_near => {
-                    self.neighbourhoods.expand(context, position, fitness, false)
+                    self.neighbourhoods.expand(context, position, fitness, false);
                 }
                 _ => {}
             }
