@@ -9,6 +9,8 @@
 //!   place of the true one, always; 0 is returned exactly if and only if the features meet (or the true distance is
 //!   below half the least denormal).
 //!
+//! Many triangle pairs are decided fastest through [`TriangleBatch`]; the answers are the same.
+//!
 //! A triangle with collinear or coinciding vertices is the segment or the point it geometrically is, likewise an edge.
 //! No absolute epsilon occurs anywhere.
 //!
