@@ -51,3 +51,56 @@ pub(crate) fn mean_best<S: Real>(bests: &[S], mean: &mut [S]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mean of ln |X'/X| of a particle whose best, attractor and mean best are all 0: in theory ln alpha - gamma, with a
+    /// standard deviation of pi / sqrt(6) a step.
+    fn mean_log_drift(alpha: f64) -> f64 {
+        let mut rng = SearchRng::new(42);
+        let steps = 1_000_000;
+        let mut sum = 0.0;
+        for _ in 0..steps {
+            // Put back to 1 after each step: the recurrence is linear in X, and unbounded it leaves the floats.
+            let mut position = [1.0];
+            step(&mut rng, alpha, &mut position, &[0.0], &[0.0], &[0.0]);
+            sum += position[0].abs().ln();
+        }
+        sum / f64::from(steps)
+    }
+
+    #[test]
+    fn a_particle_stays_bounded_below_e_to_the_gamma() {
+        const GAMMA: f64 = 0.577_215_664_901_532_9;
+        approx::assert_relative_eq!(GAMMA.exp(), ALPHA_BOUNDED, max_relative = 1e-15);
+        for (alpha, known) in [(1.0, -0.578), (1.75, -0.018), (1.80, 0.011)] {
+            let drift = mean_log_drift(alpha);
+            assert_eq!(drift > 0.0, alpha > ALPHA_BOUNDED, "{drift} at {alpha}");
+            // Five standard deviations of the mean.
+            approx::assert_abs_diff_eq!(drift, alpha.ln() - GAMMA, epsilon = 0.0064);
+            approx::assert_abs_diff_eq!(drift, known, epsilon = 0.0064);
+        }
+    }
+
+    #[test]
+    fn a_collapsed_swarm_gives_no_nan() {
+        let mut rng = SearchRng::new(1);
+        let mut position = [0.5_f32; 8];
+        for _ in 0..10_000 {
+            step(&mut rng, 1e9, &mut position, &[0.5; 8], &[0.5; 8], &[0.5; 8]);
+            approx::assert_relative_eq!(position[..], [0.5; 8][..]);
+        }
+    }
+
+    #[test]
+    fn the_mean_of_bests_near_the_largest_number_does_not_overflow() {
+        let mut mean = [0.0];
+        mean_best(&[f64::MAX; 30], &mut mean);
+        approx::assert_relative_eq!(mean[0], f64::MAX, max_relative = 1e-14);
+        let mut mean = [0.0, 0.0];
+        mean_best(&[1.0, 10.0, 2.0, 20.0, 6.0, 60.0], &mut mean);
+        approx::assert_relative_eq!(mean[..], [3.0, 30.0][..], max_relative = 1e-15);
+    }
+}

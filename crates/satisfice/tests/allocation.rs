@@ -1,0 +1,133 @@
+//! The framework allocates for hits, archive and trace, never for an evaluation: counted by an allocator.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use core::cell::Cell;
+use std::alloc::{GlobalAlloc, Layout, System};
+
+use satisfice::engine::{self, Entry};
+use satisfice::{Budget, SatisficingProblem, Search, Space, from_fn};
+
+std::thread_local! {
+    /// Of this thread, so that tests beside this one are not counted.
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+fn count() {
+    // A thread that is going away has nothing left to count with.
+    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+}
+
+#[expect(unsafe_code, reason = "an allocator cannot be written without")]
+// SAFETY: every call is handed to the system's allocator unchanged, whose contract is the caller's; counting does not
+// allocate, for the counter is a constant and needs no destructor.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Pairs of indices, as in collision detection.
+struct Pairs(Space<f64>);
+
+impl SatisficingProblem for Pairs {
+    type Scalar = f64;
+    type Solution = [u32; 2];
+    fn space(&self) -> &Space<f64> {
+        &self.0
+    }
+    fn decode(&self, values: &[f64]) -> [u32; 2] {
+        [values[0] as u32, values[1] as u32]
+    }
+    fn fitness(&self, &[i, j]: &[u32; 2]) -> f64 {
+        (f64::from(i) - 700.0).abs() + (f64::from(j) - 300.0).abs()
+    }
+    fn threshold(&self) -> f64 {
+        40.0
+    }
+    fn encode(&self, &[i, j]: &[u32; 2], values: &mut [f64]) -> bool {
+        values.copy_from_slice(&[f64::from(i), f64::from(j)]);
+        true
+    }
+    fn neighbours(&self, &[i, j]: &[u32; 2], visit: &mut dyn FnMut([u32; 2])) -> bool {
+        for (k, l) in [
+            (i.wrapping_sub(1), j),
+            (i + 1, j),
+            (i, j.wrapping_sub(1)),
+            (i, j + 1),
+        ] {
+            if k < 1000 && l < 1000 {
+                visit([k, l]);
+            }
+        }
+        true
+    }
+}
+
+/// Allocations and hits of a run.
+fn run<P: SatisficingProblem<Scalar = f64>>(problem: &P, entry: &Entry, evaluations: u64) -> (u64, u64) {
+    let mut search = Search::new(entry.build([]).unwrap()).seed(3);
+    let before = ALLOCATIONS.get();
+    let report = search.run(problem, &Budget::evaluations(evaluations)).unwrap();
+    let allocations = ALLOCATIONS.get() - before;
+    (allocations, report.hit_count() as u64)
+}
+
+/// Allocations that grow with the logarithm of a run: each list that grows doubles once or twice in twice the evaluations.
+const LISTS: u64 = 40;
+
+fn a_longer_run_allocates_for_its_hits_only<P>(problem: &P, for_a_hit: u64)
+where
+    P: SatisficingProblem<Scalar = f64>,
+{
+    for entry in engine::all() {
+        let (short, hits_short) = run(problem, entry, 100_000);
+        let (long, hits_long) = run(problem, entry, 200_000);
+        let allowed = LISTS + for_a_hit * hits_long.saturating_sub(hits_short);
+        assert!(
+            long <= short + allowed,
+            "{}: {short} allocations in 100,000 evaluations with {hits_short} hits, {long} in 200,000 with {hits_long}",
+            entry.name
+        );
+    }
+}
+
+#[test]
+fn on_pairs_of_indices() {
+    let problem = Pairs(Space::lattice(2, 1000).unwrap());
+    a_longer_run_allocates_for_its_hits_only(&problem, 0);
+}
+
+#[test]
+fn on_a_continuous_closure() {
+    // A located solution owns its coordinates: one allocation a hit, and one for a candidate that is a hit until it turns
+    // out to be in C.
+    let problem = from_fn(Space::cube(2, -1.0, 1.0).unwrap(), 0.05, |x: &[f64]| {
+        (x[0].hypot(x[1]) - 0.5).abs()
+    });
+    a_longer_run_allocates_for_its_hits_only(&problem, 2);
+}
+
+#[test]
+fn the_counter_counts() {
+    let before = ALLOCATIONS.get();
+    let list: Vec<u8> = std::hint::black_box(Vec::with_capacity(10));
+    assert_eq!(ALLOCATIONS.get() - before, 1);
+    drop(list);
+}
