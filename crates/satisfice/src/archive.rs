@@ -234,6 +234,27 @@ impl<T: Identity> Archive<T> {
             })
     }
 
+    /// Indices of the hits that only probes have found, ascending.
+    pub(crate) fn hidden_indices(&self) -> Vec<u32> {
+        let mut indices: Vec<u32> = self.hidden.iter().copied().collect();
+        indices.sort_unstable();
+        indices
+    }
+
+    /// Hides hit `index` from [`contains`](Archive::contains); `false` where there is none.
+    pub(crate) fn hide(&mut self, index: u32) -> bool {
+        let Some(key) = self.solutions.get(index as usize).map(Identity::key) else {
+            return false;
+        };
+        if let Ok(entry) = self.table.find_entry(key, |&i| i == index) {
+            entry.remove();
+            let solutions = &self.solutions;
+            self.hidden
+                .insert_unique(key, index, |&i| solutions[i as usize].key());
+        }
+        true
+    }
+
     fn reveal(&mut self, index: u32) {
         let key = self.solutions[index as usize].key();
         if let Ok(entry) = self.hidden.find_entry(key, |&i| i == index) {

@@ -19,6 +19,20 @@ impl<S: Real> Batch<S> {
         }
     }
 
+    /// A batch of these coordinates, point after point; `None` where the last point is not complete.
+    pub(crate) fn from_positions(positions: Vec<S>, dimension: usize) -> Option<Self> {
+        let dimension = dimension.max(1);
+        positions
+            .len()
+            .is_multiple_of(dimension)
+            .then_some(Self { positions, dimension })
+    }
+
+    /// The coordinates, point after point.
+    pub(crate) fn positions(&self) -> &[S] {
+        &self.positions
+    }
+
     /// Number of points.
     #[inline]
     #[must_use]

@@ -174,6 +174,23 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         self.live += 1;
     }
 
+    /// The fitness of what has to be evaluated, as far as it is computed.
+    pub(crate) fn computed(&self) -> Vec<Option<S>> {
+        let computed = self.done.iter().zip(&self.fitness);
+        computed
+            .map(|(&done, &fitness)| done.then_some(fitness))
+            .collect()
+    }
+
+    /// Takes fitness values that were computed before; what is missing remains to be evaluated.
+    pub(crate) fn resume(&mut self, computed: &[Option<S>]) {
+        for ((fitness, done), computed) in self.fitness.iter_mut().zip(&mut self.done).zip(computed) {
+            if let Some(computed) = computed {
+                (*fitness, *done) = (*computed, true);
+            }
+        }
+    }
+
     /// What has to be evaluated, in order.
     pub(crate) fn live(&self) -> &[T] {
         &self.solutions[..self.live]
@@ -220,6 +237,36 @@ impl Ledger {
             next_count: 1,
             next_time: budget.time.map_or(Duration::MAX, |time| time / 100),
             next_progress: PROGRESS_EVERY,
+        }
+    }
+
+    /// Opens the books of a slice that was saved after `elapsed`.
+    pub(crate) fn reopen(
+        budget: &Budget,
+        counts: Counts,
+        trace: Vec<TracePoint>,
+        stop: Option<StopReason>,
+        elapsed: Duration,
+    ) -> Self {
+        let mut next = 1;
+        while next <= counts.evaluations {
+            next = next_count(next);
+        }
+        // Time points of the trace that have passed.
+        let step = budget
+            .time
+            .map_or(Duration::MAX, |time| (time / 100).max(Duration::from_nanos(1)));
+        let passed = u32::try_from(elapsed.as_nanos() / step.as_nanos()).unwrap_or(u32::MAX);
+        Self {
+            budget: budget.clone(),
+            counts,
+            trace,
+            stop,
+            clock: Clock::start(elapsed),
+            alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
+            next_count: next,
+            next_time: step.saturating_mul(passed.saturating_add(1)),
+            next_progress: elapsed + PROGRESS_EVERY,
         }
     }
 
@@ -308,7 +355,8 @@ impl Ledger {
             return;
         }
         let _ = threads;
-        let mut from = 0;
+        // In a batch that is resumed, the first ones may be done.
+        let mut from = candidates.done.iter().take_while(|&&done| done).count();
         while from < candidates.live && !self.interrupted() {
             let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
             let to = candidates.live.min(from.saturating_add(chunk));
@@ -358,7 +406,7 @@ impl Ledger {
                 .into_par_iter()
                 .with_max_len(1)
                 .for_each(|(solution, fitness, done)| {
-                    if !over() {
+                    if !*done && !over() {
                         *fitness = problem.fitness(solution);
                         *done = true;
                     }

@@ -45,6 +45,15 @@ struct First {
     own: u64,
 }
 
+crate::saved_struct!(First { index, probes, own });
+crate::saved_struct!(Probes {
+    share,
+    rng,
+    due,
+    sample,
+    first
+});
+
 impl Probes {
     /// # Errors
     /// [`Error::Parameter`] for a share outside [0, 1/2].

@@ -1,5 +1,7 @@
 //! The loop: engine, ledger, archive, slice after slice.
 
+mod checkpoint;
+
 use std::sync::Arc;
 
 use crate::archive::Archive;
@@ -17,6 +19,9 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::unseen::Unseen;
 use crate::view::{Calls, Scratches, View};
+
+use checkpoint::Pending;
+pub use checkpoint::{Checkpoint, Saving, Unfinished};
 
 /// An engine that asks for more this often without proposing anything has nothing to propose.
 const EMPTY_ASKS: usize = 1000;
@@ -56,6 +61,8 @@ pub struct Search<S, T> {
     previous: Arc<Archive<T>>,
     pool: Option<Threads>,
     slice: Option<Slice<S, T>>,
+    /// The problem of the slice that has begun or ended last.
+    problem: Option<Description>,
 }
 
 /// A slice that has begun.
@@ -73,6 +80,10 @@ struct Slice<S, T> {
     calls: Calls,
     scratches: Scratches<S, T>,
     outstanding: bool,
+    /// Whether a batch is proposed and not settled.
+    pending: bool,
+    /// A batch that was pending when the slice was saved.
+    resumed: Option<Pending<S>>,
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
@@ -97,6 +108,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             previous: Arc::default(),
             pool: None,
             slice: None,
+            problem: None,
         }
     }
 
@@ -179,15 +191,50 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
     where
         P: SatisficingProblem<Scalar = S, Solution = T>,
     {
+        self.begin(problem, budget)?;
+        self.drive(problem, observer, None)
+    }
+
+    /// The same while checkpoints are kept.
+    ///
+    /// # Errors
+    /// As [`Search::run`].
+    pub fn run_saving<P>(
+        &mut self,
+        problem: &P,
+        budget: &Budget,
+        observer: &mut dyn Observer<T>,
+        saving: Saving<'_, T>,
+    ) -> Result<Report<T>, Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        self.begin(problem, budget)?;
+        self.drive(problem, observer, Some(saving))
+    }
+
+    /// Runs the slice that has begun to its end.
+    fn drive<P>(
+        &mut self,
+        problem: &P,
+        observer: &mut dyn Observer<T>,
+        mut saving: Option<Saving<'_, T>>,
+    ) -> Result<Report<T>, Error>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
         if self.pool.is_none() {
             self.pool = Some(Threads::new(self.threads)?);
         }
-        self.begin(problem, budget)?;
         while self.propose(problem) {
             if let (Some(slice), Some(pool)) = (&mut self.slice, &self.pool) {
                 slice.ledger.evaluate(problem, &mut slice.candidates, pool);
             }
+            self.save_if_due(&mut saving);
             self.settle(problem, observer);
+        }
+        if let Some(saving) = saving {
+            saving.at_the_end(self);
         }
         self.finish(problem)
     }
@@ -251,7 +298,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             calls: Calls::default(),
             scratches: Scratches::default(),
             outstanding: false,
+            pending: false,
+            resumed: None,
         });
+        self.problem = Some(problem.description());
         self.engine.begin(&slice.view(problem, &self.previous));
         Ok(())
     }
@@ -367,9 +417,25 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
     where
         P: SatisficingProblem<Scalar = S, Solution = T>,
     {
+        let proposed = self.propose_next(problem);
+        if let Some(slice) = &mut self.slice {
+            slice.pending = proposed;
+        }
+        proposed
+    }
+
+    #[inline]
+    fn propose_next<P>(&mut self, problem: &P) -> bool
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
         let Some(slice) = &mut self.slice else {
             return false;
         };
+        if let Some(pending) = slice.resumed.take() {
+            slice.propose_again(problem, &self.previous, &pending, self.engine.deletes());
+            return true;
+        }
         if slice.ledger.is_over() {
             return false;
         }
@@ -428,6 +494,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         P: SatisficingProblem<Scalar = S, Solution = T>,
     {
         let Some(slice) = &mut self.slice else { return };
+        slice.pending = false;
         slice
             .ledger
             .settle(problem, &mut slice.candidates, &mut slice.archive, observer);

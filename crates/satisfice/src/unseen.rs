@@ -108,6 +108,20 @@ pub(crate) struct Sample {
     pub(crate) blurred: bool,
 }
 
+crate::saved_struct!(Sample {
+    points,
+    known,
+    probes,
+    recaptures,
+    fresh,
+    own_recaptures,
+    own_fresh,
+    distinct,
+    once,
+    twice,
+    blurred,
+});
+
 impl Sample {
     pub(crate) fn estimate(&self) -> Option<Unseen> {
         if self.probes == 0 {

@@ -89,7 +89,8 @@ impl<S: Real> Spso2011<S> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        self.swarm.fits_rows("the velocities", self.velocities.len())?;
+        self.swarm
+            .fits_rows_drawn("the velocities", self.velocities.len())?;
         self.swarm.fits("the direction", self.direction.len(), 1)
     }
 

@@ -266,6 +266,16 @@ impl<S: Real> Swarm<S> {
             Err(Error::State(format!("{what} has {length} numbers")))
         }
     }
+    /// The same for rows that are drawn with the first proposals: they are there before those are told.
+    ///
+    /// # Errors
+    /// [`Error::State`] where the list has another length.
+    pub(super) fn fits_rows_drawn(&self, what: &str, length: usize) -> Result<(), Error> {
+        if !self.started && length == 0 {
+            return Ok(());
+        }
+        self.fits(what, length, self.particles)
+    }
     /// Says whether a restored list of one row of coordinates a particle has its length.
     ///
     /// # Errors

@@ -99,7 +99,8 @@ impl<S: Real> VelocitySwarm<S> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        self.swarm.fits_rows("the velocities", self.velocities.len())
+        self.swarm
+            .fits_rows_drawn("the velocities", self.velocities.len())
     }
 }
 
