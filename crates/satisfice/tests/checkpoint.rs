@@ -213,7 +213,7 @@ fn from_every_checkpoint_of_a_run() {
                 &budget(),
                 &mut (),
                 Saving::every(Duration::ZERO, &mut |checkpoint: &Saved| {
-                    saved.push(checkpoint.clone();)
+                    saved.push(checkpoint.clone());
                 }),
             )
             .unwrap();
@@ -291,7 +291,7 @@ fn on_threads() {
             &Budget::evaluations(400).and_until(&cancel),
             &mut (),
             Saving::every(Duration::MAX, &mut |checkpoint: &Saved| {
-                saved = Some(checkpoint.clone();)
+                saved = Some(checkpoint.clone());
             }),
         )
         .unwrap();
