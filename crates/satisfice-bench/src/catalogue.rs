@@ -3,7 +3,8 @@
 use satisfice::{Catalogued, Parameter, Values};
 use satisfice_collision::problem::Teapots;
 use satisfice_problems::{
-    Arm, Falsification, Himmelblau, Islands, Needles, Queens, Rastrigin, Roots, SallenKey, Shell,
+    Arm, Cec2013, Costas, Falsification, GraphColouring, Himmelblau, Islands, Langford, LatinSquare,
+    MagicSquare, Needles, Queens, Rastrigin, Roots, SallenKey, Sat, Shell,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -67,8 +68,15 @@ static PROBLEMS: &[Entry] = &[
     entry::<SallenKey>(),
     entry::<Falsification>(),
     entry::<Queens>(),
+    entry::<GraphColouring>(),
+    entry::<Costas>(),
+    entry::<MagicSquare>(),
+    entry::<LatinSquare>(),
+    entry::<Langford>(),
+    entry::<Sat>(),
     entry::<Roots>(),
     entry::<Himmelblau>(),
+    entry::<Cec2013>(),
 ];
 
 /// Every problem, in the order of the docs.

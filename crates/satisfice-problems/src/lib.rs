@@ -16,6 +16,7 @@
 //! [`SatisficingProblem`]: satisfice::SatisficingProblem
 //! [`Catalogued`]: satisfice::Catalogued
 
+mod cec2013;
 mod constraints;
 mod design;
 mod falsification;
@@ -25,6 +26,7 @@ mod level_sets;
 pub mod number;
 mod roots;
 
+pub use cec2013::{Cec2013, Score, SuiteData, peak_ratio};
 pub use constraints::{
     Backtracking, Costas, Encoding, Extendable, Formula, Graph, GraphColouring, Langford, LatinSquare,
     MagicSquare, Queens, Sat, backtrack,

@@ -1,0 +1,53 @@
+//! Every problem at its defaults keeps the laws of the framework's suite, and its table builds it.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use satisfice::{Catalogued, SatisficingProblem, Values, testing};
+use satisfice_problems::*;
+
+fn keeps_the_laws<P: Catalogued>(settings: &[(&str, &str)]) {
+    let values = Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap();
+    let problem = P::from_values(&values).unwrap();
+    assert_eq!(testing::problem::check(&problem, 1), [], "{}", P::NAME);
+    assert_eq!(problem.description().name, P::NAME);
+    // What a report says builds the same problem again.
+    let parameters = problem.description().parameters;
+    let again = parameters
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.as_str()));
+    let again = P::from_values(&Values::with(P::PARAMETERS, P::NAME, again).unwrap()).unwrap();
+    assert_eq!(again.description().parameters, parameters);
+    assert_eq!(again.space(), problem.space());
+}
+
+#[test]
+fn lattices() {
+    keeps_the_laws::<Rastrigin>(&[]);
+    keeps_the_laws::<Rastrigin>(&[("dimension", "2")]);
+    keeps_the_laws::<Shell>(&[]);
+    keeps_the_laws::<Islands>(&[]);
+    keeps_the_laws::<Needles>(&[]);
+    keeps_the_laws::<SallenKey>(&[]);
+    keeps_the_laws::<Arm>(&[]);
+    keeps_the_laws::<Falsification>(&[]);
+}
+
+#[test]
+fn constraints() {
+    keeps_the_laws::<Queens>(&[]);
+    keeps_the_laws::<Queens>(&[("encoding", "random-key")]);
+    keeps_the_laws::<GraphColouring>(&[]);
+    keeps_the_laws::<Costas>(&[]);
+    keeps_the_laws::<Costas>(&[("encoding", "random-key")]);
+    keeps_the_laws::<MagicSquare>(&[]);
+    keeps_the_laws::<MagicSquare>(&[("encoding", "integer")]);
+    keeps_the_laws::<LatinSquare>(&[]);
+    keeps_the_laws::<Langford>(&[]);
+    keeps_the_laws::<Sat>(&[]);
+}
+
+#[test]
+fn continuous() {
+    keeps_the_laws::<Roots>(&[]);
+    keeps_the_laws::<Himmelblau>(&[]);
+    keeps_the_laws::<Cec2013>(&[]);
+}
