@@ -4,7 +4,7 @@ use satisfice::{Catalogued, Parameter, Values};
 use satisfice_collision::problem::Teapots;
 use satisfice_problems::{
     Arm, Cec2013, Costas, Falsification, GraphColouring, Himmelblau, Islands, Langford, LatinSquare,
-    MagicSquare, Needles, Queens, Rastrigin, Roots, SallenKey, Sat, Shell,
+    MagicSquare, Needles, Queens, Rastrigin, Roots, SallenKey, Sat, Shell, System,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -76,6 +76,7 @@ static PROBLEMS: &[Entry] = &[
     entry::<Sat>(),
     entry::<Roots>(),
     entry::<Himmelblau>(),
+    entry::<System>(),
     entry::<Cec2013>(),
 ];
 

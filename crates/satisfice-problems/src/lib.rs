@@ -7,7 +7,7 @@
 //! | inverse kinematics | [`Arm`] |
 //! | falsification | [`Falsification`] |
 //! | constraint satisfaction | [`Queens`] |
-//! | roots of nonlinear systems | [`Roots`], [`Himmelblau`] |
+//! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name) |
 //!
 //! What counts as distinct: a cell on a lattice, a root where the space is continuous (hits are polished by Newton's
 //! method). Long enumerations are kept as constants; `cargo run --release -p satisfice-problems --example enumerate`
@@ -36,4 +36,4 @@ pub use falsification::Falsification;
 pub use kinematics::Arm;
 pub use lattice::{ENUMERABLE, count_hits};
 pub use level_sets::{Islands, Needles, Rastrigin, Shell};
-pub use roots::{Himmelblau, Roots};
+pub use roots::{Himmelblau, Roots, System};

@@ -50,4 +50,5 @@ fn continuous() {
     keeps_the_laws::<Roots>(&[]);
     keeps_the_laws::<Himmelblau>(&[]);
     keeps_the_laws::<Cec2013>(&[]);
+    keeps_the_laws::<System>(&[]);
 }

@@ -9,12 +9,13 @@ use crate::number::{Dual, Number};
 /// Systems have at most this many unknowns, so that evaluation needs no allocation.
 pub(crate) const UNKNOWNS: usize = 24;
 
-/// One system, in the three arithmetics it is needed in. Each writes as many equations as there are unknowns.
+/// One system, in the arithmetics it is needed in. Each writes as many equations as there are unknowns.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Functions {
     pub(crate) real: fn(&[f64], &mut [f64]),
     pub(crate) interval: fn(&[Interval], &mut [Interval]),
     pub(crate) dual: fn(&[Dual<f64>], &mut [Dual<f64>]),
+    pub(crate) dual_interval: fn(&[Dual<Interval>], &mut [Dual<Interval>]),
 }
 
 /// `Functions` from a function that is generic over `Number`.
@@ -24,6 +25,7 @@ macro_rules! functions {
             real: $system,
             interval: $system,
             dual: $system,
+            dual_interval: $system,
         }
     };
 }

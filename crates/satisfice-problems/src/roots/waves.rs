@@ -25,7 +25,7 @@ pub struct Roots {
     description: Description,
 }
 
-fn waves<N: Number>(x: &[N], e: &mut [N]) {
+pub(super) fn waves<N: Number>(x: &[N], e: &mut [N]) {
     let (x, y) = (x[0], x[1]);
     e[0] = x.times(6.0 * PI).sin() - y.times(2.0 * PI).cos().times(0.5);
     e[1] = y.times(6.0 * PI).sin() + x.times(2.0 * PI).cos().times(0.5);
