@@ -5,6 +5,7 @@ use super::features::{FeatureKind, FeatureTree};
 use super::lanes::dispatch;
 use super::order::{Packing, Pair};
 use super::relative::Relative;
+use super::separate::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
 use super::trees::TreeWork;
 use crate::distance::{
@@ -96,6 +97,22 @@ impl Couple<'_> {
         )
     }
 
+    /// How to see that two triangles are far apart in a descent of these trees.
+    pub(crate) fn glance<'t>(&'t self, trees: &Trees<'t>, flip: bool) -> Option<Glance<'t>> {
+        let (first, second) = if flip {
+            (self.b.0, self.a.0)
+        } else {
+            (self.a.0, self.b.0)
+        };
+        let Trees { relative, filter, .. } = *trees;
+        Some(Glance {
+            first: first.triangles()?,
+            second: second.triangles()?,
+            relative,
+            apart: filter.apart,
+        })
+    }
+
     /// Goes on with a descent that `stack` holds: at most `most` visits, at most about `enough` pairs, which are appended to
     /// `found` without order. The descent starts with `start` and has ended when the stack is empty.
     pub(crate) fn step(
@@ -108,14 +125,15 @@ impl Couple<'_> {
         let packing = self.packing();
         let mut keys = Vec::new();
         let work = self.lay(|trees, flip| {
-            let mut go = |points: bool| {
+            let go = |points: bool, stack: &mut Vec<Visit>, keys: &mut Vec<u64>| {
                 let work = TreeWork::default();
                 if points {
                     let mut visit = Visitor::<true> {
                         couple: self,
                         flip,
                         packing,
-                        found: &mut keys,
+                        found: keys,
+                        glance: self.glance(&trees, flip),
                         enough,
                         work,
                     };
@@ -131,7 +149,8 @@ impl Couple<'_> {
                         couple: self,
                         flip,
                         packing,
-                        found: &mut keys,
+                        found: keys,
+                        glance: self.glance(&trees, flip),
                         enough,
                         work,
                     };
@@ -144,7 +163,7 @@ impl Couple<'_> {
                     TreeWork { visits, ..visit.work }
                 }
             };
-            go(self.points())
+            go(self.points(), stack, &mut keys)
         });
         found.extend(keys.into_iter().map(|key| packing.unpack(key)));
         work
@@ -195,6 +214,15 @@ impl Couple<'_> {
     }
 }
 
+/// Both bodies' triangles, in the order of the descent, and how they lie.
+#[derive(Clone, Copy)]
+pub(crate) struct Glance<'a> {
+    first: Triangles<'a>,
+    second: Triangles<'a>,
+    relative: &'a Relative,
+    apart: f32,
+}
+
 /// Decides the candidates of a descent.
 pub(crate) struct Visitor<'a, const POINTS: bool> {
     pub(crate) couple: &'a Couple<'a>,
@@ -202,6 +230,8 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
     pub(crate) flip: bool,
     pub(crate) packing: Packing,
     pub(crate) found: &'a mut Vec<u64>,
+    /// How to see that two triangles are far apart, if that is what the pairs are.
+    pub(crate) glance: Option<Glance<'a>>,
     /// Pairs after which the descent pauses.
     pub(crate) enough: usize,
     pub(crate) work: TreeWork,
@@ -215,7 +245,7 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
         self.found.len() >= self.enough
     }
 
-    #[inline]
+    #[inline(always)]
     fn candidate(&mut self, first: u32, second: u32, sure: bool) {
         let swap = if self.couple.one_body {
             first > second
@@ -228,6 +258,13 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
             return;
         }
         if !sure {
+            if let Some(glance) = &self.glance
+                && glance
+                    .first
+                    .apart(first, &glance.second, second, glance.relative, glance.apart)
+            {
+                return;
+            }
             self.work.decisions += 1;
             if !self.couple.within(a, b) {
                 return;

@@ -3,6 +3,7 @@
 use super::boxes::{Box32, BoxTree};
 use super::clip::Runs;
 use super::frame::Frame;
+use super::separate::{self, Directions, Triangles};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::{Error, Mesh};
 
@@ -64,6 +65,8 @@ pub struct FeatureTree {
     pub(crate) frame: Frame,
     boxes: Vec<Box32>,
     placed: Vec<[f32; 3]>,
+    /// Of triangles only.
+    directions: Vec<Directions>,
     /// Whether each vertex moved at the last refit.
     moved: Vec<bool>,
     pub(crate) tree: BoxTree,
@@ -95,6 +98,7 @@ impl FeatureTree {
             frame: Frame::unit(&bounds),
             boxes: Vec::new(),
             placed: Vec::new(),
+            directions: Vec::new(),
             moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
         };
@@ -150,6 +154,7 @@ impl FeatureTree {
             frame,
             placed,
             boxes,
+            directions,
             vertices,
             ..
         } = self;
@@ -162,6 +167,12 @@ impl FeatureTree {
             Elements::Edges(edges) => boxes.extend(edges.iter().map(|edge| Box32::around(edge.map(at)))),
             Elements::Triangles(triangles) => {
                 boxes.extend(triangles.iter().map(|triangle| Box32::around(triangle.map(at))));
+                directions.clear();
+                directions.extend(
+                    triangles
+                        .iter()
+                        .map(|triangle| separate::directions(triangle.map(at))),
+                );
             }
         }
     }
@@ -226,6 +237,18 @@ impl FeatureTree {
     #[inline]
     pub(crate) fn corners(&self, feature: u32) -> [u32; 3] {
         self.elements.corners(feature)
+    }
+
+    /// The triangles, if that is what the tree is about.
+    pub(crate) fn triangles(&self) -> Option<Triangles<'_>> {
+        match &self.elements {
+            Elements::Triangles(corners) => Some(Triangles {
+                corners,
+                placed: &self.placed,
+                directions: &self.directions,
+            }),
+            _ => None,
+        }
     }
 
     /// Whether a feature moved at the last refit.

@@ -36,6 +36,8 @@ pub(crate) struct Filter {
     pub(crate) limit: f32,
     /// No hit lies further apart than this along any axis; covers the rounding of a coordinate plus or minus it.
     pub(crate) reach: f32,
+    /// No hit has a larger gap along a direction, as computed by `separate`.
+    pub(crate) apart: f32,
 }
 
 impl Frame {
@@ -89,6 +91,7 @@ impl Frame {
 impl Filter {
     /// For a threshold and coordinates up to `half` that are wrong by up to `error`, in the unit of the frame.
     pub(crate) fn new(delta: f64, error: f64, half: f64) -> Self {
+        let apart = (delta + 3.4642 * error + 24.0 * U * half) * (1.0 + 1e-4);
         let error = 3.4642 * error + power_of_two(-70);
         let square = |d: f64| (d * d) as f32;
         let inner = (delta - error) * (1.0 - 5.0 * U);
@@ -102,6 +105,7 @@ impl Filter {
             // finite, so that an empty box, infinitely far away, never passes
             limit: square(outer).next_up().min(f32::MAX),
             // the subtraction and addition of a reach round once more, at the size of a coordinate
+            apart: apart as f32,
             reach: ((outer + 2.0 * half * U) * (1.0 + 2.0 * U)) as f32,
         }
     }

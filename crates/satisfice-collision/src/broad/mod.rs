@@ -13,6 +13,7 @@ mod order;
 mod overlap;
 mod points;
 mod relative;
+mod separate;
 mod sieve;
 mod traverse;
 mod trees;

@@ -51,7 +51,7 @@ impl Packing {
         let n = found.clone().map(<[u64]>::len).sum::<usize>();
         let [front, back] = scratch;
         front.resize(n, 0);
-        if n < 512 {
+        if n < 128 {
             let mut at = 0;
             for keys in found {
                 front[at..at + keys.len()].copy_from_slice(keys);

@@ -9,6 +9,7 @@
 use super::boxes::Group;
 use super::frame::{Filter, Frame, U, power_of_two};
 use super::lanes::Eight;
+use super::separate::Directions;
 use crate::Placement;
 
 /// Brings coordinates of one frame into another.
@@ -17,6 +18,8 @@ pub(crate) struct Relative {
     matrix: [[f32; 3]; 3],
     shift: [f32; 3],
     turned: bool,
+    /// One over the scale of the matrix.
+    inverse: f32,
 }
 
 impl Relative {
@@ -76,6 +79,12 @@ impl Relative {
             matrix: matrix.map(|row| row.map(|m| (m * ratio) as f32)),
             shift: if sane { shift.map(|s| s as f32) } else { [0.0; 3] },
             turned,
+            // a matrix of denormal numbers says nothing about directions
+            inverse: if ratio > power_of_two(-100) {
+                (1.0 / ratio) as f32
+            } else {
+                0.0
+            },
         };
         (relative, Filter::new(scaled, error, c + 4.0))
     }
@@ -86,7 +95,32 @@ impl Relative {
             matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             shift: [0.0; 3],
             turned: false,
+            inverse: 1.0,
         }
+    }
+
+    /// Whether the axes differ.
+    #[inline(always)]
+    pub(crate) fn is_turned(&self) -> bool {
+        self.turned
+    }
+
+    /// One point.
+    #[inline(always)]
+    pub(crate) fn point(&self, q: [f32; 3]) -> [f32; 3] {
+        std::array::from_fn(|i| {
+            let m = self.matrix[i];
+            m[0] * q[0] + m[1] * q[1] + m[2] * q[2] + self.shift[i]
+        })
+    }
+
+    /// Four directions, turned but not scaled.
+    #[inline(always)]
+    pub(crate) fn directions(&self, of: &Directions) -> Directions {
+        std::array::from_fn(|i| {
+            let m = self.matrix[i].map(|m| m * self.inverse);
+            std::array::from_fn(|l| m[0] * of[0][l] + m[1] * of[1][l] + m[2] * of[2][l])
+        })
     }
 
     /// Eight points, one a lane.

@@ -136,6 +136,7 @@ impl TreeJoin {
 
     fn descend<const POINTS: bool>(&mut self, trees: Trees<'_>, couple: &Couple<'_>, flip: bool) {
         let packing = couple.packing();
+        let glance = couple.glance(&trees, flip);
         let go = |task: &mut Task, most: usize| {
             let Task { stack, found, work } = task;
             let mut visit = Visitor::<POINTS> {
@@ -143,6 +144,7 @@ impl TreeJoin {
                 flip,
                 packing,
                 found,
+                glance,
                 enough: usize::MAX,
                 work: *work,
             };

@@ -1,0 +1,167 @@
+//! Pairs of points of two bodies: structure built each frame, and structure kept.
+use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
+use satisfice_collision::distance::Threshold;
+use satisfice_collision::{Mesh, Placement};
+
+use crate::table::{Method, Pairs, Report, all_threads};
+use crate::{peers, plain_grid, scenes};
+
+pub(crate) fn plain(pairs: &[Pair]) -> Pairs {
+    pairs.iter().map(|pair| (pair.a, pair.b)).collect()
+}
+
+pub(crate) fn point_tree(points: &[[f64; 3]]) -> FeatureTree {
+    FeatureTree::new(
+        &Mesh::new(points.to_vec(), vec![], vec![]).expect("finite points"),
+        FeatureKind::Vertex,
+    )
+}
+
+fn brute(a: &[[f32; 3]], b: &[[f32; 3]], r: f32) -> Pairs {
+    let mut pairs = Pairs::new();
+    for (i, p) in a.iter().enumerate() {
+        for (j, q) in b.iter().enumerate() {
+            if (0..3).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum::<f32>() < r * r {
+                pairs.push((i as u32, j as u32));
+            }
+        }
+    }
+    pairs
+}
+
+/// The grid and the trees have to agree before anything is timed.
+fn truth(scene: &scenes::Pair, trees: &[FeatureTree; 2], threshold: Threshold) -> Pairs {
+    let rest = &Placement::IDENTITY;
+    let mut join = TreeJoin::new();
+    let by_tree = join
+        .between((&trees[0], rest), (&trees[1], rest), threshold, None)
+        .expect("finite points");
+    let mut grid = PointGrid::new();
+    let by_grid = grid
+        .between(&scene.a, &scene.b, threshold)
+        .expect("finite points");
+    assert!(by_tree == by_grid, "{}", scene.name);
+    plain(by_grid)
+}
+
+/// Structure built each frame.
+pub(crate) fn fresh(report: &mut Report) {
+    report.heading("Pairs of points, structure built each frame");
+    let pool = all_threads();
+    for scene in scenes::points(report.full) {
+        let scenes::Pair {
+            name,
+            a,
+            b,
+            delta,
+            small,
+        } = &scene;
+        let threshold = Threshold::new(*delta).expect("a positive threshold");
+        let truth = truth(&scene, &[point_tree(a), point_tree(b)], threshold);
+        let (fa, fb, r) = (peers::single(a), peers::single(b), *delta as f32);
+        let (mut one, mut many) = (PointGrid::new(), pool.install(PointGrid::parallel));
+        let mut methods = vec![
+            Method::new("ours: grid", || {
+                plain(one.between(a, b, threshold).expect("finite points"))
+            }),
+            Method::new("ours: grid, all threads", || {
+                plain(pool.install(|| many.between(a, b, threshold).expect("finite points")))
+            }),
+            Method::new("plain grid f32", || plain_grid::between(&fa, &fb, r)),
+            Method::new("kiddo f32: build one, query all", || peers::kiddo(&fa, &fb, r)),
+            Method::new("parry f32: build both, leaf pairs", || {
+                peers::parry_pairs(
+                    &peers::parry_tree(&fa, r),
+                    &peers::parry_tree(&fb, 0.0),
+                    &fa,
+                    &fb,
+                    r,
+                )
+            }),
+        ];
+        if *small {
+            methods.push(Method::new("brute force f32", || brute(&fa, &fb, r)));
+        }
+        if truth.is_empty() {
+            methods.push(Method::new("the two boxes alone", || {
+                let bounds = |points: &[[f64; 3]]| {
+                    let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+                    for p in points {
+                        for k in 0..3 {
+                            min[k] = if p[k] < min[k] { p[k] } else { min[k] };
+                            max[k] = if p[k] > max[k] { p[k] } else { max[k] };
+                        }
+                    }
+                    (min, max)
+                };
+                std::hint::black_box((bounds(a), bounds(b)));
+                Pairs::new()
+            }));
+        }
+        let ms = report.compare(name, &truth, methods);
+        report.line(&format!(
+            "Fastest rival / ours {:.1}; plain grid / ours {:.2}; kiddo / plain grid {:.2}; one thread / all threads {:.2}.",
+            ms[3].min(ms[4]) / ms[0],
+            ms[2] / ms[0],
+            ms[3] / ms[2],
+            ms[0] / ms[1]
+        ));
+        report.line("");
+    }
+}
+
+/// Rigid bodies whose structure is kept.
+pub(crate) fn kept(report: &mut Report) {
+    report.heading("Pairs of points of rigid bodies, structure kept");
+    let pool = all_threads();
+    for scene in scenes::points(report.full) {
+        let scenes::Pair {
+            name, a, b, delta, ..
+        } = &scene;
+        let threshold = Threshold::new(*delta).expect("a positive threshold");
+        let trees = [point_tree(a), point_tree(b)];
+        let truth = truth(&scene, &trees, threshold);
+        let rest = &Placement::IDENTITY;
+        // the same scene, each body turned in its own coordinates and turned back by its placement
+        let back = Placement::from_axis_angle([0.3, 0.2, 1.0], 0.7).expect("an axis");
+        let there = Placement::from_axis_angle([0.3, 0.2, 1.0], -0.7).expect("an axis");
+        let own: Vec<_> = a.iter().map(|&p| there.apply(p)).collect();
+        let turned = point_tree(&own);
+        let posed: Vec<_> = own.iter().map(|&p| back.apply(p)).collect();
+        let mut grid = PointGrid::new();
+        let posed_truth = plain(grid.between(&posed, b, threshold).expect("finite points"));
+        let (fa, fb, r) = (peers::single(a), peers::single(b), *delta as f32);
+        let (parry_a, parry_b) = (peers::parry_tree(&fa, r), peers::parry_tree(&fb, 0.0));
+        let (mut one, mut many, mut far) =
+            (TreeJoin::new(), pool.install(TreeJoin::parallel), TreeJoin::new());
+        let found = far
+            .between((&turned, &back), (&trees[1], rest), threshold, None)
+            .expect("finite points");
+        assert!(plain(found) == posed_truth, "{name}, turned");
+        let methods = vec![
+            Method::new("ours: tree", || {
+                plain(
+                    one.between((&trees[0], rest), (&trees[1], rest), threshold, None)
+                        .expect("finite points"),
+                )
+            }),
+            Method::new("ours: tree, all threads", || {
+                let (a, b) = ((&trees[0], rest), (&trees[1], rest));
+                plain(pool.install(|| many.between(a, b, threshold, None).expect("finite points")))
+            }),
+            Method::new("parry f32: leaf pairs", || {
+                peers::parry_pairs(&parry_a, &parry_b, &fa, &fb, r)
+            }),
+            // another body in the last bits of its coordinates, so its errors are those of rounding the scene
+            Method::new("tree, one body turned", || {
+                plain(
+                    far.between((&turned, &back), (&trees[1], rest), threshold, None)
+                        .expect("finite points"),
+                )
+            }),
+        ];
+        let ms = report.compare(name, &truth, methods);
+        report.line(&format!("parry / ours {:.2}.", ms[2] / ms[0]));
+        report.line("");
+    }
+}

@@ -1,0 +1,197 @@
+//! Interleaved timing, errors against the truth, and the printed and written report.
+#![expect(clippy::disallowed_methods, reason = "a bench asks the time")]
+
+use std::fmt::Write as _;
+use std::time::{Instant, SystemTime};
+
+/// Pairs by number.
+pub(crate) type Pairs = Vec<(u32, u32)>;
+
+/// A way to find the pairs, run again and again.
+pub(crate) struct Method<'a> {
+    pub(crate) name: &'static str,
+    run: Box<dyn FnMut() -> Pairs + 'a>,
+}
+
+impl<'a> Method<'a> {
+    pub(crate) fn new(name: &'static str, run: impl FnMut() -> Pairs + 'a) -> Self {
+        Self {
+            name,
+            run: Box::new(run),
+        }
+    }
+}
+
+/// The report of one run.
+pub(crate) struct Report {
+    /// Whether this is a bench and not a test.
+    pub(crate) full: bool,
+    text: String,
+}
+
+impl Report {
+    pub(crate) fn new(full: bool) -> Self {
+        let mut report = Self {
+            full,
+            text: String::new(),
+        };
+        report.line("# Collision: time against error");
+        report.line("");
+        report.line(&machine());
+        report.line("");
+        report.line(
+            "Times are medians in milliseconds of interleaved runs, one thread unless a name says otherwise, results \
+             included. Error is (missed + wrong pairs) / true pairs; the truth is what two exact methods agree on. Ratio is \
+             the time divided by that of the first row. Written by `cargo bench --bench collision`.",
+        );
+        report
+    }
+
+    /// Prints and keeps a line.
+    pub(crate) fn line(&mut self, line: &str) {
+        println!("{line}");
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    pub(crate) fn heading(&mut self, heading: &str) {
+        self.line("");
+        self.line(&format!("## {heading}"));
+        self.line("");
+    }
+
+    /// Times the methods of one scene; `truth` is sorted. Returns the medians. A test asks each method once.
+    pub(crate) fn compare(
+        &mut self,
+        scene: &str,
+        truth: &[(u32, u32)],
+        mut methods: Vec<Method<'_>>,
+    ) -> Vec<f64> {
+        self.line(&format!("**{scene}**, {} pairs", truth.len()));
+        self.line("");
+        self.line("| method | ms | ratio | missed | wrong | error |");
+        self.line("|---|---|---|---|---|---|");
+        let mut errors = Vec::new();
+        let mut slowest = 0.0_f64;
+        for method in &mut methods {
+            let start = Instant::now();
+            let mut found = (method.run)();
+            slowest = slowest.max(start.elapsed().as_secs_f64());
+            found.sort_unstable();
+            let missed = truth
+                .iter()
+                .filter(|pair| found.binary_search(pair).is_err())
+                .count();
+            let wrong = found
+                .iter()
+                .filter(|pair| truth.binary_search(pair).is_err())
+                .count();
+            errors.push((missed, wrong));
+        }
+        let rounds = if self.full {
+            ((2.0 / slowest) as usize).clamp(5, 101)
+        } else {
+            1
+        };
+        let mut times = vec![Vec::new(); methods.len()];
+        for _ in 0..rounds {
+            for (method, times) in methods.iter_mut().zip(&mut times) {
+                let start = Instant::now();
+                std::hint::black_box((method.run)());
+                times.push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        let medians: Vec<f64> = times
+            .iter_mut()
+            .map(|times| {
+                times.sort_by(f64::total_cmp);
+                times[times.len() / 2]
+            })
+            .collect();
+        for ((method, &median), (missed, wrong)) in methods.iter().zip(&medians).zip(errors) {
+            let error = (missed + wrong) as f64 / truth.len().max(1) as f64;
+            self.line(&format!(
+                "| {} | {median:.4} | {:.2} | {missed} | {wrong} | {error:.2e} |",
+                method.name,
+                median / medians[0]
+            ));
+            if method.name.starts_with("ours") {
+                assert_eq!((missed, wrong), (0, 0), "{}: {}", scene, method.name);
+            }
+        }
+        self.line("");
+        medians
+    }
+
+    /// Writes the report.
+    pub(crate) fn save(&self) {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results");
+        let path = folder.join("collision.md");
+        let written = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, &self.text));
+        match written {
+            Ok(()) => println!("written to docs/results/collision.md"),
+            Err(error) => eprintln!("cannot write {}: {error}", path.display()),
+        }
+    }
+}
+
+/// As many threads as the machine has.
+pub(crate) fn all_threads() -> rayon::ThreadPool {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads")
+}
+
+/// Runs once and returns the time in milliseconds.
+pub(crate) fn time<R>(run: impl FnOnce() -> R) -> (f64, R) {
+    let start = Instant::now();
+    let result = run();
+    (start.elapsed().as_secs_f64() * 1e3, result)
+}
+
+/// A stop that comes true after so many milliseconds.
+pub(crate) fn deadline(milliseconds: f64) -> impl FnMut(usize) -> bool {
+    let start = Instant::now();
+    move |_| start.elapsed().as_secs_f64() * 1e3 >= milliseconds
+}
+
+fn machine() -> String {
+    let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpu
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split(':').nth(1))
+        .map_or("unknown processor", str::trim);
+    let threads = std::thread::available_parallelism().map_or(0, usize::from);
+    let rustc = std::process::Command::new("rustc").arg("--version").output();
+    let rustc = rustc
+        .map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned())
+        .unwrap_or_default();
+    let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().unwrap_or("?").to_owned();
+    let mut text = String::new();
+    let _ = write!(
+        text,
+        "{}; {model}, {threads} threads; {}; {rustc}; load before the run {load}.",
+        date(),
+        std::env::consts::OS
+    );
+    text
+}
+
+/// Today, from the days since 1970 (civil calendar).
+fn date() -> String {
+    let seconds = SystemTime::now()
+        .duration_since(SystemTime::UNIX_EPOCH)
+        .map_or(0, |d| d.as_secs());
+    let days = (seconds / 86_400) as i64 + 719_468;
+    let era = days.div_euclid(146_097);
+    let of_era = days.rem_euclid(146_097);
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    format!("{}-{month:02}-{day:02}", year + era * 400 + i64::from(month <= 2))
+}
