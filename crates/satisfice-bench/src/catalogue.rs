@@ -3,8 +3,9 @@
 use satisfice::{Catalogued, Parameter, Values};
 use satisfice_collision::problem::Teapots;
 use satisfice_problems::{
-    Arm, Cec2013, Costas, Falsification, GraphColouring, Himmelblau, Islands, Langford, LatinSquare,
-    MagicSquare, Needles, Queens, Rastrigin, Roots, SallenKey, Sat, Shell, System,
+    Arm, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Himmelblau, Islands, Langford,
+    LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat, SevenJoints, Shell,
+    System,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -64,7 +65,11 @@ static PROBLEMS: &[Entry] = &[
     entry::<Shell>(),
     entry::<Islands>(),
     entry::<Needles>(),
+    entry::<DiscPacking>(),
+    entry::<Cec2006>(),
     entry::<Arm>(),
+    entry::<SevenJoints>(),
+    entry::<Puma>(),
     entry::<SallenKey>(),
     entry::<Falsification>(),
     entry::<Queens>(),

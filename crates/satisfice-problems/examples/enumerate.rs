@@ -3,7 +3,7 @@
 //! `cargo run --release -p satisfice-problems --example enumerate`: about ten seconds.
 
 use satisfice::{Catalogued, Error, Values};
-use satisfice_problems::{Arm, Falsification, Islands, Rastrigin, SallenKey, Shell, count_hits};
+use satisfice_problems::{Arm, Falsification, Islands, Rastrigin, SallenKey, SevenJoints, Shell, count_hits};
 
 fn row<P: Catalogued<Scalar = f64>>(settings: &[(&str, &str)]) -> Result<bool, Error> {
     let problem = P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied())?)?;
@@ -36,6 +36,7 @@ fn main() -> Result<(), Error> {
     }
     same &= row::<SallenKey>(&[])?;
     same &= row::<Falsification>(&[])?;
+    same &= row::<SevenJoints>(&[])?;
     assert!(same, "a kept count is not the enumerated one");
     Ok(())
 }

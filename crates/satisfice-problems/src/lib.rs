@@ -2,9 +2,9 @@
 //!
 //! | family | problems |
 //! |---|---|
-//! | level sets | [`Rastrigin`], [`Shell`], [`Islands`], and the negative control [`Needles`] |
+//! | level sets | [`Rastrigin`], [`Shell`], [`Islands`], [`DiscPacking`], [`Cec2006`], and the negative control [`Needles`] |
 //! | design windows | [`SallenKey`] |
-//! | inverse kinematics | [`Arm`] |
+//! | inverse kinematics | [`Arm`], [`SevenJoints`], [`Puma`] |
 //! | falsification | [`Falsification`] |
 //! | constraint satisfaction | [`Queens`] |
 //! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name) |
@@ -33,7 +33,7 @@ pub use constraints::{
 };
 pub use design::{Parts, SallenKey, Window};
 pub use falsification::Falsification;
-pub use kinematics::Arm;
+pub use kinematics::{Arm, Puma, SevenJoints};
 pub use lattice::{ENUMERABLE, count_hits};
-pub use level_sets::{Islands, Needles, Rastrigin, Shell};
+pub use level_sets::{Cec2006, DiscPacking, Islands, Needles, Rastrigin, Shell};
 pub use roots::{Himmelblau, Roots, System};

@@ -1,7 +1,7 @@
 //! Every problem at its defaults keeps the laws of the framework's suite, and its table builds it.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Catalogued, SatisficingProblem, Values, testing};
+use satisfice::{Catalogued, Values, testing};
 use satisfice_problems::*;
 
 fn keeps_the_laws<P: Catalogued>(settings: &[(&str, &str)]) {
@@ -27,7 +27,12 @@ fn lattices() {
     keeps_the_laws::<Islands>(&[]);
     keeps_the_laws::<Needles>(&[]);
     keeps_the_laws::<SallenKey>(&[]);
+    keeps_the_laws::<DiscPacking>(&[]);
+    for problem in ["g01", "g04", "g06", "g08", "g09", "g12", "g24"] {
+        keeps_the_laws::<Cec2006>(&[("problem", problem)]);
+    }
     keeps_the_laws::<Arm>(&[]);
+    keeps_the_laws::<SevenJoints>(&[]);
     keeps_the_laws::<Falsification>(&[]);
 }
 
@@ -51,4 +56,5 @@ fn continuous() {
     keeps_the_laws::<Himmelblau>(&[]);
     keeps_the_laws::<Cec2013>(&[]);
     keeps_the_laws::<System>(&[]);
+    keeps_the_laws::<Puma>(&[]);
 }

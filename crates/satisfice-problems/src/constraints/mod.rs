@@ -102,7 +102,7 @@ use constraint_methods;
 /// Reference counts are made by backtracking within this many nodes: a second or two.
 const NODES: u64 = 30_000_000;
 
-fn counted(problem: &impl Extendable) -> Option<u64> {
+pub(crate) fn counted(problem: &impl Extendable) -> Option<u64> {
     let result = backtrack(problem, NODES, &mut |_| ());
     result.complete.then_some(result.solutions)
 }

@@ -1,4 +1,4 @@
-//! A square system e(x) = 0 in a box, as a satisficing problem: what all root problems share.
+//! A system e(x) = 0 in a box, as a satisficing problem: what all root problems share.
 
 use satisfice::interval::{Interval, IntervalOps, lower_bound, side};
 use satisfice::{Axis, Error, Located, Region, Space};
@@ -9,7 +9,7 @@ use crate::number::{Dual, Number};
 /// Systems have at most this many unknowns, so that evaluation needs no allocation.
 pub(crate) const UNKNOWNS: usize = 24;
 
-/// One system, in the arithmetics it is needed in. Each writes as many equations as there are unknowns.
+/// One system, in the arithmetics it is needed in. Each writes all equations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Functions {
     pub(crate) real: fn(&[f64], &mut [f64]),
@@ -35,6 +35,8 @@ pub(crate) use functions;
 #[derive(Debug, Clone)]
 pub(crate) struct Equations {
     pub(crate) functions: Functions,
+    /// Number of equations, at least as many as unknowns; more are solved by least squares.
+    pub(crate) residuals: usize,
     pub(crate) space: Space<f64>,
     pub(crate) threshold: f64,
     pub(crate) separation: f64,
@@ -67,6 +69,7 @@ impl Equations {
         }
         Ok(Self {
             functions,
+            residuals: space.dimension(),
             space,
             threshold,
             separation,
@@ -101,8 +104,8 @@ impl Equations {
             return f64::NAN;
         }
         let mut residuals = [0.0; UNKNOWNS];
-        (self.functions.real)(x, &mut residuals[..n]);
-        residuals[..n].iter().fold(0.0, |sum, e| sum + e * e)
+        (self.functions.real)(x, &mut residuals[..self.residuals]);
+        residuals[..self.residuals].iter().fold(0.0, |sum, e| sum + e * e)
     }
 
     /// The same in interval arithmetic, which contains every rounding of `fitness`.
@@ -117,8 +120,8 @@ impl Equations {
             *x = side(region, axis);
         }
         let mut residuals = [zero; UNKNOWNS];
-        (self.functions.interval)(&x[..n], &mut residuals[..n]);
-        let squares = residuals[..n].iter().map(|e| e.square());
+        (self.functions.interval)(&x[..n], &mut residuals[..self.residuals]);
+        let squares = residuals[..self.residuals].iter().map(|e| e.square());
         lower_bound(squares.fold(zero, |sum, square| sum + square))
     }
 

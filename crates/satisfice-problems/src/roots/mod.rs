@@ -1,7 +1,7 @@
 //! Roots of nonlinear systems: continuous spaces, hits polished by Newton's method, distinct roots counted.
 
 mod certify;
-mod equations;
+pub(crate) mod equations;
 mod himmelblau;
 mod newton;
 mod system;

@@ -1,5 +1,7 @@
 //! Newton's method from a point near a root, damped.
 
+use satisfice::Boundary;
+
 use super::equations::{Equations, UNKNOWNS};
 use crate::number::Dual;
 
@@ -29,6 +31,9 @@ pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
         let Some((next, here)) = better else { break };
         (best, least) = (next, here);
     }
+    if equations.space.boundary() == Boundary::Wrap {
+        equations.space.keep_inside(&mut best);
+    }
     // A root on the border may come out a rounding error outside.
     for (x, axis) in best.iter_mut().zip(equations.space.axes()) {
         let tolerance = 1e-9 * axis.width();
@@ -40,9 +45,10 @@ pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
     (equations.fitness(&best) <= before).then_some(best)
 }
 
-/// J(x)^-1 e(x), by Gaussian elimination with partial pivoting on the exact derivatives.
+/// J(x)^-1 e(x), by Gaussian elimination with partial pivoting on the exact derivatives. With more equations than unknowns
+/// the step of Gauss and Newton, from J^T J.
 fn newton_step(equations: &Equations, x: &[f64]) -> Option<[f64; UNKNOWNS]> {
-    let n = x.len();
+    let (n, m) = (x.len(), equations.residuals);
     let mut matrix = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
     let mut input = [Dual {
         value: 0.0,
@@ -54,11 +60,19 @@ fn newton_step(equations: &Equations, x: &[f64]) -> Option<[f64; UNKNOWNS]> {
     }
     for column in 0..n {
         input[column].slope = 1.0;
-        (equations.functions.dual)(&input[..n], &mut output[..n]);
+        (equations.functions.dual)(&input[..n], &mut output[..m]);
         input[column].slope = 0.0;
-        for (row, output) in matrix.iter_mut().zip(&output[..n]) {
+        for (row, output) in matrix.iter_mut().zip(&output[..m]) {
             row[column] = output.slope;
             row[n] = output.value;
+        }
+    }
+    if m > n {
+        let tall = matrix;
+        for (i, row) in matrix.iter_mut().enumerate().take(n) {
+            for (j, entry) in row.iter_mut().enumerate().take(n + 1) {
+                *entry = tall[..m].iter().map(|row| row[i] * row[j]).sum();
+            }
         }
     }
     for column in 0..n {
