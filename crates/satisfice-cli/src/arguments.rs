@@ -80,7 +80,7 @@ pub(crate) struct RunArguments {
     pub(crate) set: Vec<(String, String)>,
 
     /// Name of the engine; `satisfice list` shows them all.
-    #[arg(long, value_name = "NAME", default_value = "latest-hit-qpso")]
+    #[arg(long, value_name = "NAME", default_value = "portfolio")]
     pub(crate) engine: String,
 
     #[command(flatten)]

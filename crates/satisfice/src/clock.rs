@@ -26,6 +26,8 @@ pub(crate) struct Clock {
     start: Instant,
     before: Duration,
     last: Instant,
+    /// Time since the start at the last look: asked for at every proposal.
+    seen: Duration,
     since: u64,
     interval: u64,
     cost: Duration,
@@ -39,6 +41,7 @@ impl Clock {
             start,
             before,
             last: start,
+            seen: before,
             since: 0,
             interval: 1,
             cost: Duration::ZERO,
@@ -47,7 +50,7 @@ impl Clock {
 
     /// Time since the start, as of the last look.
     pub(crate) fn seen(&self) -> Duration {
-        self.before + (self.last - self.start)
+        self.seen
     }
 
     /// Time since the start, exactly.
@@ -79,7 +82,8 @@ impl Clock {
             .clamp(1, (2 * self.interval).min(LOOK_AFTER));
         self.last = now;
         self.since = 0;
-        self.seen()
+        self.seen = self.before + (now - self.start);
+        self.seen
     }
 
     /// What an evaluation cost lately, with all that surrounds it: for scheduling, never for results.

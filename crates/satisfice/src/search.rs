@@ -86,6 +86,13 @@ struct Slice<S, T> {
     resumed: Option<Pending<S>>,
 }
 
+/// A search by the [default engine](crate::engine::default), which uses whatever the problem offers.
+impl<S: Real, T: Identity + Clone + Send + Sync> Default for Search<S, T> {
+    fn default() -> Self {
+        Self::new(crate::engine::default())
+    }
+}
+
 impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
     /// A search by this engine: one [by name](crate::engine::build), or [one's own](Named::new).
     #[must_use]

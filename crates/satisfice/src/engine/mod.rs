@@ -31,7 +31,7 @@ mod swarm;
 mod velocity_swarm;
 mod walk;
 
-pub use entry::{Build, Entry, Named, all, build, find};
+pub use entry::{Build, Entry, Named, all, build, default, find};
 
 /// What an engine says after proposing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -325,6 +325,11 @@ impl<S: Real> Portfolio<S> {
 }
 
 impl<S: Real> Engine<S> for Portfolio<S> {
+    /// One evaluation in fifty says how complete the result is.
+    fn probes(&self) -> f64 {
+        0.02
+    }
+
     fn begin(&mut self, context: &dyn Context<S>) {
         let space = context.space();
         let dimension = space.dimension();
