@@ -46,8 +46,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut names = Vec::new();
     for (problem, settings) in PROBLEMS {
         let instance = catalogue::find(problem)?.build(settings.iter().copied())?;
-        let reference = instance.reference_hits().map_or_else(|| "?".to_owned(), |hits| hits.to_string());
-        let setting: String = settings.iter().map(|(name, text)| format!(" {name}={text}")).collect();
+        let reference = instance
+            .reference_hits()
+            .map_or_else(|| "?".to_owned(), |hits| hits.to_string());
+        let setting: String = settings
+            .iter()
+            .map(|(name, text)| format!(" {name}={text}"))
+            .collect();
         names.push(format!("{problem}{setting} ({reference})"));
         for (engine, row) in ENGINES.iter().zip(&mut means) {
             row.push(mean_hits(instance.as_ref(), *engine, seeds, evaluations)?);
@@ -56,14 +61,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let table = table(&names, &means, seeds, evaluations)?;
     println!("{table}");
-    let folder = std::env::var_os("SATISFICE_OUT").map_or_else(|| PathBuf::from("docs/results"), PathBuf::from);
-    let folder = if quick && std::env::var_os("SATISFICE_OUT").is_none() { PathBuf::from("out") } else { folder };
+    let folder =
+        std::env::var_os("SATISFICE_OUT").map_or_else(|| PathBuf::from("docs/results"), PathBuf::from);
+    let folder = if quick && std::env::var_os("SATISFICE_OUT").is_none() {
+        PathBuf::from("out")
+    } else {
+        folder
+    };
     std::fs::create_dir_all(&folder)?;
     let path = folder.join("ablation.md");
     std::fs::write(&path, &table)?;
     println!("written to {}", path.display());
     let whole = relative(&means[5], &means[0]);
-    assert!(whole > 1.5, "the default engine should find far more than the literal one, not {whole:.2} times as much");
+    assert!(
+        whole > 1.5,
+        "the default engine should find far more than the literal one, not {whole:.2} times as much"
+    );
     Ok(())
 }
 
@@ -87,7 +100,11 @@ fn mean_hits(
 
 /// Geometric mean of the ratios; a count of none counts as half a hit, so that the mean exists.
 fn relative(means: &[f64], to: &[f64]) -> f64 {
-    let logs = means.iter().zip(to).take(MEAN_OVER).map(|(a, b)| (a.max(0.5) / b.max(0.5)).ln());
+    let logs = means
+        .iter()
+        .zip(to)
+        .take(MEAN_OVER)
+        .map(|(a, b)| (a.max(0.5) / b.max(0.5)).ln());
     (logs.sum::<f64>() / MEAN_OVER as f64).exp()
 }
 

@@ -4,6 +4,7 @@ pub mod archive;
 pub mod batch;
 mod binomial;
 pub mod budget;
+mod candidates;
 mod clock;
 pub mod context;
 pub mod engine;

@@ -215,5 +215,7 @@ pub fn build<S: Real>(name: &str) -> Result<Named<S>, Error> {
 /// If a default of its own table were out of range, which a test excludes.
 #[must_use]
 pub fn default<S: Real>() -> Named<S> {
-    all()[0].build([]).expect("the defaults of the table are in their ranges")
+    all()[0]
+        .build([])
+        .expect("the defaults of the table are in their ranges")
 }
