@@ -64,6 +64,9 @@ impl<S: Real> Engine<S> for Probe<S> {
     fn deletes(&self) -> bool {
         self.inner.deletes()
     }
+    fn probes(&self) -> f64 {
+        self.inner.probes()
+    }
     fn warm_start(&self) -> WarmStart {
         self.inner.warm_start()
     }
@@ -148,6 +151,9 @@ impl<S: Real> Engine<S> for Restored<S> {
     }
     fn deletes(&self) -> bool {
         self.inner.deletes()
+    }
+    fn probes(&self) -> f64 {
+        self.inner.probes()
     }
     fn warm_start(&self) -> WarmStart {
         self.inner.warm_start()
