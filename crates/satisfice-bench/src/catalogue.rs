@@ -5,7 +5,7 @@ use satisfice_collision::problem::Teapots;
 use satisfice_problems::{
     Arm, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Himmelblau, Islands, Langford,
     LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat, SevenJoints, Shell,
-    System,
+    System, Transmission,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -72,6 +72,7 @@ static PROBLEMS: &[Entry] = &[
     entry::<Puma>(),
     entry::<SallenKey>(),
     entry::<Falsification>(),
+    entry::<Transmission>(),
     entry::<Queens>(),
     entry::<GraphColouring>(),
     entry::<Costas>(),

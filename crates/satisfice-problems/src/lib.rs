@@ -5,7 +5,7 @@
 //! | level sets | [`Rastrigin`], [`Shell`], [`Islands`], [`DiscPacking`], [`Cec2006`], and the negative control [`Needles`] |
 //! | design windows | [`SallenKey`] |
 //! | inverse kinematics | [`Arm`], [`SevenJoints`], [`Puma`] |
-//! | falsification | [`Falsification`] |
+//! | falsification | [`Falsification`], [`Transmission`], specifications in signal temporal logic: [`Specification`] |
 //! | constraint satisfaction | [`Queens`] |
 //! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name) |
 //!
@@ -32,7 +32,7 @@ pub use constraints::{
     MagicSquare, Queens, Sat, backtrack,
 };
 pub use design::{Parts, SallenKey, Window};
-pub use falsification::Falsification;
+pub use falsification::{Falsification, Specification, Trace, Transmission};
 pub use kinematics::{Arm, Puma, SevenJoints};
 pub use lattice::{ENUMERABLE, count_hits};
 pub use level_sets::{Cec2006, DiscPacking, Islands, Needles, Rastrigin, Shell};

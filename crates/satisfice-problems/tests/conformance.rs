@@ -34,6 +34,7 @@ fn lattices() {
     keeps_the_laws::<Arm>(&[]);
     keeps_the_laws::<SevenJoints>(&[]);
     keeps_the_laws::<Falsification>(&[]);
+    keeps_the_laws::<Transmission>(&[]);
 }
 
 #[test]

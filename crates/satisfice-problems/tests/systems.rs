@@ -80,7 +80,7 @@ fn hits_are_near_roots() {
                 .iter()
                 .map(|root| distance(root, &middle))
                 .fold(f64::INFINITY, f64::min);
-            if nearest + widths[widest] < 0.02 {
+            if nearest + widths[widest] < 0.05 {
                 continue;
             }
             assert!(
