@@ -107,7 +107,8 @@ pub(crate) fn run(report: &mut Report) {
     report.heading("A tenth of the time");
     report.line(
         "Exact is the median time of enumerating the frame by itself, by kept trees (rigid) or a new grid (deforming); the \
-         budget is a tenth of it and includes taking over the new frame.",
+         budget is a tenth of it. Handing over the new coordinates and, between the frames, measuring the distances of the \
+         last contacts are outside both.",
     );
     report.line("");
     report.line("| scene | pairs | contacts before | contacts | exact ms | budget ms | found | share |");
@@ -124,28 +125,33 @@ pub(crate) fn run(report: &mut Report) {
         let mut exact = scene(film.bodies);
         (film.step)(&mut exact, 0);
         let before = exact.contacts().expect("finite points").contacts;
-        // the frame is entered twice: once to know the answer, once under the budget
         (film.step)(&mut exact, 1);
         let answer = exact.contacts().expect("finite points");
-        (film.step)(&mut exact, 0);
-        assert_eq!(exact.contacts().expect("finite points").contacts, before);
-        (film.step)(&mut exact, 1);
         let mut enumerate = film.exact;
-        let mut times: Vec<f64> = (0..if report.full { 21 } else { 1 })
-            .map(|_| time(&mut enumerate).0)
-            .collect();
+        let runs = if report.full { 21 } else { 1 };
+        let mut times: Vec<f64> = (0..runs).map(|_| time(&mut enumerate).0).collect();
         times.sort_by(f64::total_cmp);
         let full_time = times[times.len() / 2];
         let budget = full_time / 10.0;
-        let mut stop = deadline(budget);
-        let mut pass = exact.pass();
-        let state = exact.advance(&mut pass, &mut stop).expect("the present frame");
-        let cut = exact.finish(pass);
-        let known = |contact| answer.contacts.binary_search(contact).is_ok();
-        assert!(cut.contacts.iter().all(known), "a budget never invents contacts");
-        if state == Completeness::Proved {
-            assert_eq!(cut.contacts.len(), answer.contacts.len());
-        }
+        // the median of several tries, for a deadline in wall time suffers from whatever else runs
+        let mut counts: Vec<usize> = (0..runs.min(9))
+            .map(|_| {
+                (film.step)(&mut exact, 0);
+                assert_eq!(exact.contacts().expect("finite points").contacts, before);
+                exact.measure_contacts();
+                (film.step)(&mut exact, 1);
+                let mut stop = deadline(budget);
+                let mut pass = exact.pass();
+                let state = exact.advance(&mut pass, &mut stop).expect("the present frame");
+                let cut = exact.finish(pass);
+                let known = |contact| answer.contacts.binary_search(contact).is_ok();
+                assert!(cut.contacts.iter().all(known), "a budget never invents contacts");
+                assert!(state == Completeness::Unknown || cut.contacts.len() == answer.contacts.len());
+                cut.contacts.len()
+            })
+            .collect();
+        counts.sort_unstable();
+        let found = counts[counts.len() / 2];
         report.line(&format!(
             "| {}, r = {} | {} | {} | {} | {full_time:.3} | {budget:.3} | {} | {:.0} % |",
             film.name,
@@ -153,8 +159,8 @@ pub(crate) fn run(report: &mut Report) {
             film.kind,
             before.len(),
             answer.contacts.len(),
-            cut.contacts.len(),
-            100.0 * cut.contacts.len() as f64 / answer.contacts.len().max(1) as f64
+            found,
+            100.0 * found as f64 / answer.contacts.len().max(1) as f64
         ));
     }
     report.line("");

@@ -62,7 +62,7 @@ impl Runs {
 ///
 /// # Errors
 /// [`Error::NonFiniteVertex`].
-pub(crate) fn check_finite(points: &[[f64; 3]]) -> Result<(), Error> {
+fn check_finite(points: &[[f64; 3]]) -> Result<(), Error> {
     for (vertex, point) in points.iter().enumerate() {
         if let Some(k) = point.iter().position(|c| !c.is_finite()) {
             return Err(Error::NonFiniteVertex {

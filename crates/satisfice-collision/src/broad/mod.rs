@@ -22,7 +22,7 @@ mod trees;
 mod tests;
 
 pub(crate) use boxes::Moved;
-pub(crate) use clip::{check_finite, inflate, intersection};
+pub(crate) use clip::{Runs, inflate, intersection};
 pub(crate) use couple::Couple;
 pub use couple::Keep;
 pub use features::{FeatureKind, FeatureTree, Refit};

@@ -27,6 +27,9 @@ pub(super) struct Link {
     pub(super) pairs: Vec<Pair>,
     pub(super) seen: Option<u64>,
     skin: Option<Skin>,
+    /// For each of `pairs` how far below the threshold its distance was at the frame `bounded`, rounded down.
+    slack: Vec<f32>,
+    bounded: Option<u64>,
 }
 
 /// Every pair that was within the threshold plus a margin; complete while the bodies have not used the margin up.
@@ -50,6 +53,12 @@ impl Link {
     pub(super) fn forget(&mut self, seen: Option<u64>) {
         self.seen = seen;
         self.skin = None;
+        self.bounded = None;
+    }
+
+    /// The slacks, if they were measured at the frame `at` for the pairs there are.
+    pub(super) fn slack(&self, at: Option<u64>) -> Option<&[f32]> {
+        (at.is_some() && self.bounded == at && self.slack.len() == self.pairs.len()).then_some(&self.slack)
     }
 }
 
@@ -81,6 +90,8 @@ impl Scene {
                         pairs: Vec::new(),
                         seen: None,
                         skin: None,
+                        slack: Vec::new(),
+                        bounded: None,
                     });
                 } else {
                     self.filtered += u64::from(a <= b);
@@ -256,6 +267,38 @@ impl Scene {
         let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
         self.states[a].ready(kind_a)?;
         self.states[b].ready(kind_b)
+    }
+
+    /// Measures the distance of every known contact, so that the next pass can tell from the bodies' motion alone which of them
+    /// still hold. For the time between frames: an answer does not change by it. Cost: one distance a contact.
+    pub fn measure_contacts(&mut self) {
+        let delta = self.threshold.get();
+        for at in 0..self.links.len() {
+            let link = &self.links[at];
+            let seen = link.seen;
+            if seen != Some(self.frame) {
+                continue;
+            }
+            let mut slack = std::mem::take(&mut self.links[at].slack);
+            let link = &self.links[at];
+            slack.clear();
+            slack.extend(link.pairs.iter().map(|&pair| {
+                // a distance is within one unit in the last place; the cast may round up by half of one of f32
+                let distance = self.proximity_of(link.contact(pair)).distance;
+                ((delta - distance * (1.0 + 1e-12)) * (1.0 - 1e-12)).max(0.0) as f32
+            }));
+            slack
+                .iter_mut()
+                .for_each(|slack| *slack = slack.next_down().max(0.0));
+            let link = &mut self.links[at];
+            (link.slack, link.bounded) = (slack, seen);
+        }
+    }
+
+    /// How much the distance of two features of a link can have changed since the last frame.
+    pub(super) fn motion(&self, link: &Link) -> f64 {
+        let (a, b) = (self.states[link.a].motion, self.states[link.b].motion);
+        if link.a == link.b { 2.0 * a } else { a + b }
     }
 
     /// Whether a pair of features is within the threshold now: the exact decision.

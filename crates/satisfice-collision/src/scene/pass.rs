@@ -1,6 +1,6 @@
 //! A frame under a budget: the likeliest pairs first, and an exact resume.
 
-use super::link::{Near, couple, keeps};
+use super::link::{Link, Near, couple, keeps};
 use super::{Completeness, Contact, Frame, Scene, Skips};
 use crate::Error;
 use crate::broad::{Pair, Visit};
@@ -10,8 +10,9 @@ const STRIDE: usize = 64;
 /// Pairs of groups of eight boxes visited between two questions to the budget.
 const VISITS: usize = 16;
 
-/// A frame that is being enumerated piece by piece. First the pairs of the last frame are verified, those of the pairs of
-/// bodies with most contacts first; then the bodies are searched in the same order.
+/// A frame that is being enumerated piece by piece. First come the contacts of the last frame that hold whatever moved (see
+/// [`Scene::measure_contacts`]), then the others are verified, those of the bodies with most contacts first; then the
+/// bodies are searched in the same order.
 pub struct Pass {
     frame: u64,
     order: Vec<usize>,
@@ -23,7 +24,12 @@ pub struct Pass {
 }
 
 enum Phase {
-    /// Verifying pair `next` of the link at `turn` of the order.
+    /// Taking over the contacts that hold by the bound of motion, from pair `next` of the link at `turn` of the order on.
+    Held {
+        turn: usize,
+        next: usize,
+    },
+    /// Verifying the others, likewise.
     Verify {
         turn: usize,
         next: usize,
@@ -86,7 +92,7 @@ impl Scene {
             order,
             delivered: vec![Vec::new(); self.links.len()],
             contacts: Vec::new(),
-            phase: Phase::Verify { turn: 0, next: 0 },
+            phase: Phase::Held { turn: 0, next: 0 },
             skips: self.start_skips(),
         }
     }
@@ -128,8 +134,36 @@ impl Scene {
         pass.into_frame()
     }
 
+    /// The slack of each contact of the last frame, and how much of it the bodies' motion has used; a contact that was closer
+    /// than the bodies have moved is one still.
+    fn held<'l>(&self, link: &'l Link) -> Option<(&'l [f32], f64)> {
+        Some((link.slack(self.frame.checked_sub(1))?, self.motion(link)))
+    }
+
     fn piece(&mut self, pass: &mut Pass) -> Result<(), Error> {
         match &mut pass.phase {
+            Phase::Held { turn, next } => {
+                let Some(&at) = pass.order.get(*turn) else {
+                    pass.phase = Phase::Verify { turn: 0, next: 0 };
+                    return Ok(());
+                };
+                let link = &self.links[at];
+                let held = self.held(link);
+                let end = held.map_or(0, |(slack, _)| slack.len().min(*next + 16 * STRIDE));
+                if let Some((slack, motion)) = held {
+                    for (&pair, &slack) in link.pairs[*next..end].iter().zip(&slack[*next..end]) {
+                        if f64::from(slack) > motion {
+                            pass.delivered[at].push(pair);
+                            pass.contacts.push(link.contact(pair));
+                            pass.skips.held_by_motion += 1;
+                        }
+                    }
+                }
+                *next = end;
+                if held.is_none() || end == link.pairs.len() {
+                    (*turn, *next) = (*turn + 1, 0);
+                }
+            }
             Phase::Verify { turn, next } => {
                 let Some(&at) = pass.order.get(*turn) else {
                     pass.phase = Phase::Search {
@@ -142,8 +176,10 @@ impl Scene {
                 };
                 let link = &self.links[at];
                 let end = link.pairs.len().min(*next + STRIDE);
-                for &pair in &link.pairs[*next..end] {
-                    if self.decide(link, pair) {
+                let held = self.held(link);
+                for (i, &pair) in (*next..).zip(&link.pairs[*next..end]) {
+                    let taken = held.is_some_and(|(slack, motion)| f64::from(slack[i]) > motion);
+                    if !taken && self.decide(link, pair) {
                         pass.delivered[at].push(pair);
                         pass.contacts.push(link.contact(pair));
                     }
@@ -165,6 +201,7 @@ impl Scene {
                 };
                 let delivered = &mut pass.delivered[at];
                 if !*started {
+                    delivered.sort_unstable();
                     *verified = delivered.len();
                     if self.boxes_apart(at) {
                         pass.skips.boxes_apart += 1;
@@ -185,7 +222,6 @@ impl Scene {
                     let mut found = Vec::new();
                     couple.step(stack, VISITS, usize::MAX, &mut found);
                     for pair in found {
-                        // the last frame's pairs are sorted, and so are those of them that were verified
                         if delivered[..*verified].binary_search(&pair).is_err() {
                             delivered.push(pair);
                             pass.contacts.push(link.contact(pair));

@@ -19,6 +19,8 @@ pub struct Skips {
     pub without_partner: u64,
     /// Pairs of features kept from the last frame because neither moved.
     pub unmoved_pairs: u64,
+    /// Contacts of the last frame that were closer than the bodies have moved since, and so still hold.
+    pub held_by_motion: u64,
     /// Pairs of near features that are neighbours on the mesh.
     pub mesh_neighbours: u64,
     /// Pairs of near features with a vertex that the predicate leaves out.
@@ -28,7 +30,7 @@ pub struct Skips {
 impl Skips {
     /// Reasons and counts, in order.
     #[must_use]
-    pub fn by_reason(&self) -> [(&'static str, u64); 10] {
+    pub fn by_reason(&self) -> [(&'static str, u64); 11] {
         [
             ("body pairs filtered", self.filtered_bodies),
             ("self-pairs of rigid bodies", self.rigid_self),
@@ -38,6 +40,7 @@ impl Skips {
             ("vertices outside the overlap", self.outside_overlap),
             ("vertices without a partner nearby", self.without_partner),
             ("pairs that did not move", self.unmoved_pairs),
+            ("contacts that hold by the bound of motion", self.held_by_motion),
             ("pairs of mesh neighbours", self.mesh_neighbours),
             ("pairs with a filtered vertex", self.filtered_vertices),
         ]

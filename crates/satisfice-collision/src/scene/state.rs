@@ -1,7 +1,7 @@
 //! A body inside a scene: where it is, what of it moved, and the trees kept over it.
 
 use super::body::{Body, Motion};
-use crate::broad::{FeatureKind, FeatureTree, Moved};
+use crate::broad::{FeatureKind, FeatureTree, Moved, Runs};
 use crate::distance::{Point, Segment, Triangle};
 use crate::{Aabb, Adjacency, Error, Placement};
 
@@ -11,8 +11,12 @@ pub(super) struct State {
     /// Where each vertex of the mesh is, before the placement.
     pub(super) vertices: Vec<Point>,
     pub(super) placement: Placement,
+    /// Whether the placement is the identity.
+    rests: bool,
     next_vertices: Vec<Point>,
     has_next: bool,
+    /// The boxes of the next vertices.
+    runs: Runs,
     next_placement: Option<Placement>,
     /// What moved between the last two frames.
     pub(super) moved: Moved,
@@ -48,8 +52,10 @@ impl State {
             body,
             vertices,
             placement,
+            rests: placement == Placement::IDENTITY,
             next_vertices: Vec::new(),
             has_next: false,
+            runs: Runs::default(),
             next_placement: None,
             moved: Moved::All,
             share: 1.0,
@@ -81,7 +87,7 @@ impl State {
                 "a frame has as many vertices as its body",
             ));
         }
-        crate::broad::check_finite(vertices)?;
+        self.runs.measure(vertices, 1)?;
         self.next_vertices.clear();
         self.next_vertices.extend_from_slice(vertices);
         self.has_next = true;
@@ -128,6 +134,7 @@ impl State {
             self.motion = self.motion_to(&placement);
             (self.moved, self.share) = (Moved::All, 1.0);
             self.placement = placement;
+            self.rests = placement == Placement::IDENTITY;
             self.posed_is_current = false;
             self.bounds = self.posed_bounds(&placement);
         }
@@ -144,7 +151,7 @@ impl State {
                 self.share = count as f64 / self.vertices.len() as f64;
                 // rounded up; squares that underflow belong to motions below 1e-153
                 self.motion = square.sqrt() * (1.0 + 1e-12) + 1e-153;
-                if let Some(bounds) = Aabb::of_points(self.vertices.iter().copied()) {
+                if let Some(bounds) = self.runs.whole() {
                     (self.local, self.bounds) = (bounds, bounds);
                 }
                 self.trees
@@ -206,7 +213,12 @@ impl State {
     /// Where a vertex is in the world.
     #[inline]
     pub(super) fn vertex(&self, v: u32) -> Point {
-        self.placement.apply(self.vertices[v as usize])
+        let vertex = self.vertices[v as usize];
+        if self.rests {
+            vertex
+        } else {
+            self.placement.apply(vertex)
+        }
     }
 
     /// The ends of an edge in the world.

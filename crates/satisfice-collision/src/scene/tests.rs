@@ -296,6 +296,26 @@ fn an_interrupted_pass_resumes_exactly() {
 }
 
 #[test]
+fn contacts_that_hold_by_motion_are_right() {
+    for kind in KINDS {
+        let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap());
+        let mut held = 0;
+        play(&mut scene, |scene, posed, frame| {
+            let mut pass = scene.pass();
+            scene.advance(&mut pass, &mut |_| false).unwrap();
+            held += pass.skips().held_by_motion;
+            assert_eq!(
+                scene.finish(pass).contacts,
+                referee(posed, kind, 0.12),
+                "{kind} frame {frame}"
+            );
+            scene.measure_contacts();
+        });
+        assert!(held > 100, "{kind}: {held}");
+    }
+}
+
+#[test]
 fn a_budget_cut_finds_last_frames_contacts_first() {
     let sheet = generate::cloth(2.0, 2.0, 60, 60).unwrap();
     let fold = |t: f64| -> Vec<Point> {
