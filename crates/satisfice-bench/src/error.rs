@@ -12,6 +12,19 @@ pub enum Error {
     /// A solution could not be written as JSON.
     #[error("a solution cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
+    /// A checkpoint that cannot be read.
+    #[error("no checkpoint of a run of this problem: {0}")]
+    Checkpoint(String),
+    /// A checkpoint of another run.
+    #[error("the checkpoint's {what} is {saved}, not {now}: give the arguments that the run was begun with")]
+    Other {
+        /// What differs.
+        what: &'static str,
+        /// What the checkpoint says.
+        saved: String,
+        /// What was asked for.
+        now: String,
+    },
     /// No slice was asked for.
     #[error("0 slices leave nothing to run: give at least 1")]
     NoSlices,

@@ -6,7 +6,8 @@ use serde::de::DeserializeOwned;
 
 use crate::error::Error;
 use crate::record::Record;
-use crate::run::{Progress, Request, search};
+use crate::resume::{Keeping, Saved};
+use crate::run::{Progress, Request, search, search_keeping};
 use crate::settings::Settings;
 use crate::verify::{self, Mismatch};
 
@@ -21,6 +22,16 @@ pub trait Instance: Send + Sync {
     /// # Errors
     /// As [`search`].
     fn run(&self, request: &Request, watch: &mut dyn FnMut(&Progress)) -> Result<Record, Error>;
+    /// The same while checkpoints are kept, or from one on.
+    ///
+    /// # Errors
+    /// As [`search`], and [`Error::Checkpoint`] and [`Error::Other`] for a checkpoint that does not fit.
+    fn run_keeping(
+        &self,
+        request: &Request,
+        watch: &mut dyn FnMut(&Progress),
+        keeping: Keeping<'_>,
+    ) -> Result<Record, Error>;
     /// How many distinct hits there are, where that is known. May take long: call it outside any clock.
     fn reference_hits(&self) -> Option<u64>;
     /// Evaluates every solution of a record anew and checks its books; what does not fit, in the order of the record.
@@ -64,6 +75,20 @@ where
             problem: P::NAME.to_owned(),
             problem_parameters: self.parameters.clone(),
             ..search(&self.problem, request, watch)?
+        })
+    }
+
+    fn run_keeping(
+        &self,
+        request: &Request,
+        watch: &mut dyn FnMut(&Progress),
+        keeping: Keeping<'_>,
+    ) -> Result<Record, Error> {
+        let asked = Saved::new(P::NAME, &self.parameters, request);
+        Ok(Record {
+            problem: P::NAME.to_owned(),
+            problem_parameters: self.parameters.clone(),
+            ..search_keeping(&self.problem, request, watch, asked, keeping)?
         })
     }
 

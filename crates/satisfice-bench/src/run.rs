@@ -3,13 +3,15 @@
 use core::ops::ControlFlow;
 
 use satisfice::{
-    Archive, Budget, Completeness, Counts, Identity, Observer, Real, Report, SatisficingProblem, Search,
-    StopReason, TracePoint, engine,
+    Archive, Budget, Checkpoint, Completeness, Counts, Identity, Observer, Real, Report, SatisficingProblem,
+    Saving, Search, StopReason, TracePoint, engine,
 };
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::error::Error;
 use crate::record::{Limits, Record, Slice, Solution, add};
+use crate::resume::{Keeping, Saved, SavedRun};
 use crate::settings::Settings;
 
 /// What to run: engine, seed, threads, budget of a slice, slices.
@@ -98,20 +100,99 @@ where
         search = search.probes(share);
     }
     let mut reports = Vec::new();
-    for slice in 0..request.slices {
+    while goes_on(&reports, request) {
+        let slice = reports.len() as u64;
         let mut watcher = Watcher { slice, watch };
-        let report = search.run_observed(problem, &request.budget, &mut watcher)?;
-        let stop = report.stop_reason;
-        reports.push(report);
-        if matches!(
-            stop,
-            StopReason::Cancelled | StopReason::Covered | StopReason::Hits
-        ) {
-            break;
-        }
+        reports.push(search.run_observed(problem, &request.budget, &mut watcher)?);
     }
     let (all, trace, slices) = unite(&reports);
     write_up(problem, request, entry.parameters, &reports, &all, trace, slices)
+}
+
+/// The same while checkpoints of what was `asked` are kept, or from one on.
+pub(crate) fn search_keeping<P>(
+    problem: &P,
+    request: &Request,
+    watch: &mut dyn FnMut(&Progress),
+    asked: Saved,
+    keeping: Keeping<'_>,
+) -> Result<Record, Error>
+where
+    P: SatisficingProblem,
+    P::Solution: Serialize + DeserializeOwned,
+{
+    if request.slices == 0 {
+        return Err(Error::NoSlices);
+    }
+    let entry = engine::find(&request.engine)?;
+    let settings = request
+        .engine_settings
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()));
+    let engine = entry.build(settings)?;
+    let (mut search, mut reports, mut unfinished);
+    if let Some(bytes) = keeping.resume {
+        Saved::read(bytes)?.agrees(&asked)?;
+        let saved: SavedRun<P::Solution> =
+            serde_json::from_slice(bytes).map_err(|error| Error::Checkpoint(error.to_string()))?;
+        unfinished = saved.search.slice.is_some();
+        search = Search::resume(saved.search, engine)?;
+        reports = saved.reports;
+    } else {
+        search = Search::new(engine).seed(request.seed);
+        if let Some(share) = request.probes {
+            search = search.probes(share);
+        }
+        (reports, unfinished) = (Vec::new(), false);
+    }
+    search = search.threads(request.threads);
+    let (mut save, mut failed) = (keeping.save, None);
+    let mut saved = SavedRun {
+        asked,
+        reports: Vec::new(),
+        search: search.checkpoint(),
+    };
+    while unfinished || goes_on(&reports, request) {
+        let slice = reports.len() as u64;
+        let mut watcher = Watcher { slice, watch };
+        saved.reports.clone_from(&reports);
+        let mut write = |checkpoint: &Checkpoint<P::Solution>| {
+            saved.search = checkpoint.clone();
+            match serde_json::to_vec(&saved) {
+                Ok(bytes) => save.iter_mut().for_each(|save| save(&bytes)),
+                Err(error) => failed = Some(error),
+            }
+        };
+        let saving = Saving::every(keeping.every, &mut write);
+        let report = if unfinished {
+            search.run_resumed(
+                problem,
+                request.budget.cancel.as_ref(),
+                &mut watcher,
+                Some(saving),
+            )
+        } else {
+            search.run_saving(problem, &request.budget, &mut watcher, saving)
+        };
+        reports.push(report?);
+        unfinished = false;
+    }
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    let (all, trace, slices) = unite(&reports);
+    write_up(problem, request, entry.parameters, &reports, &all, trace, slices)
+}
+
+/// Whether there is another slice to run.
+fn goes_on<T>(reports: &[Report<T>], request: &Request) -> bool {
+    let over = reports.last().is_some_and(|report| {
+        matches!(
+            report.stop_reason,
+            StopReason::Cancelled | StopReason::Covered | StopReason::Hits
+        )
+    });
+    !over && (reports.len() as u64) < request.slices
 }
 
 /// Passes progress on, without the type of the solutions.

@@ -5,10 +5,12 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use satisfice::{Budget, Cancel};
-use satisfice_bench::Request;
+use satisfice_bench::{Request, Saved};
 
 use crate::quantity;
 
+/// The engine where none is named.
+pub(crate) const DEFAULT_ENGINE: &str = "portfolio";
 /// The time a search has where neither a time nor a number of evaluations is given.
 const DEFAULT_TIME: Duration = Duration::from_secs(1);
 
@@ -69,6 +71,10 @@ Examples:
   satisfice run shell --time 50ms --slices 10 --threads 0
       Ten time slices of 50 ms, each warm from the hits of the one before, on all cores.
 
+  satisfice run arm --time 1h --checkpoint arm.json
+  satisfice run arm --resume arm.json --checkpoint arm.json
+      A long run that Ctrl-C or a power cut does not lose: resumed, it finds what it would have found without interruption.
+
 Ctrl-C ends the search and keeps what it found.")]
 pub(crate) struct RunArguments {
     /// Name of the problem; `satisfice list` shows them all.
@@ -79,16 +85,24 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Name of the engine; `satisfice list` shows them all.
-    #[arg(long, value_name = "NAME", default_value = "portfolio")]
-    pub(crate) engine: String,
+    /// Name of the engine; `satisfice list` shows them all [default: portfolio].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) engine: Option<String>,
 
     #[command(flatten)]
     pub(crate) search: SearchArguments,
 
-    /// Number of time slices, each with the whole budget and warm from the hits of the one before.
-    #[arg(long, value_name = "K", default_value = "1", value_parser = quantity::count, allow_hyphen_values = true)]
-    pub(crate) slices: u64,
+    /// Number of time slices, each with the whole budget and warm from the hits of the one before [default: 1].
+    #[arg(long, value_name = "K", value_parser = quantity::count, allow_hyphen_values = true)]
+    pub(crate) slices: Option<u64>,
+
+    /// Keep a checkpoint of the run in this file: at the beginning, every few seconds, at Ctrl-C and at the end.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) checkpoint: Option<PathBuf>,
+
+    /// Go on with the run that this checkpoint is of. Arguments that are not given are taken from it; others have to agree.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) resume: Option<PathBuf>,
 
     /// Write the report as JSON; `-` is stdout and replaces the summary.
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
@@ -118,9 +132,9 @@ pub(crate) struct SearchArguments {
     #[arg(long, value_name = "N", value_parser = quantity::count, allow_hyphen_values = true)]
     hits: Option<u64>,
 
-    /// Seed of the random numbers, 0 to 2^64 - 1.
-    #[arg(long, value_name = "N", default_value = "0", value_parser = quantity::seed, allow_hyphen_values = true)]
-    seed: u64,
+    /// Seed of the random numbers, 0 to 2^64 - 1 [default: 0].
+    #[arg(long, value_name = "N", value_parser = quantity::seed, allow_hyphen_values = true)]
+    seed: Option<u64>,
 
     /// Share of the evaluations spent on uniform probes, 0 to 0.5, from which the hits not seen are estimated [default: the
     /// engine's own, which is 0 for most].
@@ -145,7 +159,7 @@ impl SearchArguments {
             hits: self.hits,
             ..Budget::until(cancel)
         };
-        let mut request = Request::new(engine, budget).seed(self.seed);
+        let mut request = Request::new(engine, budget).seed(self.seed.unwrap_or_default());
         request.engine_settings.clone_from(&self.engine_set);
         request.threads = self.threads;
         request.probes = self.probes;
@@ -156,6 +170,23 @@ impl SearchArguments {
             .map(|(name, value)| (name.as_str(), value.as_str()));
         satisfice::engine::find(engine)?.build::<f64>(settings)?;
         Ok(request)
+    }
+
+    /// What was asked for when a run was saved, with what is given here in its place.
+    pub(crate) fn over(&self, saved: &mut Saved) {
+        if !self.engine_set.is_empty() {
+            saved.engine_settings.clone_from(&self.engine_set);
+        }
+        saved.seed = self.seed.unwrap_or(saved.seed);
+        saved.probes = self.probes.or(saved.probes);
+        saved.budget.time = self.time.or(saved.budget.time);
+        saved.budget.evaluations = self.evaluations.or(saved.budget.evaluations);
+        saved.budget.hits = self.hits.or(saved.budget.hits);
+    }
+
+    /// Threads to evaluate on.
+    pub(crate) fn threads(&self) -> usize {
+        self.threads
     }
 
     /// Whether anything was given that only a search makes use of.

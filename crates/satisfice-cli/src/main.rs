@@ -1,6 +1,7 @@
 //! The command `satisfice`.
 
 mod arguments;
+mod checkpoint;
 mod collide;
 mod completions;
 mod failure;

@@ -164,9 +164,7 @@ fn the_exit_code_says_whether_there_is_a_hit() {
     let found = satisfice(TEAPOTS);
     assert_eq!((found.code, found.stderr.as_str()), (0, ""));
     assert!(
-        found
-            .stdout
-            .starts_with("teapots by latest-hit-qpso, seed 1\n  hits "),
+        found.stdout.starts_with("teapots by portfolio, seed 1\n  hits "),
         "{}",
         found.stdout
     );

@@ -163,6 +163,9 @@ macro_rules! root_methods {
         fn lower_bound(&self, region: &satisfice::Region<f64>) -> Option<f64> {
             self.equations.lower_bound(region)
         }
+        fn covers(&self, hit: &satisfice::Located<f64>, region: &satisfice::Region<f64>) -> bool {
+            hit.covers(region)
+        }
         fn canonical(&self, hit: satisfice::Located<f64>) -> satisfice::Located<f64> {
             self.equations.canonical(hit)
         }

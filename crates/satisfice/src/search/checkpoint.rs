@@ -155,11 +155,12 @@ impl<T> core::fmt::Debug for Saving<'_, T> {
 }
 
 impl<'a, T> Saving<'a, T> {
-    /// Calls `save` about every so often (and at most a tenth of the time), when the slice is cancelled, and at its end.
+    /// Calls `save` at the beginning, about every so often (and for at most a tenth of the time), when the slice is cancelled,
+    /// and at its end.
     pub fn every(every: Duration, save: &'a mut dyn FnMut(&Checkpoint<T>)) -> Self {
         Self {
             every,
-            next: every,
+            next: Duration::ZERO,
             saved: false,
             save,
         }
