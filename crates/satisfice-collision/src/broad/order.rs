@@ -51,7 +51,8 @@ impl Packing {
         let n = found.clone().map(<[u64]>::len).sum::<usize>();
         let [front, back] = scratch;
         front.resize(n, 0);
-        if n < 128 {
+        // the tables of the passes below cost more than sorting so few
+        if n < 512 {
             let mut at = 0;
             for keys in found {
                 front[at..at + keys.len()].copy_from_slice(keys);
