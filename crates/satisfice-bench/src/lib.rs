@@ -15,23 +15,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-/// The pages of the docs, compiled.
-#[cfg(doctest)]
-mod pages {
-    #[doc = include_str!("../../../README.md")]
-    mod readme {}
-    #[doc = include_str!("../../../docs/adding-a-problem.md")]
-    mod adding_a_problem {}
-    #[doc = include_str!("../../../docs/adding-an-engine.md")]
-    mod adding_an_engine {}
-    #[doc = include_str!("../../../docs/architecture.md")]
-    mod architecture {}
-    #[doc = include_str!("../../../docs/completeness.md")]
-    mod completeness {}
-    #[doc = include_str!("../../../docs/reproducibility.md")]
-    mod reproducibility {}
-}
-
 pub mod catalogue;
 mod error;
 mod instance;
