@@ -34,4 +34,7 @@ pub enum Error {
     /// A chart that could not be encoded.
     #[error("cannot encode the chart: {0}")]
     Chart(String),
+    /// A picture of a scene that could not be drawn.
+    #[error("cannot draw the picture: {0}")]
+    Picture(String),
 }

@@ -20,6 +20,7 @@ mod error;
 mod instance;
 pub mod json;
 pub mod listing;
+pub mod picture;
 pub mod plot;
 pub mod record;
 pub mod resume;

@@ -35,13 +35,31 @@ const STYLES: [LineStyle; 4] = [
 /// [`Error::Chart`] where the picture cannot be encoded.
 pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
     let (plots, layouts): (Vec<_>, Vec<_>) = chart.panels.iter().map(panel).unzip();
-    let scene = Figure::new(1, chart.panels.len().max(1))
+    let labels = |panel: &Panel| {
+        panel
+            .curves
+            .iter()
+            .map(|curve| curve.label.clone())
+            .collect::<Vec<_>>()
+    };
+    let one_legend = chart.panels.len() > 1
+        && labels(&chart.panels[0]).iter().any(Option::is_some)
+        && chart
+            .panels
+            .iter()
+            .all(|panel| labels(panel) == labels(&chart.panels[0]));
+    let figure = Figure::new(1, chart.panels.len().max(1))
         .with_title(chart.title.clone())
         .with_title_size(16)
         .with_plots(plots)
         .with_layouts(layouts)
-        .with_cell_size(PANEL.0, PANEL.1)
-        .render();
+        .with_cell_size(PANEL.0, PANEL.1);
+    let figure = if one_legend {
+        figure.with_shared_legend()
+    } else {
+        figure
+    };
+    let scene = figure.render();
     match format {
         Format::Svg => Ok(own_ids(&SvgBackend::new().render_scene(&scene)).into_bytes()),
         Format::Png => PngBackend::new().render_scene(&scene).map_err(Error::Chart),
