@@ -35,3 +35,22 @@ pub use resume::{Keeping, Saved};
 pub use run::{Progress, Request, search};
 pub use settings::Settings;
 pub use verify::Mismatch;
+
+/// The code of the documents at the root, compiled and run with the doc tests.
+#[cfg(doctest)]
+mod documents {
+    macro_rules! documents {
+        ($($name:ident: $path:literal),* $(,)?) => {$(
+            #[doc = include_str!(concat!("../../../", $path))]
+            struct $name;
+        )*};
+    }
+    documents! {
+        Readme: "README.md",
+        Architecture: "docs/architecture.md",
+        AddingAnEngine: "docs/adding-an-engine.md",
+        AddingAProblem: "docs/adding-a-problem.md",
+        Completeness: "docs/completeness.md",
+        Reproducibility: "docs/reproducibility.md",
+    }
+}

@@ -1,0 +1,84 @@
+//! What the documents say of the code has to be so.
+
+use std::path::Path;
+
+use satisfice::engine;
+
+const README: &str = include_str!("../../../README.md");
+
+/// The first cell of every row of the first table under a heading.
+fn first_cells(heading: &str) -> Vec<&'static str> {
+    let section = README.split(heading).nth(1).unwrap_or_default();
+    let rows = section.lines().skip_while(|line| !line.starts_with('|'));
+    rows.take_while(|line| line.starts_with('|'))
+        .skip(2)
+        .filter_map(|row| row.split('|').nth(1))
+        .map(|cell| cell.trim().trim_matches('`'))
+        .collect()
+}
+
+#[test]
+fn the_readme_lists_every_engine_in_order() {
+    let names: Vec<_> = engine::all().iter().map(|entry| entry.name).collect();
+    assert_eq!(first_cells("## Engines"), names);
+}
+
+#[test]
+fn the_readme_says_of_each_engine_what_the_registry_says() {
+    for entry in engine::all() {
+        let row = format!("| `{}` | {} |", entry.name, entry.summary);
+        assert!(
+            README.contains(&row),
+            "the README has no row that begins with {row}"
+        );
+    }
+}
+
+#[test]
+fn links_between_the_documents_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut links = 0;
+    for document in [
+        "README.md",
+        "CONTRIBUTING.md",
+        "docs/architecture.md",
+        "docs/adding-an-engine.md",
+        "docs/adding-a-problem.md",
+        "docs/completeness.md",
+        "docs/reproducibility.md",
+        "examples/README.md",
+    ] {
+        let path = root.join(document);
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(!text.is_empty(), "{document} is missing or empty");
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if link.contains("://") || link.contains("::") || link.starts_with('#') {
+                continue;
+            }
+            let target = path.with_file_name("").join(link);
+            assert!(target.exists(), "{document} links to {link}, which is not there");
+            links += 1;
+        }
+    }
+    assert!(links >= 10, "only {links} links were looked at");
+}
+
+#[test]
+fn the_examples_are_all_listed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let list = std::fs::read_to_string(folder.join("README.md")).unwrap_or_default();
+    let entries = std::fs::read_dir(&folder).expect("the folder of the examples");
+    for path in entries.filter_map(Result::ok).map(|entry| entry.path()) {
+        if path.extension().is_some_and(|extension| extension == "rs") {
+            let name = path
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            assert!(
+                list.contains(&format!("| `{name}` |")),
+                "examples/README.md does not list {name}"
+            );
+        }
+    }
+}
