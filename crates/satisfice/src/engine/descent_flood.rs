@@ -58,10 +58,10 @@ impl<S: Real> Engine<S> for DescentFlood<S> {
         Ask::More
     }
 
-    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         self.flood.add_hits(batch, outcomes);
         if origin == Origin::Engine && !self.flooding {
-            self.descent.learn(context.space(), batch, outcomes);
+            self.descent.learn(batch, outcomes);
         }
     }
 
