@@ -7,6 +7,8 @@ use crate::scalar::Real;
 pub struct Batch<S> {
     positions: Vec<S>,
     dimension: usize,
+    /// Kept beside the coordinates: a division would cost as much as a cheap fitness.
+    points: usize,
 }
 
 impl<S: Real> Batch<S> {
@@ -16,16 +18,19 @@ impl<S: Real> Batch<S> {
         Self {
             positions: Vec::new(),
             dimension: dimension.max(1),
+            points: 0,
         }
     }
 
     /// A batch of these coordinates, point after point; `None` where the last point is not complete.
     pub(crate) fn from_positions(positions: Vec<S>, dimension: usize) -> Option<Self> {
         let dimension = dimension.max(1);
-        positions
-            .len()
-            .is_multiple_of(dimension)
-            .then_some(Self { positions, dimension })
+        let points = positions.len() / dimension;
+        positions.len().is_multiple_of(dimension).then_some(Self {
+            positions,
+            dimension,
+            points,
+        })
     }
 
     /// The coordinates, point after point.
@@ -37,14 +42,14 @@ impl<S: Real> Batch<S> {
     #[inline]
     #[must_use]
     pub fn len(&self) -> usize {
-        self.positions.len() / self.dimension
+        self.points
     }
 
     /// Whether there is no point.
     #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
+        self.points == 0
     }
 
     /// Number of coordinates a point.
@@ -58,12 +63,16 @@ impl<S: Real> Batch<S> {
     #[inline]
     pub fn clear(&mut self) {
         self.positions.clear();
+        self.points = 0;
     }
 
     /// Keeps the first `points` points.
     #[inline]
     pub fn truncate(&mut self, points: usize) {
-        self.positions.truncate(points * self.dimension);
+        if points < self.points {
+            self.positions.truncate(points * self.dimension);
+            self.points = points;
+        }
     }
 
     /// Adds a point. One of a wrong length is cut, or filled with NaN, which the space turns into its middle.
@@ -75,6 +84,7 @@ impl<S: Real> Batch<S> {
             self.positions
                 .resize(self.positions.len() + self.dimension - position.len(), S::nan());
         }
+        self.points += 1;
     }
 
     /// Adds a point and lets `fill` write its coordinates, which are 0 before.
@@ -82,6 +92,7 @@ impl<S: Real> Batch<S> {
     pub fn push_with(&mut self, fill: impl FnOnce(&mut [S])) {
         let start = self.positions.len();
         self.positions.resize(start + self.dimension, S::zero());
+        self.points += 1;
         fill(&mut self.positions[start..]);
     }
 
@@ -105,8 +116,9 @@ impl<S: Real> Batch<S> {
     }
 
     /// All points, in order.
+    #[inline]
     pub fn points(&self) -> impl ExactSizeIterator<Item = &[S]> {
-        self.positions.chunks_exact(self.dimension)
+        (0..self.points).map(|index| self.point(index))
     }
 }
 

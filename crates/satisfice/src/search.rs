@@ -542,9 +542,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             problem,
             archive: &self.archive,
             previous,
-            evaluations: self.ledger.counts.evaluations,
-            share: self.ledger.share(),
-            limit: self.ledger.budget.evaluations.unwrap_or(u64::MAX),
+            ledger: &self.ledger,
             calls: &self.calls,
             scratches: &self.scratches,
         }

@@ -4,6 +4,7 @@ use core::cell::{Cell, RefCell};
 
 use crate::archive::Archive;
 use crate::context::Context;
+use crate::evaluate::Ledger;
 use crate::problem::SatisficingProblem;
 use crate::space::{Region, Space};
 
@@ -30,10 +31,7 @@ pub(crate) struct View<'a, P: SatisficingProblem> {
     pub(crate) problem: &'a P,
     pub(crate) archive: &'a Archive<P::Solution>,
     pub(crate) previous: &'a Archive<P::Solution>,
-    pub(crate) evaluations: u64,
-    pub(crate) share: f64,
-    /// Evaluations and calls of bounds that the budget allows.
-    pub(crate) limit: u64,
+    pub(crate) ledger: &'a Ledger,
     pub(crate) calls: &'a Calls,
     pub(crate) scratches: &'a Scratches<P::Scalar, P::Solution>,
 }
@@ -133,10 +131,10 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         self.problem.threshold()
     }
     fn elapsed_share(&self) -> f64 {
-        self.share
+        self.ledger.share()
     }
     fn evaluations(&self) -> u64 {
-        self.evaluations
+        self.ledger.counts.evaluations
     }
     fn hits(&self) -> usize {
         self.archive.len() - self.archive.hidden()
@@ -177,8 +175,8 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         })
     }
     fn evaluations_left(&self) -> u64 {
-        self.limit
-            .saturating_sub(self.evaluations + self.calls.bounds.get())
+        let limit = self.ledger.budget.evaluations.unwrap_or(u64::MAX);
+        limit.saturating_sub(self.ledger.counts.evaluations + self.calls.bounds.get())
     }
     fn previous_hits(&self) -> usize {
         self.previous.len()
