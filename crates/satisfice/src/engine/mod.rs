@@ -16,6 +16,7 @@ mod informants;
 mod latest_hit_qpso;
 mod portfolio;
 pub mod potential_well;
+mod pruned;
 mod pso;
 mod pso_1995;
 mod pso_inertia;
