@@ -12,16 +12,19 @@ pub(crate) struct Candidates<S, T> {
     /// What to evaluate: the first `live` solutions; those behind are memory to be used again.
     pub(crate) solutions: Vec<T>,
     pub(crate) live: usize,
-    /// Their place in the batch.
-    pub(crate) places: Vec<u32>,
-    /// Their fitness, and whether it was computed.
+    /// The fitness of the live ones; what stands behind is memory.
     pub(crate) fitness: Vec<S>,
-    pub(crate) done: Vec<bool>,
-    /// One for each point of the batch.
+    /// How many of the live ones are computed without a gap...
+    pub(crate) ready: usize,
+    /// ...and which of them, where threads have left gaps.
+    done: Vec<bool>,
+    has_gaps: bool,
+    /// One for each point of the batch. Before they are settled: `Deleted` for a point that is not live, `Known` for a live
+    /// one that is in C, else `NotEvaluated`.
     pub(crate) outcomes: Vec<Outcome<S>>,
     /// Whether they are uniform probes, whose hits the engine does not see.
     pub(crate) probing: bool,
-    pub(crate) values: Vec<S>,
+    values: Vec<S>,
     /// Whether found solutions are deleted from the space, as far as the engine is concerned.
     pub(crate) deletes: bool,
 }
@@ -31,9 +34,10 @@ impl<S: Real, T> Default for Candidates<S, T> {
         Self {
             solutions: Vec::new(),
             live: 0,
-            places: Vec::new(),
             fitness: Vec::new(),
+            ready: 0,
             done: Vec::new(),
+            has_gaps: false,
             outcomes: Vec::new(),
             probing: false,
             values: Vec::new(),
@@ -44,6 +48,7 @@ impl<S: Real, T> Default for Candidates<S, T> {
 
 impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     /// Brings the points inside, decodes the first `limit` of them and looks them up in C.
+    #[inline]
     pub(crate) fn prepare<P: SatisficingProblem<Scalar = S, Solution = T>>(
         &mut self,
         problem: &P,
@@ -53,25 +58,24 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         deletes: bool,
     ) {
         let space = problem.space();
-        self.reset(batch.len(), deletes);
+        self.reset(deletes);
         self.values.resize(space.dimension(), S::zero());
         for i in 0..batch.len().min(limit) {
             let point = batch.point_mut(i);
-            space.keep_inside(point);
             let values: &[S] = if space.has_integers() {
-                space.values(point, &mut self.values);
+                space.keep_inside_with_values(point, &mut self.values);
                 &self.values
             } else {
+                space.keep_inside(point);
                 point
             };
             match self.solutions.get_mut(self.live) {
                 Some(slot) => problem.decode_into(values, slot),
                 None => self.solutions.push(problem.decode(values)),
             }
-            self.file(i, archive);
+            self.file(archive);
         }
-        self.fitness.resize(self.live, S::zero());
-        self.done.resize(self.live, false);
+        self.make_room(batch.len());
     }
 
     /// The same for solutions that are known already, at the points of `batch`.
@@ -83,61 +87,90 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     ) where
         T: 'a,
     {
-        self.reset(solutions.len(), true);
-        for (i, solution) in solutions.take(limit).enumerate() {
+        self.reset(true);
+        let points = solutions.len();
+        for solution in solutions.take(limit) {
             match self.solutions.get_mut(self.live) {
                 Some(slot) => slot.clone_from(solution),
                 None => self.solutions.push(solution.clone()),
             }
-            self.file(i, archive);
+            self.file(archive);
         }
-        self.fitness.resize(self.live, S::zero());
-        self.done.resize(self.live, false);
+        self.make_room(points);
     }
 
-    fn reset(&mut self, points: usize, deletes: bool) {
+    #[inline]
+    fn reset(&mut self, deletes: bool) {
         self.deletes = deletes;
         self.live = 0;
-        self.places.clear();
-        self.fitness.clear();
-        self.done.clear();
+        self.ready = 0;
+        self.has_gaps = false;
         self.outcomes.clear();
-        self.outcomes.resize(points, Outcome::NotEvaluated);
     }
 
-    /// Files the solution in slot `live` as point `i`.
     #[inline]
-    fn file(&mut self, i: usize, archive: &Archive<T>) {
-        if archive.contains(&self.solutions[self.live]) {
-            if self.deletes {
-                self.outcomes[i] = Outcome::Deleted;
-                return;
-            }
-            self.outcomes[i] = Outcome::Known(S::nan()); // its fitness is filled in by `settle`
+    fn make_room(&mut self, points: usize) {
+        if self.outcomes.len() < points {
+            self.outcomes.resize(points, Outcome::NotEvaluated);
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "a batch of 2^32 points does not fit in memory"
-        )]
-        self.places.push(i as u32);
-        self.live += 1;
+        if self.fitness.len() < self.live {
+            self.fitness.resize(self.live, S::zero());
+        }
+    }
+
+    /// Files the solution in slot `live` as the next point.
+    #[inline]
+    fn file(&mut self, archive: &Archive<T>) {
+        let outcome = if !archive.contains(&self.solutions[self.live]) {
+            Outcome::NotEvaluated
+        } else if self.deletes {
+            Outcome::Deleted
+        } else {
+            Outcome::Known(S::nan()) // its fitness is filled in by `settle`
+        };
+        self.live += usize::from(outcome != Outcome::Deleted);
+        self.outcomes.push(outcome);
+    }
+
+    /// Whether the fitness in a slot is computed.
+    #[inline]
+    pub(crate) fn is_done(&self, slot: usize) -> bool {
+        slot < self.ready || (self.has_gaps && self.done[slot])
+    }
+
+    /// Solutions, fitness, and whether it is computed, to be filled in in any order.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn slots(&mut self) -> (&[T], &mut [S], &mut [bool]) {
+        if !self.has_gaps {
+            self.done.clear();
+            self.done.resize(self.live, false);
+            self.has_gaps = true;
+        }
+        self.done[..self.ready].fill(true);
+        (
+            &self.solutions[..self.live],
+            &mut self.fitness[..self.live],
+            &mut self.done,
+        )
     }
 
     /// The fitness of what has to be evaluated, as far as it is computed.
     pub(crate) fn computed(&self) -> Vec<Option<S>> {
-        let computed = self.done.iter().zip(&self.fitness);
-        computed
-            .map(|(&done, &fitness)| done.then_some(fitness))
+        (0..self.live)
+            .map(|slot| self.is_done(slot).then_some(self.fitness[slot]))
             .collect()
     }
 
     /// Takes fitness values that were computed before; what is missing remains to be evaluated.
     pub(crate) fn resume(&mut self, computed: &[Option<S>]) {
-        for ((fitness, done), computed) in self.fitness.iter_mut().zip(&mut self.done).zip(computed) {
-            if let Some(computed) = computed {
-                (*fitness, *done) = (*computed, true);
-            }
+        for (fitness, computed) in self.fitness.iter_mut().zip(computed) {
+            *fitness = computed.unwrap_or(*fitness);
         }
+        self.done.clear();
+        self.done.extend(computed.iter().map(Option::is_some));
+        self.done.resize(self.live, false);
+        self.has_gaps = true;
+        self.ready = self.done.iter().take_while(|&&done| done).count();
     }
 
     /// What has to be evaluated, in order.
@@ -153,8 +186,8 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
                 got: fitness.len(),
             });
         }
-        self.fitness.copy_from_slice(fitness);
-        self.done.fill(true);
+        self.fitness[..self.live].copy_from_slice(fitness);
+        self.ready = self.live;
         Ok(())
     }
 }

@@ -196,21 +196,21 @@ impl Ledger {
         threads: &Threads,
     ) {
         // Proposals that need no evaluation take time as well.
-        self.pass(candidates.outcomes.len() - candidates.live);
+        if candidates.outcomes.len() > candidates.live {
+            self.pass(candidates.outcomes.len() - candidates.live);
+        }
         #[cfg(feature = "rayon")]
         if self.evaluate_in_parallel(problem, candidates, threads) {
             return;
         }
         let _ = threads;
-        // In a batch that is resumed, the first ones may be done.
-        let mut from = candidates.done.iter().take_while(|&&done| done).count();
-        while from < candidates.live && !self.interrupted() {
+        while candidates.ready < candidates.live && !self.interrupted() {
+            let from = candidates.ready;
             let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
             let to = candidates.live.min(from.saturating_add(chunk));
             problem.fitness_all(&candidates.solutions[from..to], &mut candidates.fitness[from..to]);
-            candidates.done[from..to].fill(true);
+            candidates.ready = to;
             self.pass(to - from);
-            from = to;
         }
     }
 
@@ -242,14 +242,9 @@ impl Ledger {
             deadline.is_some_and(crate::clock::has_come)
                 || cancel.as_ref().is_some_and(crate::Cancel::is_cancelled)
         };
-        let Candidates {
-            solutions,
-            fitness,
-            done,
-            ..
-        } = candidates;
+        let slots = candidates.slots();
         pool.install(|| {
-            (&solutions[..live], &mut fitness[..live], &mut done[..live])
+            slots
                 .into_par_iter()
                 .with_max_len(1)
                 .for_each(|(solution, fitness, done)| {
@@ -275,27 +270,21 @@ impl Ledger {
         let threshold = problem.threshold();
         let mut next = 0; // of the live ones
         for i in 0..candidates.outcomes.len() {
-            let is_live = next < candidates.live && candidates.places[next] as usize == i;
-            if !is_live && candidates.outcomes[i] != Outcome::Deleted {
-                continue; // beyond the budget
-            }
+            let before = candidates.outcomes[i];
+            let is_live = before != Outcome::Deleted;
             let slot = next;
             next += usize::from(is_live);
-            if self.stops_before_more() || (is_live && !candidates.done[slot]) {
+            if is_live && slot >= candidates.live {
+                continue; // beyond the budget
+            }
+            if self.stops_before_more() || (is_live && !candidates.is_done(slot)) {
                 candidates.outcomes[i] = Outcome::NotEvaluated;
                 continue;
             }
             self.counts.evaluations += 1;
             if is_live {
-                candidates.outcomes[i] = self.judge(
-                    problem,
-                    candidates,
-                    slot,
-                    candidates.outcomes[i],
-                    threshold,
-                    archive,
-                    observer,
-                );
+                candidates.outcomes[i] =
+                    self.judge(problem, candidates, slot, before, threshold, archive, observer);
             } else {
                 self.counts.duplicates += 1;
             }

@@ -50,6 +50,10 @@ pub trait Real:
     /// The next value below.
     #[must_use]
     fn below(self) -> Self;
+    /// Without its fraction, if below 2^63; else the value itself.
+    #[doc(hidden)]
+    #[must_use]
+    fn truncated(self) -> Self;
     #[doc(hidden)]
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error>;
 }
@@ -83,6 +87,19 @@ impl Real for f32 {
     fn below(self) -> Self {
         self.next_down()
     }
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        reason = "a number below 2^63 without its fraction is exact either way"
+    )]
+    fn truncated(self) -> Self {
+        if self.abs() < 9.2e18 {
+            (self as i64) as Self
+        } else {
+            self
+        }
+    }
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f32)(values)
     }
@@ -111,6 +128,19 @@ impl Real for f64 {
     #[inline]
     fn below(self) -> Self {
         self.next_down()
+    }
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        reason = "a number below 2^63 without its fraction is exact either way"
+    )]
+    fn truncated(self) -> Self {
+        if self.abs() < 9.2e18 {
+            (self as i64) as Self
+        } else {
+            self
+        }
     }
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f64)(values)

@@ -463,19 +463,25 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         slice.origin = Origin::Engine;
         let mut idle = 0;
         while slice.last == Ask::More && idle < EMPTY_ASKS {
-            if slice.ledger.is_over() {
-                return false;
+            slice.batch.clear();
+            // Not by `Slice::view`: the batch is borrowed beside it.
+            let view = View {
+                problem,
+                archive: &slice.archive,
+                previous: &self.previous,
+                ledger: &slice.ledger,
+                calls: &slice.calls,
+                scratches: &slice.scratches,
+            };
+            slice.last = self.engine.ask(&view, &mut self.rng, &mut slice.batch);
+            let bounds = slice.calls.bounds.get();
+            let works = bounds > slice.ledger.counts.bound_calls;
+            let mut limit = limit;
+            if works {
+                slice.ledger.count_bounds(bounds);
+                limit = slice.ledger.remaining();
             }
-            let mut batch = core::mem::replace(&mut slice.batch, Batch::new(1));
-            batch.clear();
-            slice.last = self
-                .engine
-                .ask(&slice.view(problem, &self.previous), &mut self.rng, &mut batch);
-            slice.batch = batch;
-            let before = slice.ledger.counts.bound_calls;
-            slice.ledger.count_bounds(slice.calls.bounds.get());
             if !slice.batch.is_empty() {
-                let limit = slice.ledger.remaining();
                 let deletes = self.engine.deletes();
                 slice
                     .candidates
@@ -483,8 +489,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
                 return true;
             }
             // An engine that works on bounds has not come to its end.
-            let works = slice.ledger.counts.bound_calls > before;
             idle = if works { 0 } else { idle + 1 };
+            if slice.ledger.is_over() {
+                return false;
+            }
         }
         let covered = slice.last == Ask::Covered;
         slice.ledger.stop = Some(if covered {

@@ -296,6 +296,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
     }
 
     /// Saves a batch that a cancellation has cut short before it is settled, so that it can be completed; and now and then.
+    #[inline]
     pub(super) fn save_if_due(&self, saving: &mut Option<Saving<'_, T>>) {
         let (Some(saving), Some(slice)) = (saving, &self.slice) else {
             return;
