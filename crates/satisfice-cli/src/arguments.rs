@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap::{Args, Parser, Subcommand, ValueHint};
 use satisfice::{Budget, Cancel};
 use satisfice_bench::{Request, Saved};
 
+pub(crate) use crate::collide::arguments::CollideArguments;
 use crate::quantity;
 
 /// The engine where none is named.
@@ -120,7 +121,7 @@ pub(crate) struct SearchArguments {
     #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
     engine_set: Vec<(String, String)>,
 
-    /// Wall time, with its unit: 100us, 100ms, 1.5s, 3min, 1h [default: 1s, unless --evaluations is given].
+    /// Wall time, with its unit: 100us, 100ms, 1.5s, 3min, 1h [default: 1s for an engine, unless --evaluations is given].
     #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     time: Option<Duration>,
 
@@ -189,65 +190,23 @@ impl SearchArguments {
         self.threads
     }
 
-    /// Whether anything was given that only a search makes use of.
-    pub(crate) fn is_for_a_search(&self) -> bool {
-        !self.engine_set.is_empty()
-            || self.time.is_some()
-            || self.evaluations.is_some()
-            || self.hits.is_some()
+    /// The options given that only an engine makes use of.
+    pub(crate) fn for_an_engine(&self) -> Vec<&'static str> {
+        [
+            ("--engine-set", !self.engine_set.is_empty()),
+            ("--evaluations", self.evaluations.is_some()),
+            ("--seed", self.seed.is_some()),
+            ("--probes", self.probes.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(name, given)| given.then_some(name))
+        .collect()
     }
-}
 
-/// Find the pairs of mesh features that are closer than a threshold.
-#[derive(Debug, Args)]
-#[command(after_help = "\
-Examples:
-  satisfice collide left.obj right.ply --threshold 0.01
-      All pairs of vertices, one of each mesh, with a distance below 0.01 in the unit of the meshes.
-  satisfice collide cloth.ply --self --threshold 0.005 --out pairs.csv
-      Pairs of vertices of one mesh that no edge joins.
-  satisfice collide a.stl b.stl --threshold 0.5 --method latest-hit-qpso --time 100ms --json -
-      As many pairs as a search engine finds in 100 ms.
-
-Meshes are .obj, .ply or .stl files; OBJ may hold points and lines alone.")]
-pub(crate) struct CollideArguments {
-    /// Mesh files: .obj, .ply or .stl.
-    #[arg(value_name = "MESH", required = true, value_hint = ValueHint::FilePath)]
-    pub(crate) meshes: Vec<PathBuf>,
-
-    /// A pair is found if its distance is below this, in the unit of the meshes.
-    #[arg(long, value_name = "D", value_parser = quantity::positive, allow_hyphen_values = true)]
-    pub(crate) threshold: f64,
-
-    /// Which features make pairs.
-    #[arg(long, value_name = "KIND", default_value = "vertex-vertex")]
-    pub(crate) pairs: PairKind,
-
-    /// Look for pairs within each mesh as well; vertices that an edge joins are no pair.
-    #[arg(long = "self")]
-    pub(crate) within: bool,
-
-    /// `exact` finds every pair; the name of an engine searches until the budget ends.
-    #[arg(long, value_name = "exact|ENGINE", default_value = "exact")]
-    pub(crate) method: String,
-
-    #[command(flatten)]
-    pub(crate) search: SearchArguments,
-
-    /// Write the report as JSON; `-` is stdout and replaces the summary.
-    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
-    pub(crate) json: Option<PathBuf>,
-
-    /// Write the pairs as CSV: body and feature of a, body and feature of b, distance.
-    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
-    pub(crate) out: Option<PathBuf>,
-}
-
-/// The kinds of pairs that exist.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PairKind {
-    /// Two vertices.
-    VertexVertex,
+    /// The limits that an exact method makes use of, too: time and hits.
+    pub(crate) fn limits(&self) -> (Option<Duration>, Option<u64>) {
+        (self.time, self.hits)
+    }
 }
 
 /// Evaluate every solution of a report anew and check its counts; says what does not fit.

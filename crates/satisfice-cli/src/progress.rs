@@ -1,6 +1,7 @@
-//! How far a search is, on stderr where that is a terminal.
+//! How far a search or an enumeration is, on stderr where that is a terminal.
 
 use std::io::IsTerminal;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use satisfice_bench::Progress;
@@ -43,6 +44,51 @@ impl Bar {
 }
 
 impl Drop for Bar {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// What goes on, of which nobody knows the end: a line on a terminal, nothing elsewhere.
+pub(crate) struct Counting(Option<ProgressBar>);
+
+impl Counting {
+    /// So often the line is drawn anew.
+    const EVERY: Duration = Duration::from_millis(100);
+
+    pub(crate) fn new() -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Self::EVERY);
+        Self(Some(bar))
+    }
+
+    /// Says what goes on now.
+    pub(crate) fn say(&self, what: String) {
+        if let Some(bar) = &self.0 {
+            bar.set_message(what);
+        }
+    }
+
+    /// Says how many pairs there are so far; often called, seldom drawn.
+    pub(crate) fn show(&self, found: usize, start: Instant) {
+        if let Some(bar) = &self.0
+            && found.is_multiple_of(64)
+        {
+            let rate = found as f64 / start.elapsed().as_secs_f64().max(1e-9);
+            bar.set_message(format!("{found} pairs, {rate:.1e} a second; Ctrl-C keeps them"));
+        }
+    }
+}
+
+impl Drop for Counting {
     fn drop(&mut self) {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();

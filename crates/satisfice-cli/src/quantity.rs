@@ -18,6 +18,9 @@ const UNITS: [(&str, f64); 9] = [
 /// More threads than that are a slip of the keyboard.
 const MOST_THREADS: usize = 1024;
 
+/// Wider rings than that are a slip of the keyboard, too.
+const MOST_EDGES: usize = 1000;
+
 /// A time: a positive number with a unit, `100ms`, `1.5s`, `3min`.
 pub(crate) fn time(text: &str) -> Result<Duration, String> {
     let text = text.trim();
@@ -75,6 +78,14 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
         _ => Err(format!(
             "must be a whole number from 0 (all cores) to {MOST_THREADS}"
         )),
+    }
+}
+
+/// A number of edges, 0 included.
+pub(crate) fn width(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(width) if width <= MOST_EDGES => Ok(width),
+        _ => Err(format!("must be a whole number of edges from 0 to {MOST_EDGES}")),
     }
 }
 

@@ -74,9 +74,9 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
         line(
             &format!("hit {}", index + 1),
             format!(
-                "{} with F = {:.6} at evaluation {}, {}",
+                "{} with F = {} at evaluation {}, {}",
                 show(found),
-                found.fitness,
+                digits(found.fitness),
                 found.evaluation,
                 time(found.seconds)
             ),
@@ -97,6 +97,15 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
 /// 0 with a hit, 1 without.
 pub(crate) fn exit_code(record: &Record) -> ExitCode {
     ExitCode::from(u8::from(record.hits == 0))
+}
+
+/// Six digits of a number, small ones by their exponent.
+fn digits(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-3 {
+        format!("{x:.5e}")
+    } else {
+        format!("{x:.6}")
+    }
 }
 
 /// A time in a unit that suits it.

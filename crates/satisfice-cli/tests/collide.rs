@@ -6,7 +6,8 @@ mod common;
 
 use std::fs;
 
-use common::{error_in, satisfice_in};
+use common::{command, error_in, satisfice_in};
+use satisfice_collision::{Placement, generate, io};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -48,8 +49,10 @@ fn single_triangles_collide() {
     );
     assert_eq!(
         (&report["evaluations"], &report["unseen_estimate"]),
-        (&9.into(), &0.0.into())
+        (&2.into(), &0.0.into()),
+        "a distance for each pair; the others are decided by bounds"
     );
+    assert_eq!(report["touching"], json!([[0, 1]]));
     // Strictly closer than the threshold.
     let done = satisfice_in(folder.path(), "collide triangle.obj above.obj --threshold 0.25");
     assert_eq!((done.code, done.stderr.as_str()), (1, ""));
@@ -66,7 +69,7 @@ fn pairs_within_a_body_leave_out_its_edges() {
     let alone = report(&folder, "collide triangle.obj --self --threshold 9");
     assert_eq!(
         (&alone["hits"], &alone["skipped"]),
-        (&0.into(), &json!({"vertices of one body that an edge joins": 3}))
+        (&0.into(), &json!({"pairs of mesh neighbours": 3}))
     );
     let points = report(&folder, "collide points.obj --self --threshold 5.1");
     assert_eq!(
@@ -166,6 +169,244 @@ fn reports_are_verified_and_pairs_written_as_csv() {
     }
 }
 
+/// Two balls that cross, and a pleated cloth.
+fn bodies() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = generate::icosphere(1.0, 2).unwrap();
+    let turned = Placement::from_axis_angle([1.0, 2.0, 3.0], 0.7).unwrap();
+    let other = turned.moved([1.75, 0.1, 0.2]).unwrap().place(&ball).unwrap();
+    let far = Placement::from_translation([9.0, 0.0, 0.0])
+        .unwrap()
+        .place(&ball)
+        .unwrap();
+    let cloth = generate::pleats(31, 9, 3, 0.1, 0.2).unwrap();
+    for (name, mesh) in [
+        ("a.obj", &ball),
+        ("b.obj", &other),
+        ("far.obj", &far),
+        ("cloth.obj", &cloth),
+    ] {
+        io::save_obj(mesh, folder.path().join(name)).unwrap();
+    }
+    folder
+}
+
+/// Every exact method, a search through bounds, and the check of the report by brute force.
+#[test]
+fn every_kind_of_pair_by_every_method() {
+    let folder = bodies();
+    for kind in [
+        "vertex-vertex",
+        "vertex-edge",
+        "vertex-triangle",
+        "edge-edge",
+        "edge-triangle",
+        "triangle-triangle",
+    ] {
+        for scene in [
+            "a.obj b.obj far.obj",
+            "cloth.obj --self",
+            "a.obj cloth.obj --self --ring-width 2",
+        ] {
+            let call = format!("collide {scene} --threshold 0.12 --pairs {kind}");
+            let exact = report(&folder, &call);
+            assert!(exact["hits"].as_u64() > Some(0), "{call}");
+            assert_eq!(exact["completeness"], "Proved");
+            let sorted = |report: &Value| {
+                let mut pairs: Vec<_> = report["pairs"]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .map(Value::to_string)
+                    .collect();
+                pairs.sort_unstable();
+                pairs
+            };
+            for method in [
+                "tree",
+                "brute-force",
+                "exact --threads 2",
+                "branch-and-bound --evaluations 1e7",
+            ] {
+                let other = report(&folder, &format!("{call} --method {method}"));
+                assert_eq!(sorted(&other), sorted(&exact), "{call} --method {method}");
+                assert_eq!(
+                    (&other["recall"], &other["completeness"]),
+                    (&1.0.into(), &"Proved".into())
+                );
+            }
+            let path = folder.path().join("report.json");
+            fs::write(&path, exact.to_string()).unwrap();
+            let verified = satisfice_in(folder.path(), "verify report.json");
+            assert_eq!(verified.code, 0, "{call}: {}", verified.stdout);
+        }
+    }
+}
+
+#[test]
+fn less_than_all_pairs_may_be_asked_for() {
+    let folder = bodies();
+    let scene = "collide a.obj b.obj far.obj cloth.obj --threshold 0.12 --pairs edge-edge";
+    let all = report(&folder, scene);
+    let distances = |report: &Value| -> Vec<f64> {
+        report["pairs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|pair| pair["distance"].as_f64().unwrap())
+            .collect()
+    };
+    let mut sorted = distances(&all);
+    sorted.sort_by(f64::total_cmp);
+    let closest = report(&folder, &format!("{scene} --closest 5"));
+    assert_eq!(distances(&closest), sorted[..5]);
+    assert_eq!(
+        (&closest["completeness"], &closest["stop_reason"]),
+        (&"Unknown".into(), &"Hits".into())
+    );
+    let more = report(&folder, &format!("{scene} --closest 1e6"));
+    assert_eq!(
+        (&more["hits"], &more["completeness"]),
+        (&all["hits"], &"Proved".into())
+    );
+    let touching = report(&folder, &format!("{scene} --touching"));
+    assert_eq!(touching["touching"], all["touching"]);
+    assert_eq!(touching["hits"], all["touching"].as_array().unwrap().len());
+    let first = report(&folder, &format!("{scene} --first"));
+    assert_eq!(first["hits"], 1);
+    for listed in [&closest, &touching, &first] {
+        for pair in listed["pairs"].as_array().unwrap() {
+            assert!(all["pairs"].as_array().unwrap().contains(pair));
+        }
+        fs::write(folder.path().join("report.json"), listed.to_string()).unwrap();
+        assert_eq!(satisfice_in(folder.path(), "verify report.json").code, 0);
+    }
+    let none = report(&folder, "collide a.obj far.obj --threshold 0.1 --touching");
+    assert_eq!(
+        (&none["hits"], &none["completeness"]),
+        (&0.into(), &"Proved".into())
+    );
+    // Edges are named by their ends, since files do not number them.
+    assert!(all["pairs"][0]["a"]["vertices"].is_array());
+}
+
+#[test]
+fn limits_keep_what_was_found() {
+    let folder = bodies();
+    let scene = "collide a.obj b.obj --threshold 1 --pairs triangle-triangle";
+    let all = report(&folder, scene);
+    let few = report(&folder, &format!("{scene} --hits 7"));
+    assert_eq!(
+        (
+            &few["hits"],
+            &few["stop_reason"],
+            &few["completeness"],
+            &few["recall"]
+        ),
+        (&7.into(), &"Hits".into(), &"Unknown".into(), &Value::Null)
+    );
+    for pair in few["pairs"].as_array().unwrap() {
+        assert!(all["pairs"].as_array().unwrap().contains(pair));
+    }
+    let enough = report(&folder, &format!("{scene} --hits 1e9 --time 1h"));
+    assert_eq!(
+        (&enough["pairs"], &enough["completeness"]),
+        (&all["pairs"], &"Proved".into())
+    );
+    let none = satisfice_in(folder.path(), &format!("{scene} --time 1ns"));
+    assert_eq!(none.code, 1, "{}", none.stderr);
+    assert!(none.stdout.contains("stopped by time") && none.stdout.contains("unknown"));
+}
+
+/// Some seconds long where nobody interrupts it.
+#[test]
+fn an_interrupted_enumeration_keeps_its_pairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = generate::icosphere(1.0, 4).unwrap();
+    io::save_obj(&ball, folder.path().join("ball.obj")).unwrap();
+    let mut child = command(
+        folder.path(),
+        "collide ball.obj ball.obj --threshold 1 --pairs triangle-triangle --json report.json",
+    )
+    .stdout(std::process::Stdio::null())
+    .stderr(std::process::Stdio::null())
+    .spawn()
+    .unwrap();
+    let partial = |entry: fs::DirEntry| entry.file_name().to_string_lossy().ends_with(".partial");
+    // Ctrl-C is listened to before the place of the report is open.
+    while !fs::read_dir(folder.path())
+        .unwrap()
+        .any(|entry| partial(entry.unwrap()))
+    {
+        std::thread::yield_now();
+    }
+    let kill = std::process::Command::new("kill")
+        .args(["-s", "INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let code = child.wait().unwrap().code();
+    let report: Value =
+        serde_json::from_slice(&fs::read(folder.path().join("report.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&report["stop_reason"], &report["completeness"]),
+        (&"Cancelled".into(), &"Unknown".into())
+    );
+    assert_eq!(code, Some(i32::from(report["hits"] == 0)));
+    assert_eq!(report["hits"], report["pairs"].as_array().unwrap().len());
+}
+
+#[test]
+fn a_picture_is_drawn() {
+    let folder = bodies();
+    for method in ["exact", "random --evaluations 2000"] {
+        let done = satisfice_in(
+            folder.path(),
+            &format!(
+                "collide a.obj b.obj --threshold 0.12 --pairs vertex-triangle --method {method} --picture scene.png"
+            ),
+        );
+        assert!(done.code <= 1, "{}", done.stderr);
+        let path = folder.path().join("scene.png");
+        assert_eq!(&fs::read(&path).unwrap()[1..4], b"PNG");
+        fs::remove_file(path).unwrap();
+    }
+}
+
+#[test]
+fn slips_of_units_and_scale_are_warned_of() {
+    let folder = bodies();
+    for (name, scale, shift) in [
+        ("millimetres.obj", 5000.0, 0.0),
+        ("away.obj", 1.0, 1e6),
+        ("lost.obj", 1.0, 1e13),
+    ] {
+        let ball = generate::icosphere(1.0, 1).unwrap();
+        let moved = ball
+            .vertices()
+            .iter()
+            .map(|&[x, y, z]| [scale * x + shift, scale * y, scale * z]);
+        let mesh = ball.with_vertices(moved.collect()).unwrap();
+        io::save_obj(&mesh, folder.path().join(name)).unwrap();
+    }
+    fs::write(folder.path().join("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
+    let lines: Vec<String> = [
+        "collide a.obj b.obj --threshold 2.5",
+        "collide a.obj millimetres.obj --threshold 0.1",
+        "collide a.obj away.obj --threshold 0.1",
+        "collide a.obj lost.obj --threshold 0.001",
+        "collide a.obj points.obj --threshold 0.1 --pairs vertex-triangle",
+        "collide a.obj b.obj --threshold 0.1",
+    ]
+    .iter()
+    .map(|arguments| {
+        let done = satisfice_in(folder.path(), arguments);
+        assert!(done.code <= 1, "{arguments}: {}", done.stderr);
+        format!("satisfice {arguments}\n{}", done.stderr)
+    })
+    .collect();
+    insta::assert_snapshot!("collide_warnings", lines.join(""));
+}
+
 #[test]
 fn mistakes_are_told_in_one_line() {
     let folder = meshes();
@@ -176,8 +417,19 @@ fn mistakes_are_told_in_one_line() {
         "collide triangle.obj above.obj --threshold 0",
         "collide triangle.obj above.obj --threshold -1",
         "collide triangle.obj above.obj --threshold NaN",
-        "collide triangle.obj above.obj --threshold 1 --pairs edge-edge",
-        "collide triangle.obj above.obj --threshold 1 --time 1s",
+        "collide triangle.obj above.obj --threshold 1 --pairs edge-edges",
+        "collide triangle.obj above.obj --threshold 1 --evaluations 9",
+        "collide triangle.obj above.obj --threshold 1 --prune",
+        "collide triangle.obj above.obj --threshold 1 --method brute-force --time 1s",
+        "collide triangle.obj above.obj --threshold 1 --method grid --pairs edge-edge",
+        "collide triangle.obj above.obj --threshold 1 --method random --closest 3",
+        "collide triangle.obj above.obj --threshold 1 --first --touching",
+        "collide triangle.obj above.obj --threshold 1 --ring-width 2",
+        "collide triangle.obj --self --threshold 1 --ring-width -2",
+        "collide triangle.obj points.obj --threshold 1 --pairs triangle-triangle",
+        "collide points.obj --self --threshold 1 --pairs edge-edge",
+        "collide triangle.obj above.obj --threshold 1 --picture scene.jpg",
+        "collide triangle.obj above.obj --threshold 1 --json - --out -",
         "collide triangle.obj above.obj --threshold 1 --method qpso --engine-set particle=3",
         "collide triangle.obj none.obj --threshold 1",
         "collide triangle.obj nan.obj --threshold 1",

@@ -17,6 +17,8 @@ mod camera;
 mod marks;
 mod raster;
 
+use std::collections::BTreeSet;
+
 use satisfice_collision::Mesh;
 
 use crate::error::Error;
@@ -36,6 +38,9 @@ const BODIES: [[f64; 3]; 6] = [
     [0.80, 0.80, 0.80], // grey
     [0.72, 0.74, 0.95], // blue
 ];
+
+/// Okabe and Ito's orange: triangles that are highlighted.
+const HIGHLIGHT: [f64; 3] = [0.96, 0.66, 0.12];
 
 /// From where a scene is seen. Parallel projection; z points upwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +68,8 @@ pub struct Picture<'a> {
     height: u32,
     view: View,
     bodies: Vec<&'a Mesh>,
+    /// Of each body, which triangles are highlighted.
+    highlights: Vec<BTreeSet<u32>>,
     marks: Vec<Mark>,
 }
 
@@ -75,6 +82,7 @@ impl<'a> Picture<'a> {
             height,
             view,
             bodies: Vec::new(),
+            highlights: Vec::new(),
             marks: Vec::new(),
         }
     }
@@ -82,6 +90,14 @@ impl<'a> Picture<'a> {
     /// Adds a body: its triangles; where it has none, its edges; where it has none, its vertices.
     pub fn body(&mut self, mesh: &'a Mesh) {
         self.bodies.push(mesh);
+        self.highlights.push(BTreeSet::new());
+    }
+
+    /// Draws a triangle of a body, both by number from 0, in orange; without effect where there is none such.
+    pub fn highlight(&mut self, body: usize, triangle: u32) {
+        if let Some(highlights) = self.highlights.get_mut(body) {
+            highlights.insert(triangle);
+        }
     }
 
     /// Marks a pair of points: in vermilion where it was `found`, in black where it was not. What a body hides is fainter.
@@ -114,8 +130,13 @@ impl<'a> Picture<'a> {
         }
         let camera = self.camera();
         let mut raster = Raster::new(self.width, self.height);
-        for (mesh, tone) in self.bodies.iter().zip(BODIES.iter().cycle()) {
-            raster.body(mesh, *tone, &camera);
+        let tones = BODIES.iter().cycle();
+        for ((mesh, highlights), tone) in self.bodies.iter().zip(&self.highlights).zip(tones) {
+            let tone_of = |t: usize| match highlights.contains(&(t as u32)) {
+                true => HIGHLIGHT,
+                false => *tone,
+            };
+            raster.body(mesh, tone_of, &camera);
         }
         let mut pixmap = raster.pixmap().ok_or_else(|| no_memory("pixels"))?;
         for (mesh, tone) in self.bodies.iter().zip(BODIES.iter().cycle()) {
@@ -219,6 +240,25 @@ mod tests {
         // Blue where the first body is in front, sand where the second one is.
         assert!(first([&front, &ball]).blue() > first([&front, &ball]).red());
         assert!(first([&ball, &front]).blue() < first([&ball, &front]).red());
+    }
+
+    #[test]
+    fn highlighted_triangles_are_orange() {
+        let ball = generate::icosphere(1.0, 2).unwrap();
+        let orange = |highlighted: &[u32]| {
+            let mut picture = Picture::new(80, 80, View::default());
+            picture.body(&ball);
+            highlighted.iter().for_each(|&t| picture.highlight(0, t));
+            picture.highlight(1, 0);
+            let map = pixels(&picture);
+            map.pixels()
+                .iter()
+                .filter(|p| p.red() > p.blue().saturating_mul(2))
+                .count()
+        };
+        assert_eq!((orange(&[]), orange(&[9999])), (0, 0));
+        let all: Vec<u32> = (0..320).collect();
+        assert!(orange(&all) > 3000 && orange(&all[..160]) < orange(&all));
     }
 
     #[test]

@@ -29,8 +29,8 @@ impl Raster {
         }
     }
 
-    /// Draws the triangles of a body.
-    pub(super) fn body(&mut self, mesh: &Mesh, tone: [f64; 3], camera: &Camera) {
+    /// Draws the triangles of a body, each in the tone that `tone_of` its number gives.
+    pub(super) fn body(&mut self, mesh: &Mesh, tone_of: impl Fn(usize) -> [f64; 3], camera: &Camera) {
         let at: Vec<_> = mesh.vertices().iter().map(|&p| camera.project(p)).collect();
         let largest = mesh
             .vertices()
@@ -54,13 +54,13 @@ impl Raster {
             }
         }
         let light = camera.light();
-        for (corners, face) in mesh.triangles().iter().zip(&faces) {
+        for (t, (corners, face)) in mesh.triangles().iter().zip(&faces).enumerate() {
             let Some(face) = unit(*face) else { continue };
             let shades = corners.map(|v| {
                 let round = unit(smooth[v as usize]).filter(|n| dot(n, &face) > CREASE);
                 shade(&round.unwrap_or(face), &light, &camera.towards)
             });
-            self.triangle(corners.map(|v| at[v as usize]), shades, tone);
+            self.triangle(corners.map(|v| at[v as usize]), shades, tone_of(t));
         }
     }
 

@@ -1,91 +1,242 @@
-//! The exact method: every pair of features is measured.
+//! The exact methods: every pair is decided, or excluded by a bound.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use satisfice::{Completeness, Counts, Method, SatisficingProblem, StopReason, TracePoint};
+use satisfice::{Cancel, Completeness, Counts, Method as Estimate, StopReason, TracePoint};
 use satisfice_bench::record::{Limits, Solution};
 use satisfice_bench::{Record, Settings};
+use satisfice_collision::broad::Method;
+use satisfice_collision::scene::{self, Contact, Frame, Scene, Skips};
 use serde_json::json;
 
-use super::scene::{Job, Scene};
-use super::{EXACT, PROBLEM};
+use super::PROBLEM;
+use super::arguments::Find;
+use super::scene::{Pair, World};
+use crate::progress::Counting;
 
-/// All pairs of the scene, in the order of bodies and features.
-pub(super) fn find(scene: &Scene) -> Record {
-    let mut records = scene.jobs.iter().map(|job| find_in(job, scene));
-    let first = records
-        .next()
-        .unwrap_or_else(|| complete(scene, 0, 0.0, Vec::new()));
-    records.fold(first, |mut all, next| {
-        all.append(next);
-        all
-    })
+/// The exact methods by their names.
+pub(super) const METHODS: [(&str, Method); 4] = [
+    ("exact", Method::Auto),
+    ("tree", Method::Tree),
+    ("grid", Method::Grid),
+    ("brute-force", Method::BruteForce),
+];
+
+/// How to find.
+pub(super) struct Exact<'a> {
+    pub(super) name: &'static str,
+    pub(super) method: Method,
+    pub(super) time: Option<Duration>,
+    pub(super) hits: Option<u64>,
+    pub(super) threads: usize,
+    pub(super) cancel: &'a Cancel,
 }
 
-#[expect(
-    clippy::disallowed_methods,
-    reason = "an exact method has no budget; its time is only shown"
-)]
-fn find_in(job: &Job, scene: &Scene) -> Record {
-    let start = Instant::now();
-    let pairs = job.problem.reference_pairs();
-    let seconds = start.elapsed().as_secs_f64();
-    let solutions = pairs
-        .into_iter()
-        .map(|pair| Solution {
-            solution: json!(job.pair(pair)),
-            fitness: job.problem.fitness(&pair),
-            // The pairs are there when all are measured.
-            evaluation: job.size(),
-            seconds,
+/// What was found.
+pub(super) struct Found {
+    pub(super) record: Record,
+    pub(super) skips: Skips,
+}
+
+/// Contacts, and why there are no more.
+struct Answer {
+    contacts: Vec<Contact>,
+    skips: Skips,
+    stop: StopReason,
+    complete: bool,
+}
+
+impl Exact<'_> {
+    /// Finds on as many threads as are wanted.
+    pub(super) fn find(&self, world: &World) -> anyhow::Result<Found> {
+        if self.threads == 1 {
+            return self.find_in(world, world.scene(self.method));
+        }
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()?;
+        pool.install(|| self.find_in(world, world.scene(self.method).parallel()))
+    }
+
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "a scene is told when to stop; it does not ask the time itself"
+    )]
+    fn find_in(&self, world: &World, mut scene: Scene) -> anyhow::Result<Found> {
+        let start = Instant::now();
+        let counting = Counting::new();
+        let answer = self.answer(world, &mut scene, start, &counting)?;
+        let searched = start.elapsed();
+        counting.say(format!("measuring {} pairs", answer.contacts.len()));
+        let mut solutions = Vec::with_capacity(answer.contacts.len());
+        for &contact in &answer.contacts {
+            solutions.push(Solution {
+                solution: json!(Pair::from(contact)),
+                fitness: distance(&scene, contact, world.request.threshold)?,
+                // The pairs are there when all are decided.
+                evaluation: answer.contacts.len() as u64,
+                seconds: searched.as_secs_f64(),
+            });
+        }
+        let elapsed = start.elapsed();
+        let late = self
+            .time
+            .map_or(Duration::ZERO, |time| searched.saturating_sub(time));
+        Ok(Found {
+            record: self.record(world, &answer, solutions, elapsed, late),
+            skips: answer.skips,
         })
-        .collect();
-    complete(scene, job.size(), seconds, solutions)
+    }
+
+    fn answer(
+        &self,
+        world: &World,
+        scene: &mut Scene,
+        start: Instant,
+        counting: &Counting,
+    ) -> anyhow::Result<Answer> {
+        let listed = |contacts: Vec<Contact>, complete: bool, wanted: StopReason| Answer {
+            stop: if complete { StopReason::Covered } else { wanted },
+            contacts,
+            skips: Skips::default(),
+            complete,
+        };
+        Ok(match world.request.find {
+            Find::Touching => {
+                let witnesses = scene.witnesses()?;
+                let none = witnesses.is_empty();
+                listed(witnesses, none, StopReason::Exhausted)
+            }
+            Find::First => {
+                let first: Vec<_> = scene.first()?.into_iter().collect();
+                let none = first.is_empty();
+                listed(first, none, StopReason::Hits)
+            }
+            Find::Closest(k) => {
+                let wanted = usize::try_from(k).unwrap_or(usize::MAX);
+                let closest = scene.closest(wanted)?;
+                let all = closest.len() < wanted;
+                let contacts = closest.into_iter().map(|(contact, _)| contact).collect();
+                listed(contacts, all, StopReason::Hits)
+            }
+            Find::All if matches!(self.method, Method::Auto | Method::Tree) => {
+                self.pass(scene, start, counting)?
+            }
+            Find::All => {
+                counting.say("deciding pairs; Ctrl-C twice gives up".to_owned());
+                let Frame { contacts, skips, .. } = scene.contacts()?;
+                Answer {
+                    contacts,
+                    skips,
+                    stop: StopReason::Covered,
+                    complete: true,
+                }
+            }
+        })
+    }
+
+    /// Piece by piece, so that a limit and Ctrl-C keep what was found.
+    fn pass(&self, scene: &mut Scene, start: Instant, counting: &Counting) -> anyhow::Result<Answer> {
+        let wanted = self
+            .hits
+            .map_or(usize::MAX, |hits| usize::try_from(hits).unwrap_or(usize::MAX));
+        let mut stop = StopReason::Covered;
+        let mut pass = scene.pass();
+        scene.advance(&mut pass, &mut |found| {
+            counting.show(found, start);
+            if self.cancel.is_cancelled() {
+                stop = StopReason::Cancelled;
+            } else if found >= wanted {
+                stop = StopReason::Hits;
+            } else if self.time.is_some_and(|time| start.elapsed() >= time) {
+                stop = StopReason::Time;
+            }
+            stop != StopReason::Covered
+        })?;
+        let Frame {
+            mut contacts,
+            completeness,
+            skips,
+        } = pass.into_frame();
+        let complete = completeness == scene::Completeness::Proved && contacts.len() <= wanted;
+        contacts.truncate(wanted);
+        Ok(Answer {
+            contacts,
+            skips,
+            stop: if complete { StopReason::Covered } else { stop },
+            complete,
+        })
+    }
+
+    fn record(
+        &self,
+        world: &World,
+        answer: &Answer,
+        solutions: Vec<Solution>,
+        elapsed: Duration,
+        late: Duration,
+    ) -> Record {
+        let hits = solutions.len() as u64;
+        let seconds = elapsed.as_secs_f64();
+        // Brute force measures what there is, the others what they find.
+        let measured = if self.method == Method::BruteForce && answer.complete {
+            world.size() - answer.skips.mesh_neighbours
+        } else {
+            hits
+        };
+        let solutions = solutions.into_iter().map(|solution| Solution {
+            evaluation: measured,
+            ..solution
+        });
+        let mut record = Record {
+            problem: PROBLEM.to_owned(),
+            problem_parameters: world.settings(),
+            engine: self.name.to_owned(),
+            engine_parameters: Settings::default(),
+            scalar: "f64".to_owned(),
+            threshold: Some(world.request.threshold),
+            seed: 0,
+            budget: Limits {
+                time_seconds: self.time.map(|time| time.as_secs_f64()),
+                evaluations: None,
+                hits: self.hits,
+                slices: 1,
+            },
+            probe_share: 0.0,
+            counts: Counts {
+                evaluations: measured,
+                fitness_calls: measured,
+                ..Counts::default()
+            },
+            elapsed_seconds: seconds,
+            overshoot_seconds: late.as_secs_f64(),
+            stop_reason: answer.stop,
+            hits,
+            reference_hits: None,
+            recall: None,
+            completeness: match answer.complete {
+                true => Completeness::Proved,
+                false => Completeness::Unknown,
+            },
+            unseen_estimate: answer.complete.then_some(0.0),
+            unseen_interval: answer.complete.then_some((0.0, Some(0.0))),
+            unseen_confidence: answer.complete.then_some(1.0),
+            unseen_method: answer.complete.then_some(Estimate::Proved),
+            trace: vec![TracePoint {
+                evaluations: measured,
+                elapsed_seconds: seconds,
+                hits,
+            }],
+            slices: Vec::new(),
+            solutions: solutions.collect(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        };
+        record.set_reference(answer.complete.then_some(hits));
+        record
+    }
 }
 
-/// A record whose solutions are all that there are.
-fn complete(scene: &Scene, measured: u64, seconds: f64, solutions: Vec<Solution>) -> Record {
-    let hits = solutions.len() as u64;
-    let mut record = Record {
-        problem: PROBLEM.to_owned(),
-        problem_parameters: scene.settings(),
-        engine: EXACT.to_owned(),
-        engine_parameters: Settings::default(),
-        scalar: "f64".to_owned(),
-        threshold: Some(scene.threshold),
-        seed: 0,
-        budget: Limits {
-            time_seconds: None,
-            evaluations: None,
-            hits: None,
-            slices: 1,
-        },
-        probe_share: 0.0,
-        counts: Counts {
-            evaluations: measured,
-            fitness_calls: measured,
-            ..Counts::default()
-        },
-        elapsed_seconds: seconds,
-        overshoot_seconds: 0.0,
-        stop_reason: StopReason::Covered,
-        hits,
-        reference_hits: None,
-        recall: None,
-        completeness: Completeness::Proved,
-        unseen_estimate: Some(0.0),
-        unseen_interval: Some((0.0, Some(0.0))),
-        unseen_confidence: Some(1.0),
-        unseen_method: Some(Method::Proved),
-        trace: vec![TracePoint {
-            evaluations: measured,
-            elapsed_seconds: seconds,
-            hits,
-        }],
-        slices: Vec::new(),
-        solutions,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-    };
-    record.set_reference(Some(hits));
-    record
+/// The distance of a contact: within one unit in the last place, and below the threshold, which it is decided to be.
+pub(super) fn distance(scene: &Scene, contact: Contact, threshold: f64) -> anyhow::Result<f64> {
+    Ok(scene.proximity(contact)?.distance.min(threshold.next_down()))
 }

@@ -1,80 +1,180 @@
 //! `satisfice collide`: pairs of mesh features that are closer than a threshold.
 
+pub(crate) mod arguments;
 mod exact;
+mod picture;
 mod report;
 mod scene;
 mod search;
+mod warnings;
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use anyhow::{Context, bail};
 use satisfice::engine;
-use satisfice_bench::{Mismatch, json};
+use satisfice_bench::{Mismatch, Record, json};
+use satisfice_collision::broad::Method;
+use satisfice_collision::scene::{Completeness, Contact, Skips};
+use serde::Deserialize;
 
-use crate::arguments::CollideArguments;
 use crate::{interrupt, output, reference, summary};
+use arguments::{CollideArguments, Find};
+use exact::{Exact, METHODS};
 use report::Report;
-use scene::Scene;
+use scene::{Pair, World};
 
 /// The problem's name in a report.
 pub(crate) const PROBLEM: &str = "collide";
-/// The method that needs no engine.
-const EXACT: &str = "exact";
+/// The pairs of a scene are not counted beyond this: they would fill the memory.
+const MOST_COUNTED: usize = 100_000_000;
 
 pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
-    let methods = || std::iter::once(EXACT).chain(engine::all().iter().map(|entry| entry.name));
-    if !methods().any(|method| method == arguments.method) {
-        return Err(satisfice::Error::unknown("method", &arguments.method, methods()).into());
+    let engines = || engine::all().iter().map(|entry| entry.name);
+    let exact = METHODS.iter().find(|(name, _)| *name == arguments.method);
+    if exact.is_none() && !engines().any(|name| name == arguments.method) {
+        let methods = METHODS.iter().map(|(name, _)| *name).chain(engines());
+        return Err(satisfice::Error::unknown("method", &arguments.method, methods).into());
     }
-    let scene = Arc::new(Scene::read(
-        &arguments.meshes,
-        arguments.threshold,
-        arguments.within,
-    )?);
-    let (record, mut files) = if arguments.method == EXACT {
-        if arguments.search.is_for_a_search() {
-            bail!(
-                "--method exact finds every pair and takes no budget and no engine parameters: leave them out or choose an engine"
-            );
-        }
+    check(arguments, exact.is_some())?;
+    let world = World::read(scene::Request {
+        paths: arguments.meshes.clone(),
+        kind: arguments.pairs.into(),
+        threshold: arguments.threshold,
+        within: arguments.within,
+        ring_width: arguments.ring_width,
+        find: arguments.find.find(),
+    })?;
+    let world = Arc::new(world);
+    let cancel = interrupt::listen()?;
+    let (record, skips, reference, mut files) = if let Some(&(name, method)) = exact {
         let files = Files::open(arguments)?;
-        (exact::find(&scene), files)
+        warn(&world);
+        let (time, hits) = arguments.search.limits();
+        let found = Exact {
+            name,
+            method,
+            time,
+            hits,
+            threads: arguments.search.threads(),
+            cancel: &cancel,
+        }
+        .find(&world)?;
+        (found.record, found.skips, Vec::new(), files)
     } else {
-        let cancel = interrupt::listen()?;
-        let request = arguments.search.request(&arguments.method, &cancel)?;
+        let mut request = arguments.search.request(&arguments.method, &cancel)?;
+        request.prune = arguments.prune;
         let files = Files::open(arguments)?;
-        let mut record = search::find(&scene, &request)?;
-        if scene.is_small() {
-            let counted = Arc::clone(&scene);
-            record.set_reference(reference::wait_for("the scene", &cancel, move || {
-                Some(counted.reference_hits())
-            }));
-        }
-        (record, files)
+        warn(&world);
+        let mut record = search::find(&world, &request)?;
+        let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));
+        let (counted, kept) = (Arc::clone(&world), Arc::clone(&reference));
+        record.set_reference(reference::wait_for("the scene", &cancel, move || {
+            count(&counted, &kept)
+        }));
+        let (all, skips) = reference
+            .lock()
+            .map(|mut kept| std::mem::take(&mut *kept))
+            .unwrap_or_default();
+        (record, skips, all, files)
     };
-    files.finish(&Report::new(record, &scene)?)
+    if let Some(file) = &mut files.picture {
+        let contacts = contacts(&record)?;
+        let missed = picture::missed(&reference, &contacts);
+        file.write(&picture::draw(&world, &contacts, &missed)?)?;
+    }
+    files.finish(&Report::new(record, &skips, &world)?, &world)
+}
+
+/// Refuses options that do not go together, before anything is read.
+fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
+    let method = &arguments.method;
+    let useless = arguments.search.for_an_engine();
+    if is_exact && (arguments.prune || !useless.is_empty()) {
+        let option = useless.first().copied().unwrap_or("--prune");
+        bail!("--method {method} makes no use of {option}: leave it out or choose an engine");
+    }
+    let (time, hits) = arguments.search.limits();
+    let find = arguments.find.find();
+    if find != Find::All && (!is_exact || time.is_some() || hits.is_some()) {
+        bail!(
+            "--{} is answered by the exact methods without a limit: leave out --method, --time and --hits",
+            find.name()
+        );
+    }
+    if (time.is_some() || hits.is_some()) && ["grid", "brute-force"].contains(&method.as_str()) {
+        bail!(
+            "--method {method} works through to its end: for --time or --hits choose exact, tree or an engine"
+        );
+    }
+    if method == "grid" && arguments.pairs != arguments::PairKind::VertexVertex {
+        bail!("--method grid is for --pairs vertex-vertex: choose exact or tree");
+    }
+    picture::check(arguments.picture.as_deref())
+}
+
+fn warn(world: &World) {
+    for warning in warnings::warnings(world) {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Counts the pairs by an exact method; keeps them, and what was skipped.
+fn count(world: &World, kept: &Mutex<(Vec<Contact>, Skips)>) -> Option<u64> {
+    let mut scene = world.scene(Method::Auto);
+    let mut pass = scene.pass();
+    let done = scene.advance(&mut pass, &mut |found| found > MOST_COUNTED).ok()?;
+    if done != Completeness::Proved {
+        return None;
+    }
+    let frame = pass.into_frame();
+    let count = frame.contacts.len() as u64;
+    if let Ok(mut kept) = kept.lock() {
+        *kept = (frame.contacts, frame.skips);
+    }
+    Some(count)
+}
+
+/// The pairs that a record lists.
+fn contacts(record: &Record) -> anyhow::Result<Vec<Contact>> {
+    let solutions = record.solutions.iter();
+    let pairs = solutions.map(|found| Pair::deserialize(&found.solution).map(Contact::from));
+    Ok(pairs.collect::<Result<_, _>>()?)
 }
 
 /// Where the results go.
 struct Files {
     json: Option<output::Output>,
     csv: Option<output::Output>,
+    picture: Option<output::Output>,
     summary: bool,
 }
 
 impl Files {
     fn open(arguments: &CollideArguments) -> anyhow::Result<Self> {
-        let stdout = Some(Path::new("-"));
+        let (
+            stdout,
+            CollideArguments {
+                json, out, picture, ..
+            },
+        ) = (Path::new("-"), arguments);
+        let to_stdout = [json, out, picture]
+            .into_iter()
+            .filter(|path| path.as_deref() == Some(stdout))
+            .count();
+        if to_stdout > 1 {
+            bail!("only one of --json, --out and --picture can go to stdout: name files for the others");
+        }
         Ok(Self {
-            json: output::open(arguments.json.as_ref())?,
-            csv: output::open(arguments.out.as_ref())?,
-            summary: arguments.json.as_deref() != stdout && arguments.out.as_deref() != stdout,
+            json: output::open(json.as_ref())?,
+            csv: output::open(out.as_ref())?,
+            picture: output::open(picture.as_ref())?,
+            summary: to_stdout == 0,
         })
     }
 
-    fn finish(&mut self, report: &Report) -> anyhow::Result<ExitCode> {
+    fn finish(&mut self, report: &Report, world: &World) -> anyhow::Result<ExitCode> {
         if let Some(file) = &mut self.json {
             file.write(&json::to_vec(report)?)?;
         }
@@ -82,7 +182,7 @@ impl Files {
             file.write(report.csv().as_bytes())?;
         }
         if self.summary {
-            output::print(report.summary().as_bytes())?;
+            output::print(report.summary(world).as_bytes())?;
         }
         Ok(summary::exit_code(&report.record))
     }
@@ -91,6 +191,6 @@ impl Files {
 /// Reads the meshes of a report again and measures its pairs anew.
 pub(crate) fn verify(text: &[u8]) -> anyhow::Result<Vec<Mismatch>> {
     let report: Report = serde_json::from_slice(text).context("the report is none of `collide --json`")?;
-    let scene = Scene::of_report(&report.record).context("the scene of the report cannot be built")?;
-    Ok(report.verify(&scene))
+    let world = World::of_report(&report.record).context("the scene of the report cannot be built")?;
+    report.verify(&world)
 }

@@ -5,9 +5,12 @@ use std::fmt::Write;
 
 use satisfice_bench::verify::{self, LISTED_BEFORE, Mismatch};
 use satisfice_bench::{Record, record};
+use satisfice_collision::broad::FeatureKind;
+use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Serialize};
 
-use super::scene::{Feature, Pair, Scene};
+use super::arguments::Find;
+use super::scene::{Feature, Pair, World, singular};
 use crate::summary;
 
 /// What `collide --json` writes.
@@ -17,42 +20,79 @@ pub(super) struct Report {
     pub(super) record: Record,
     /// The pairs found, in the order of the solutions.
     pairs: Vec<Found>,
-    /// Why pairs of features were left out, and how many.
+    /// Bodies of which a pair is listed, `[a, b]` with `a <= b`.
+    touching: BTreeSet<[usize; 2]>,
+    /// Why pairs of bodies or of features were left out, and how many.
     skipped: BTreeMap<String, u64>,
 }
 
 /// A pair with its distance.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Found {
-    a: Feature,
-    b: Feature,
+    a: Listed,
+    b: Listed,
     distance: f64,
 }
 
+/// A feature, with its ends if it is an edge: files do not number those.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Listed {
+    #[serde(flatten)]
+    feature: Feature,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    vertices: Option<[u32; 2]>,
+}
+
+impl Listed {
+    fn new(feature: Feature, kind: FeatureKind, world: &World) -> Self {
+        let edges = || {
+            world
+                .bodies
+                .get(feature.body)?
+                .edges()
+                .get(feature.feature as usize)
+        };
+        let vertices = if kind == FeatureKind::Edge {
+            edges().copied()
+        } else {
+            None
+        };
+        Self { feature, vertices }
+    }
+}
+
 impl Found {
-    fn new(solution: &record::Solution) -> Result<Self, serde_json::Error> {
+    fn new(solution: &record::Solution, world: &World) -> Result<Self, serde_json::Error> {
         let Pair { a, b } = Pair::deserialize(&solution.solution)?;
+        let (kind_a, kind_b) = world.kinds();
         Ok(Self {
-            a,
-            b,
+            a: Listed::new(a, kind_a, world),
+            b: Listed::new(b, kind_b, world),
             distance: solution.fitness,
         })
+    }
+
+    fn bodies(&self) -> [usize; 2] {
+        let (a, b) = (self.a.feature.body, self.b.feature.body);
+        [a.min(b), a.max(b)]
     }
 }
 
 impl Report {
-    pub(super) fn new(record: Record, scene: &Scene) -> anyhow::Result<Self> {
-        let pairs = record
-            .solutions
-            .iter()
-            .map(Found::new)
+    pub(super) fn new(record: Record, skips: &Skips, world: &World) -> anyhow::Result<Self> {
+        let solutions = record.solutions.iter();
+        let pairs = solutions
+            .map(|solution| Found::new(solution, world))
             .collect::<Result<Vec<_>, _>>()?;
-        let joined = scene.jobs.iter().map(super::scene::Job::joined).sum();
-        let skipped = BTreeMap::from([("vertices of one body that an edge joins".to_owned(), joined)]);
+        let reasons = skips.by_reason().into_iter();
         Ok(Self {
+            touching: pairs.iter().map(Found::bodies).collect(),
+            skipped: reasons
+                .filter(|(_, count)| *count > 0)
+                .map(|(reason, count)| (reason.to_owned(), count))
+                .collect(),
             record,
             pairs,
-            skipped,
         })
     }
 
@@ -60,6 +100,7 @@ impl Report {
     pub(super) fn csv(&self) -> String {
         let mut text = "a_body,a_feature,b_body,b_feature,distance\n".to_owned();
         for Found { a, b, distance } in &self.pairs {
+            let (a, b) = (a.feature, b.feature);
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
@@ -71,40 +112,77 @@ impl Report {
     }
 
     /// What a person reads.
-    pub(super) fn summary(&self) -> String {
-        let mut text = summary::summary_with(&self.record, |solution| match Found::new(solution) {
-            Ok(Found { a, b, .. }) => format!(
-                "vertex {} of body {} and vertex {} of body {}",
-                a.feature, a.body, b.feature, b.body
-            ),
+    pub(super) fn summary(&self, world: &World) -> String {
+        let (kind_a, kind_b) = world.kinds();
+        let name = |kind: FeatureKind, listed: &Listed| {
+            let Feature { body, feature } = listed.feature;
+            let ends = listed
+                .vertices
+                .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
+            format!("{} {feature}{ends} of body {body}", singular(kind))
+        };
+        let mut text = summary::summary_with(&self.record, |solution| match Found::new(solution, world) {
+            Ok(found) => format!("{} and {}", name(kind_a, &found.a), name(kind_b, &found.b)),
             Err(_) => solution.solution.to_string(),
         });
-        for (reason, count) in self.skipped.iter().filter(|(_, count)| **count > 0) {
-            let _ = writeln!(text, "  skipped       {count} pairs: {reason}");
+        let mut line = |name: &str, value: String| {
+            let _ = writeln!(text, "  {name:<13} {value}");
+        };
+        let asked = match world.request.find {
+            Find::All => None,
+            Find::Touching => {
+                Some("one pair of each two bodies that touch; no other bodies do, that is proved")
+            }
+            Find::First => Some("one pair, whichever is found first"),
+            Find::Closest(_) => Some("the closest pairs, that is proved"),
+        };
+        if let Some(asked) = asked {
+            line("listed", asked.to_owned());
+        }
+        if world.bodies.len() > 1 && !self.pairs.is_empty() {
+            let shown: Vec<_> = self
+                .touching
+                .iter()
+                .take(10)
+                .map(|[a, b]| format!("{a}-{b}"))
+                .collect();
+            let more = if self.touching.len() > shown.len() {
+                " ..."
+            } else {
+                ""
+            };
+            line("bodies", format!("{}{more}", shown.join(", ")));
+        }
+        for (reason, count) in &self.skipped {
+            line("skipped", format!("{count} {reason}"));
         }
         text
     }
 
     /// What of the report is not true of the scene.
-    pub(super) fn verify(&self, scene: &Scene) -> Vec<Mismatch> {
+    pub(super) fn verify(&self, world: &World) -> anyhow::Result<Vec<Mismatch>> {
         let mut mismatches = verify::books(&self.record);
         let mut seen = BTreeSet::new();
-        mismatches.extend(verify::solutions_by(&self.record, scene.threshold, |listed| {
-            let pair = Pair::deserialize(&listed.solution).map_err(|error| error.to_string())?;
-            let distance = scene
-                .distance(&pair)
-                .ok_or("a pair of features of this scene, the lesser first")?;
-            if seen.insert(pair) {
-                Ok(distance)
-            } else {
-                Err(LISTED_BEFORE.to_owned())
-            }
-        }));
-        let listed: Vec<_> = self
-            .record
-            .solutions
-            .iter()
-            .filter_map(|solution| Found::new(solution).ok())
+        // Made here, so that what fails is told as an error.
+        world.jobs()?;
+        mismatches.extend(verify::solutions_by(
+            &self.record,
+            world.request.threshold,
+            |listed| {
+                let pair = Pair::deserialize(&listed.solution).map_err(|error| error.to_string())?;
+                let known = world.has(&pair).map_err(|error| error.to_string())?;
+                if !known {
+                    return Err("a pair of features of this scene, the lesser first".to_owned());
+                }
+                if !seen.insert(pair) {
+                    return Err(LISTED_BEFORE.to_owned());
+                }
+                world.fitness(&pair).map_err(|error| error.to_string())
+            },
+        ));
+        let solutions = self.record.solutions.iter();
+        let listed: Vec<_> = solutions
+            .filter_map(|solution| Found::new(solution, world).ok())
             .collect();
         if self.pairs != listed {
             let place = self.pairs.iter().zip(&listed).position(|(a, b)| a != b);
@@ -115,8 +193,16 @@ impl Report {
                 "what the solutions say",
             ));
         }
-        let reference = scene.is_small().then(|| scene.reference_hits());
+        let touching: BTreeSet<_> = listed.iter().map(Found::bodies).collect();
+        if self.touching != touching {
+            mismatches.push(Mismatch::new("touching", "other bodies", "those of the pairs"));
+        }
+        // Where deciding every pair takes too long, what the report says of the number of pairs stays as it is.
+        let reference = match world.is_small() {
+            true => Some(world.reference_hits()?),
+            false => self.record.reference_hits,
+        };
         mismatches.extend(verify::reference(&self.record, reference));
-        mismatches
+        Ok(mismatches)
     }
 }

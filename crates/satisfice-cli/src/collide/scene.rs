@@ -1,25 +1,30 @@
-//! The scene: bodies, and which of them may have pairs with which.
+//! The scene of the command: bodies, and which of them may have pairs with which.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use satisfice::SatisficingProblem;
 use satisfice_bench::{Record, Settings};
-use satisfice_collision::{Mesh, VertexPairs, io};
+use satisfice_collision::broad::{FeatureKind, Method};
+use satisfice_collision::distance::{PairKind, Threshold};
+use satisfice_collision::problem::FeaturePairs;
+use satisfice_collision::scene::{Body, Contact, Scene};
+use satisfice_collision::{Mesh, io};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Vertices that so many edges join are no pair of one body.
-const RING_WIDTH: usize = 1;
-/// Up to so many pairs of features are counted by brute force, at about a nanosecond each.
-const SMALL: u64 = 3_000_000_000;
+use super::arguments::Find;
 
-/// A feature of a body: a vertex.
+/// Up to so many nanoseconds of brute force are spent on checking a report.
+const PATIENCE: u64 = 5_000_000_000;
+
+/// A feature of a body: a vertex, an edge or a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Feature {
     /// Number of the mesh on the command line, from 0.
     pub(super) body: usize,
-    /// Number of the vertex in its mesh, from 0.
+    /// Number of the feature in its mesh, from 0.
     pub(super) feature: u32,
 }
 
@@ -30,82 +35,104 @@ pub(super) struct Pair {
     pub(super) b: Feature,
 }
 
-/// The pairs of two bodies, or of one with itself.
-#[derive(Debug, Clone)]
+impl From<Contact> for Pair {
+    fn from(contact: Contact) -> Self {
+        Self {
+            a: Feature {
+                body: contact.body_a,
+                feature: contact.a,
+            },
+            b: Feature {
+                body: contact.body_b,
+                feature: contact.b,
+            },
+        }
+    }
+}
+
+impl From<Pair> for Contact {
+    fn from(Pair { a, b }: Pair) -> Self {
+        Self {
+            body_a: a.body,
+            body_b: b.body,
+            a: a.feature,
+            b: b.feature,
+        }
+    }
+}
+
+/// The pairs of two bodies, or of one with itself, as a problem for an engine.
+#[derive(Debug)]
 pub(super) struct Job {
-    bodies: [usize; 2],
-    pub(super) problem: VertexPairs,
+    pub(super) bodies: [usize; 2],
+    pub(super) problem: FeaturePairs,
 }
 
 impl Job {
     /// The pair of features that a solution of this job is.
-    pub(super) fn pair(&self, (i, j): (u32, u32)) -> Pair {
-        let [a, b] = self.bodies;
-        Pair {
-            a: Feature { body: a, feature: i },
-            b: Feature { body: b, feature: j },
+    pub(super) fn pair(&self, (a, b): (u32, u32)) -> Pair {
+        Contact {
+            body_a: self.bodies[0],
+            body_b: self.bodies[1],
+            a,
+            b,
         }
-    }
-
-    /// Pairs of features that are no pair since an edge joins them.
-    pub(super) fn joined(&self) -> u64 {
-        if self.bodies[0] == self.bodies[1] {
-            self.problem.a().edges().len() as u64
-        } else {
-            0
-        }
-    }
-
-    /// How many pairs there are to measure.
-    pub(super) fn size(&self) -> u64 {
-        let count = |mesh: &Mesh| mesh.vertices().len() as u64;
-        let (a, b) = (count(self.problem.a()), count(self.problem.b()));
-        if self.bodies[0] == self.bodies[1] {
-            a * (a - 1) / 2 - self.joined()
-        } else {
-            a * b
-        }
+        .into()
     }
 }
 
-/// Bodies and the threshold.
-#[derive(Debug)]
-pub(super) struct Scene {
-    paths: Vec<PathBuf>,
+/// What makes a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Request {
+    pub(super) paths: Vec<PathBuf>,
+    pub(super) kind: PairKind,
     pub(super) threshold: f64,
-    within: bool,
-    pub(super) jobs: Vec<Job>,
+    pub(super) within: bool,
+    pub(super) ring_width: Option<usize>,
+    pub(super) find: Find,
 }
 
-impl Scene {
-    pub(super) fn read(paths: &[PathBuf], threshold: f64, within: bool) -> anyhow::Result<Self> {
-        if paths.len() < 2 && !within {
+/// Bodies and what is asked of them.
+#[derive(Debug)]
+pub(super) struct World {
+    pub(super) request: Request,
+    pub(super) bodies: Vec<Mesh>,
+    pub(super) threshold: Threshold,
+    jobs: OnceLock<Vec<Job>>,
+}
+
+impl World {
+    pub(super) fn read(request: Request) -> anyhow::Result<Self> {
+        if request.paths.len() < 2 && !request.within {
             bail!("one mesh has no partner: name a second one, or look for pairs within it by --self");
         }
-        let bodies = paths.iter().map(io::read).collect::<Result<Vec<Mesh>, _>>()?;
-        let mut jobs = Vec::new();
-        for (a, first) in bodies.iter().enumerate() {
-            if within {
-                let problem = VertexPairs::within(first, threshold, RING_WIDTH)?;
-                jobs.push(Job {
-                    bodies: [a, a],
-                    problem,
-                });
-            }
-            for (b, second) in bodies.iter().enumerate().skip(a + 1) {
-                let problem = VertexPairs::between(first, second, threshold)?;
-                jobs.push(Job {
-                    bodies: [a, b],
-                    problem,
-                });
-            }
+        let bodies = request
+            .paths
+            .iter()
+            .map(io::read)
+            .collect::<Result<Vec<Mesh>, _>>()?;
+        let world = Self {
+            threshold: Threshold::new(request.threshold)?,
+            request,
+            bodies,
+            jobs: OnceLock::new(),
+        };
+        if world.couples().is_empty() {
+            let (a, b) = world.kinds();
+            let lacks = |kind| world.bodies.iter().all(|mesh| count(mesh, kind) == 0);
+            let missing = if lacks(a) { a } else { b };
+            let plural = plural(missing);
+            bail!(
+                "there are no pairs {} to look for, since {} {plural}: choose other features by --pairs",
+                world.request.kind,
+                if lacks(missing) {
+                    "no mesh has any"
+                } else {
+                    "no other mesh has"
+                }
+            );
         }
-        Ok(Self {
-            paths: paths.to_vec(),
-            threshold,
-            within,
-            jobs,
-        })
+        Ok(world)
     }
 
     /// The scene that a report tells of.
@@ -116,59 +143,182 @@ impl Scene {
                 .get(name)
                 .with_context(|| format!("it has no parameter `{name}`"))
         };
-        let paths = serde_json::from_value::<Vec<PathBuf>>(parameter("meshes")?.clone())
-            .context("`meshes` is no list of files")?;
-        let threshold = parameter("threshold")?
-            .as_f64()
-            .context("`threshold` is no number")?;
-        let within = parameter("self")?
-            .as_bool()
-            .context("`self` is neither true nor false")?;
-        Self::read(&paths, threshold, within)
+        let text = |name| {
+            parameter(name)?
+                .as_str()
+                .with_context(|| format!("`{name}` is no text"))
+        };
+        Self::read(Request {
+            paths: serde_json::from_value(parameter("meshes")?.clone())
+                .context("`meshes` is no list of files")?,
+            kind: text("pairs")?.parse()?,
+            threshold: parameter("threshold")?
+                .as_f64()
+                .context("`threshold` is no number")?,
+            within: parameter("self")?
+                .as_bool()
+                .context("`self` is neither true nor false")?,
+            ring_width: Some(
+                parameter("ring_width")?
+                    .as_u64()
+                    .and_then(|width| usize::try_from(width).ok())
+                    .context("`ring_width` is no whole number")?,
+            ),
+            find: if text("find")? == Find::All.name() {
+                Find::All
+            } else {
+                Find::First
+            },
+        })
     }
 
     /// What a report repeats.
     pub(super) fn settings(&self) -> Settings {
         let mut settings = Settings::default();
-        let meshes: Vec<Value> = self
-            .paths
-            .iter()
-            .map(|path| path.to_string_lossy().into())
-            .collect();
+        let paths = self.request.paths.iter();
+        let meshes: Vec<Value> = paths.map(|path| path.to_string_lossy().into()).collect();
         settings.set("meshes", meshes);
-        settings.set("pairs", "vertex-vertex");
-        settings.set("threshold", self.threshold);
-        settings.set("self", self.within);
+        settings.set("pairs", self.request.kind.name());
+        settings.set("threshold", self.request.threshold);
+        settings.set("self", self.request.within);
+        settings.set("ring_width", self.ring_width());
+        settings.set("find", self.request.find.name());
         settings
     }
 
-    /// Whether brute force is a matter of seconds.
+    /// Vertices that so many edges join belong to no pair of one body.
+    pub(super) fn ring_width(&self) -> usize {
+        let usual = usize::from(self.request.kind == PairKind::VertexVertex);
+        self.request.ring_width.unwrap_or(usual)
+    }
+
+    /// The kinds of the first and the second feature.
+    pub(super) fn kinds(&self) -> (FeatureKind, FeatureKind) {
+        FeatureKind::of_pair(self.request.kind)
+    }
+
+    /// The bodies of the first and of the second feature, for every combination that can have pairs.
+    fn couples(&self) -> Vec<[usize; 2]> {
+        let (kind_a, kind_b) = self.kinds();
+        let all = 0..self.bodies.len();
+        let couples = all.clone().flat_map(|a| all.clone().map(move |b| [a, b]));
+        couples
+            .filter(|&[a, b]| (a != b || self.request.within) && (a <= b || kind_a != kind_b))
+            .filter(|&[a, b]| count(&self.bodies[a], kind_a) > 0 && count(&self.bodies[b], kind_b) > 0)
+            .collect()
+    }
+
+    /// The bodies without a feature of this kind.
+    pub(super) fn without(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
+        let bodies = self.bodies.iter().enumerate();
+        bodies.filter_map(move |(body, mesh)| (count(mesh, kind) == 0).then_some(body))
+    }
+
+    /// The scene for the exact methods.
+    pub(super) fn scene(&self, method: Method) -> Scene {
+        let mut scene = Scene::new(self.request.kind, self.threshold).with_method(method);
+        for mesh in &self.bodies {
+            scene.add(if self.request.within {
+                Body::deforming(mesh.clone()).beyond_ring(self.ring_width())
+            } else {
+                Body::fixed(mesh.clone())
+            });
+        }
+        scene
+    }
+
+    /// A problem for every combination of bodies, made when it is first asked for.
+    pub(super) fn jobs(&self) -> anyhow::Result<&[Job]> {
+        if let Some(jobs) = self.jobs.get() {
+            return Ok(jobs);
+        }
+        let Request { kind, threshold, .. } = self.request;
+        let jobs = self.couples().into_iter().map(|[a, b]| {
+            let problem = if a == b {
+                FeaturePairs::within(kind, &self.bodies[a], threshold, self.ring_width())
+            } else {
+                FeaturePairs::between(kind, &self.bodies[a], &self.bodies[b], threshold)
+            };
+            problem.map(|problem| Job {
+                bodies: [a, b],
+                problem,
+            })
+        });
+        let jobs = jobs.collect::<Result<Vec<_>, _>>()?;
+        Ok(self.jobs.get_or_init(|| jobs))
+    }
+
+    /// How many pairs of features there are, excluded ones of one body included.
+    pub(super) fn size(&self) -> u64 {
+        let (kind_a, kind_b) = self.kinds();
+        self.couples().into_iter().fold(0, |sum, [a, b]| {
+            let (m, n) = (count(&self.bodies[a], kind_a), count(&self.bodies[b], kind_b));
+            let pairs = if a == b && kind_a == kind_b {
+                m * (m - 1) / 2
+            } else {
+                m.saturating_mul(n)
+            };
+            sum.saturating_add(pairs)
+        })
+    }
+
+    /// Whether deciding every pair is a matter of seconds.
     pub(super) fn is_small(&self) -> bool {
-        self.jobs
-            .iter()
-            .fold(0_u64, |sum, job| sum.saturating_add(job.size()))
-            <= SMALL
+        let cost = match self.request.kind {
+            PairKind::VertexVertex => 10,
+            PairKind::VertexEdge | PairKind::VertexTriangle | PairKind::EdgeEdge => 40,
+            PairKind::EdgeTriangle | PairKind::TriangleTriangle => 200,
+        };
+        self.size().saturating_mul(cost) <= PATIENCE
     }
 
     /// How many pairs there are, by brute force.
-    pub(super) fn reference_hits(&self) -> u64 {
-        self.jobs
-            .iter()
-            .map(|job| job.problem.reference_pairs().len() as u64)
-            .sum()
+    pub(super) fn reference_hits(&self) -> anyhow::Result<u64> {
+        Ok(self.scene(Method::BruteForce).contacts()?.contacts.len() as u64)
     }
 
-    /// The distance of a pair; `None` for what is no pair of this scene.
-    pub(super) fn distance(&self, pair: &Pair) -> Option<f64> {
-        let job = self
-            .jobs
-            .iter()
-            .find(|job| job.bodies == [pair.a.body, pair.b.body])?;
+    /// Whether this is a pair of features of this scene, the first one first.
+    pub(super) fn has(&self, pair: &Pair) -> anyhow::Result<bool> {
+        let jobs = self.jobs()?;
+        let Some(job) = jobs.iter().find(|job| job.bodies == [pair.a.body, pair.b.body]) else {
+            return Ok(false);
+        };
         let solution = (pair.a.feature, pair.b.feature);
-        let known = |mesh: &Mesh, feature: u32| (feature as usize) < mesh.vertices().len();
-        let is_pair = known(job.problem.a(), solution.0)
-            && known(job.problem.b(), solution.1)
-            && job.problem.canonical(solution) == solution;
-        is_pair.then(|| job.problem.fitness(&solution))
+        let mut values = [0.0; 2];
+        Ok(job.problem.canonical(solution) == solution && job.problem.encode(&solution, &mut values))
+    }
+
+    /// F of a pair that there is: its distance, or what a pair that counts as none has.
+    pub(super) fn fitness(&self, pair: &Pair) -> anyhow::Result<f64> {
+        let jobs = self.jobs()?;
+        let job = jobs.iter().find(|job| job.bodies == [pair.a.body, pair.b.body]);
+        let job = job.context("a pair of bodies of this scene")?;
+        Ok(job.problem.fitness(&(pair.a.feature, pair.b.feature)))
+    }
+}
+
+/// How many features of a kind a mesh has.
+pub(super) fn count(mesh: &Mesh, kind: FeatureKind) -> u64 {
+    let count = match kind {
+        FeatureKind::Vertex => mesh.vertices().len(),
+        FeatureKind::Edge => mesh.edges().len(),
+        FeatureKind::Triangle => mesh.triangles().len(),
+    };
+    count as u64
+}
+
+pub(super) fn plural(kind: FeatureKind) -> &'static str {
+    match kind {
+        FeatureKind::Vertex => "vertices",
+        FeatureKind::Edge => "edges",
+        FeatureKind::Triangle => "triangles",
+    }
+}
+
+pub(super) fn singular(kind: FeatureKind) -> &'static str {
+    match kind {
+        FeatureKind::Vertex => "vertex",
+        FeatureKind::Edge => "edge",
+        FeatureKind::Triangle => "triangle",
     }
 }

@@ -6,20 +6,24 @@ use anyhow::bail;
 use satisfice::StopReason;
 use satisfice_bench::record::Limits;
 use satisfice_bench::{Record, Request, search};
+use satisfice_collision::broad::Method;
 use serde_json::json;
 
 use super::PROBLEM;
-use super::scene::Scene;
+use super::exact::distance;
+use super::scene::World;
 use crate::progress::Bar;
 
-/// Searches each pair of bodies in turn. Time and evaluations are shared out evenly.
-pub(super) fn find(scene: &Scene, request: &Request) -> anyhow::Result<Record> {
-    // A body whose vertices are all joined has nothing to search for, and shall take no time from the others.
-    let mut jobs: Vec<_> = scene.jobs.iter().filter(|job| job.size() > 0).collect();
+/// Searches each combination of bodies in turn. Time and evaluations are shared out evenly.
+pub(super) fn find(world: &World, request: &Request) -> anyhow::Result<Record> {
+    // What has no pairs at all shall take no time from the others.
+    let all_jobs = world.jobs()?;
+    let mut jobs: Vec<_> = all_jobs.iter().filter(|job| job.problem.has_pairs()).collect();
     if jobs.is_empty() {
-        jobs = scene.jobs.iter().collect();
+        jobs = all_jobs.iter().collect();
     }
     let parts = jobs.len() as u64;
+    let scene = world.scene(Method::Auto);
     let bar = Bar::new();
     let mut all: Option<Record> = None;
     for (part, job) in (0..).zip(jobs) {
@@ -40,7 +44,10 @@ pub(super) fn find(scene: &Scene, request: &Request) -> anyhow::Result<Record> {
         })?;
         for found in &mut record.solutions {
             let pair = serde_json::from_value(found.solution.take())?;
-            found.solution = json!(job.pair(pair));
+            let pair = job.pair(pair);
+            found.solution = json!(pair);
+            // As the exact methods give it: to the last digit, where F has ten.
+            found.fitness = distance(&scene, pair.into(), world.request.threshold)?;
         }
         let stop = record.stop_reason;
         match &mut all {
@@ -56,7 +63,7 @@ pub(super) fn find(scene: &Scene, request: &Request) -> anyhow::Result<Record> {
     };
     Ok(Record {
         problem: PROBLEM.to_owned(),
-        problem_parameters: scene.settings(),
+        problem_parameters: world.settings(),
         budget: Limits {
             time_seconds: request.budget.time.map(|time| time.as_secs_f64()),
             evaluations: request.budget.evaluations.map(|total| total.max(parts)),

@@ -5,7 +5,7 @@
 //! degenerate input: then no certificate speaks, and the slower stages decide.
 
 use super::Point;
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{self, Frame, Limits, Verdict};
 use super::vector::{add, cross, dot, scale, sub};
 
 /// Steps before giving up. The median need is 2; pairs in the band around delta never end.
@@ -40,6 +40,34 @@ pub(super) fn filter<const M: usize, const N: usize>(frame: &Frame<M, N>, limits
         }
     }
     Verdict::Unknown
+}
+
+/// The distance in the frame's unit, wrong by at most `accuracy` of itself: the upper bound `|v| + E` and the lower bound
+/// `gap / |v|` agree that far. `None` where they never do.
+pub(super) fn distance<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) -> Option<f64> {
+    let mut v = frame.difference(&[1.0 / M as f64; M], &[1.0 / N as f64; N]);
+    let mut squared = dot(v, v);
+    let mut simplex = Simplex { w: [v; 4], len: 1 };
+    for _ in 0..2 * STEPS {
+        let (gap, w) = support(frame, v);
+        let safe = gap - frame::GAP_ERROR * frame.rho * (v[0].abs() + v[1].abs() + v[2].abs());
+        // (gap / |v|)^2 >= |v|^2 (1 - accuracy)^2, roundings being far below any accuracy asked for
+        if safe > frame::LEAST_GAP && safe >= squared * (1.0 - accuracy) {
+            let distance = squared.sqrt();
+            return (frame::SPAN_ERROR * frame.rho <= accuracy * distance).then_some(distance);
+        }
+        if simplex.w[..simplex.len].contains(&w) {
+            return None;
+        }
+        simplex.w[simplex.len] = w;
+        simplex.len += 1;
+        v = simplex.reduce();
+        squared = dot(v, v);
+        if simplex.len == 4 {
+            return None;
+        }
+    }
+    None
 }
 
 /// The gap in direction `v` and the difference `a_i - b_j` that is lowest in it.

@@ -34,6 +34,7 @@ mod frame;
 mod gjk;
 mod kind;
 mod lanes;
+pub mod measure;
 mod resolve;
 mod threshold;
 pub mod triangle_triangle;

@@ -85,6 +85,11 @@ fn decide_in_band<const M: usize, const N: usize>(
     }
 }
 
+/// The frame of a pair; `None` where all points coincide or one is not finite.
+pub(super) fn frame<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Option<Frame<M, N>> {
+    Frame::new(a, b).ok()
+}
+
 pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Proximity {
     let frame = match Frame::new(a, b) {
         Ok(frame) if frame.has_nan() => Err(NoFrame::NotFinite),

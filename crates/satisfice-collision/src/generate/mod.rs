@@ -1,12 +1,14 @@
-//! Generated bodies: the Utah teapot, spheres, the torus and a cloth.
+//! Generated bodies: the Utah teapot, spheres, the torus, a cloth and a pleated one.
 
 mod cloth;
+mod pleats;
 mod sphere;
 mod teapot;
 mod teapot_net;
 mod torus;
 
 pub use cloth::cloth;
+pub use pleats::pleats;
 pub use sphere::{icosphere, uv_sphere};
 pub use teapot::teapot;
 pub use torus::torus;

@@ -194,3 +194,36 @@ fn parameters_out_of_range_are_refused_by_name() {
         Err(Error::NonFiniteVertex { .. })
     ));
 }
+
+/// Layers a gap apart on the mean, nowhere nearer than a tenth of it, no edge four times shorter or twice longer than in the flat cloth.
+#[test]
+fn pleats_lie_upon_each_other() {
+    let (columns, rows, layers, gap) = (91, 13, 4, 0.1);
+    for phase in [0.0, 0.3] {
+        let mesh = pleats(columns, rows, layers, gap, phase).unwrap();
+        let flat = cloth(3.0, 1.0, columns, rows).unwrap();
+        assert_eq!(mesh.triangles(), flat.triangles());
+        let length = |mesh: &Mesh, [v, w]: [u32; 2]| {
+            let (p, q) = (mesh.vertex(v), mesh.vertex(w));
+            (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt()
+        };
+        for &edge in mesh.edges() {
+            let stretch = length(&mesh, edge) / length(&flat, edge);
+            assert!((0.25..2.0).contains(&stretch), "{stretch}");
+        }
+        let bounds = mesh.bounds();
+        assert!(bounds.extents()[2] > 3.0 * gap && bounds.extents()[2] < 4.0 * gap);
+        assert!(bounds.extents()[0] < 3.0 / 4.0 + gap);
+    }
+    let [a, b] = [0.0, 1.0].map(|phase| pleats(columns, rows, layers, gap, phase).unwrap());
+    assert_relative_eq!(a.vertex(77)[2], b.vertex(77)[2], epsilon = 1e-12);
+    for bad in [
+        pleats(1, 9, 2, 0.1, 0.0),
+        pleats(9, 9, 0, 0.1, 0.0),
+        pleats(9, 9, 2, -0.1, 0.0),
+        pleats(9, 9, 40, 0.1, 0.0),
+        pleats(9, 9, 2, 0.1, f64::NAN),
+    ] {
+        assert!(matches!(bad, Err(Error::Parameter { .. })));
+    }
+}

@@ -32,6 +32,52 @@ impl Adjacency {
         Self { offsets, targets }
     }
 
+    /// Elements that share a vertex: rows are elements, not vertices. O(sum of the squared numbers of elements at a vertex).
+    pub(crate) fn sharing<const N: usize>(vertices: usize, elements: &[[u32; N]]) -> Self {
+        let mut at = vec![0_usize; vertices + 1];
+        for &v in elements.iter().flatten() {
+            at[v as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            at[v + 1] += at[v];
+        }
+        let mut next = at.clone();
+        let mut users = vec![0_u32; at[vertices]];
+        for (element, corners) in (0..).zip(elements) {
+            for &v in corners {
+                users[next[v as usize]] = element;
+                next[v as usize] += 1;
+            }
+        }
+        let mut offsets = Vec::with_capacity(elements.len() + 1);
+        let mut targets = Vec::new();
+        offsets.push(0);
+        let mut row = Vec::new();
+        for (element, corners) in (0..).zip(elements) {
+            row.clear();
+            for &v in corners {
+                row.extend_from_slice(&users[at[v as usize]..at[v as usize + 1]]);
+            }
+            row.sort_unstable();
+            row.dedup();
+            targets.extend(row.iter().copied().filter(|&other| other != element));
+            offsets.push(targets.len());
+        }
+        Self { offsets, targets }
+    }
+
+    /// The same with some of the joints only; `keep` has to be symmetric.
+    pub(crate) fn filtered(&self, keep: impl Fn(u32, u32) -> bool) -> Self {
+        let mut offsets = Vec::with_capacity(self.offsets.len());
+        let mut targets = Vec::new();
+        offsets.push(0);
+        for v in 0..self.len() as u32 {
+            targets.extend(self.neighbours(v).iter().copied().filter(|&w| keep(v, w)));
+            offsets.push(targets.len());
+        }
+        Self { offsets, targets }
+    }
+
     /// No vertex joined to any other.
     pub(crate) fn none(vertices: usize) -> Self {
         Self {

@@ -1,7 +1,8 @@
 //! One body of a vertex-pair problem: its mesh, and which of its vertices stands at which position.
 
+use super::ranges::Ranges;
 use crate::error::Error;
-use crate::mesh::{Adjacency, Mesh};
+use crate::mesh::{Aabb, Adjacency, Mesh};
 use crate::order::VertexOrder;
 
 /// A body and the order of its chosen vertices.
@@ -15,6 +16,7 @@ pub(super) struct Side {
     position_of: Vec<u32>,
     /// Chosen vertices next to each other, across the gaps that others leave.
     pub(super) neighbours: Adjacency,
+    ranges: Ranges,
 }
 
 const ABSENT: u32 = u32::MAX;
@@ -33,6 +35,7 @@ impl Side {
         }
         let neighbours = mesh.adjacency().bridged(|v| position_of[v as usize] != ABSENT);
         Self {
+            ranges: ranges_of(mesh, &vertex_at),
             mesh: mesh.clone(),
             order,
             vertex_at,
@@ -98,20 +101,46 @@ impl Side {
         (chosen, points)
     }
 
+    /// The body has moved or changed its shape.
+    pub(super) fn go_to(&mut self, mesh: Mesh) {
+        self.mesh = mesh;
+        self.ranges = ranges_of(&self.mesh, &self.vertex_at);
+    }
+
+    /// The box around the vertices at the positions from `first` to `last`, as they stand on an axis.
+    pub(super) fn around(&self, first: f64, last: f64) -> Aabb {
+        let end = self.vertex_at.len() - 1;
+        let first = (first as usize).min(end);
+        let last = (last as usize).clamp(first, end);
+        self.ranges.around(first, last, |position| {
+            Aabb::point(self.mesh.vertex(self.vertex_at[position]))
+        })
+    }
+
     /// The median length of the edges; infinite where it overflows, 0 without edges.
     pub(super) fn spacing(&self) -> f64 {
-        let mut squares: Vec<f64> = self
-            .mesh
-            .edges()
-            .iter()
-            .map(|&[i, j]| square(&self.mesh.vertex(i), &self.mesh.vertex(j)))
-            .collect();
-        if squares.is_empty() {
-            return 0.0;
-        }
-        let middle = squares.len() / 2;
-        squares.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt()
+        spacing(&self.mesh)
     }
+}
+
+fn ranges_of(mesh: &Mesh, vertex_at: &[u32]) -> Ranges {
+    Ranges::new(vertex_at.len(), |position| {
+        Aabb::point(mesh.vertex(vertex_at[position]))
+    })
+}
+
+/// The median length of a mesh's edges; infinite where it overflows, 0 without edges.
+pub(super) fn spacing(mesh: &Mesh) -> f64 {
+    let mut squares: Vec<f64> = mesh
+        .edges()
+        .iter()
+        .map(|&[i, j]| square(&mesh.vertex(i), &mesh.vertex(j)))
+        .collect();
+    if squares.is_empty() {
+        return 0.0;
+    }
+    let middle = squares.len() / 2;
+    squares.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt()
 }
 
 #[inline]

@@ -1,6 +1,6 @@
 //! Experiment I: two teapots that run into each other.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Space, Values};
+use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Space, Values};
 
 use super::VertexPairs;
 use crate::generate;
@@ -201,6 +201,9 @@ impl SatisficingProblem for Teapots {
     }
     fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
         self.pairs.neighbours(of, visit)
+    }
+    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+        self.pairs.lower_bound(region)
     }
     fn canonical(&self, hit: (u32, u32)) -> (u32, u32) {
         self.pairs.canonical(hit)

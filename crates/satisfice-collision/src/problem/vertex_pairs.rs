@@ -1,9 +1,11 @@
 //! The vertex-vertex problem of Eq. 1: which pairs of vertices are closer than delta?
 
-use satisfice::{SatisficingProblem, Space};
+use satisfice::{Region, SatisficingProblem, Space};
 
-use super::side::{Side, square};
-use crate::distance::{Threshold, vertex_vertex};
+use super::metric::{PointMetric, far};
+use super::ranges;
+use super::side::Side;
+use crate::distance::Threshold;
 use crate::error::Error;
 use crate::mesh::{Adjacency, Mesh};
 use crate::oracle;
@@ -23,6 +25,7 @@ use crate::order::VertexOrder;
 ///
 /// The neighbours of a pair are those with one of the two vertices moved along a mesh edge; where delta is below the
 /// typical (median) edge length of a body also those with both moved, since one step alone then leads out of reach.
+/// The lower bound of a region is the distance of the boxes around its two ranges of vertices.
 ///
 /// Source of the problem: Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539.
 ///
@@ -41,8 +44,7 @@ pub struct VertexPairs {
     a: Side,
     bodies: Bodies,
     threshold: Threshold,
-    /// Squares below the first are below delta^2 for sure, squares above the second are not.
-    band: [f64; 2],
+    points: PointMetric,
     joint_moves: bool,
     space: Space<f64>,
 }
@@ -92,7 +94,7 @@ impl VertexPairs {
         Ok(Self {
             space: space(&a, &bodies)?,
             joint_moves: threshold.get() < spacing,
-            band: band(threshold),
+            points: PointMetric::new(threshold),
             a,
             bodies,
             threshold,
@@ -157,7 +159,7 @@ impl VertexPairs {
     /// # Errors
     /// [`Error::Parameter`] if the number of vertices differs.
     pub fn move_a(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        self.a.mesh = frame(&self.a.mesh, mesh)?;
+        self.a.go_to(frame(&self.a.mesh, mesh)?);
         if let Bodies::One { far: f, .. } = &mut self.bodies {
             *f = far(mesh, self.threshold.get());
         }
@@ -170,7 +172,7 @@ impl VertexPairs {
     /// [`Error::Parameter`] if the number of vertices differs.
     pub fn move_b(&mut self, mesh: &Mesh) -> Result<(), Error> {
         match &mut self.bodies {
-            Bodies::Two(b) => b.mesh = frame(&b.mesh, mesh)?,
+            Bodies::Two(b) => b.go_to(frame(&b.mesh, mesh)?),
             Bodies::One { .. } => self.move_a(mesh)?,
         }
         Ok(())
@@ -195,21 +197,6 @@ impl VertexPairs {
                     .filter(|&(i, j)| !excluded.contains(i, j))
                     .collect()
             }
-        }
-    }
-
-    /// The rare cases: squares within rounding of delta^2, too small or too large to be trusted.
-    #[cold]
-    fn resolve(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
-        if p == q {
-            return 0.0;
-        }
-        let delta = self.threshold.get();
-        let distance = vertex_vertex::proximity(p, q).distance.min(f64::MAX);
-        if vertex_vertex::within(p, q, self.threshold) {
-            distance.min(delta.next_down())
-        } else {
-            distance.max(delta)
         }
     }
 
@@ -256,23 +243,6 @@ fn frame(before: &Mesh, now: &Mesh) -> Result<Mesh, Error> {
     }
 }
 
-/// F of what is no pair: finite, not below delta, not below any distance of the body.
-fn far(mesh: &Mesh, delta: f64) -> f64 {
-    let [x, y, z] = mesh.bounds().extents();
-    x.hypot(y).hypot(z).next_up().max(delta).min(f64::MAX)
-}
-
-/// Three differences, three products and two sums, then a root: `|p - q|^2` as computed is within 6 roundings of the
-/// true square, as long as nothing that counts underflows.
-fn band(threshold: Threshold) -> [f64; 2] {
-    const SLACK: f64 = 8.0 * f64::EPSILON;
-    // Below this a product that underflowed may count.
-    const TINY: f64 = 1e-270;
-    let below = threshold.squared_below() * (1.0 - SLACK);
-    let above = threshold.squared_above() * (1.0 + SLACK);
-    [if below < TINY { 0.0 } else { below }, above.max(TINY)]
-}
-
 impl SatisficingProblem for VertexPairs {
     type Scalar = f64;
     type Solution = (u32, u32);
@@ -297,12 +267,35 @@ impl SatisficingProblem for VertexPairs {
         {
             return far;
         }
-        let square = square(p, q);
-        // Above 1e300 a sum may have overflowed.
-        if square < self.band[0] || (square > self.band[1] && square < 1e300) {
-            square.sqrt()
-        } else {
-            self.resolve(p, q)
+        self.points.distance(p, q)
+    }
+
+    /// Eight at a time: all are fetched, then measured together.
+    fn fitness_all(&self, solutions: &[(u32, u32)], fitness: &mut [f64]) {
+        const LANES: usize = 8;
+        let second = self.second();
+        let mut rest = (solutions, fitness);
+        while let Some((pairs, more)) = rest.0.split_first_chunk::<LANES>() {
+            let (mut d, mut known) = ([[0.0; LANES]; 3], true);
+            for (lane, &(i, j)) in pairs.iter().enumerate() {
+                if let (Some(p), Some(q)) = (self.a.point(i), second.point(j))
+                    && !self.no_pair(i, j)
+                {
+                    (0..3).for_each(|k| d[k][lane] = p[k] - q[k]);
+                } else {
+                    known = false;
+                }
+            }
+            let (now, later) = rest.1.split_at_mut(LANES);
+            if !known || !self.points.distances(&d, now) {
+                for (solution, f) in pairs.iter().zip(now) {
+                    *f = self.fitness(solution);
+                }
+            }
+            rest = (more, later);
+        }
+        for (solution, f) in rest.0.iter().zip(rest.1) {
+            *f = self.fitness(solution);
         }
     }
 
@@ -346,6 +339,13 @@ impl SatisficingProblem for VertexPairs {
             }
         }
         true
+    }
+
+    /// The distance of the boxes around the two ranges of vertices. O(log vertices).
+    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+        let a = self.a.around(region.lower[0], region.upper[0]);
+        let b = self.second().around(region.lower[1], region.upper[1]);
+        Some(ranges::bound(&a, &b))
     }
 
     fn canonical(&self, (i, j): (u32, u32)) -> (u32, u32) {

@@ -52,6 +52,14 @@ pub struct Contact {
     pub b: u32,
 }
 
+impl Contact {
+    /// The numbers of the two bodies, the lower one first.
+    #[must_use]
+    pub fn bodies(&self) -> (usize, usize) {
+        (self.body_a.min(self.body_b), self.body_a.max(self.body_b))
+    }
+}
+
 /// How complete an answer is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completeness {
@@ -86,6 +94,7 @@ pub struct Scene {
     frame: u64,
     grid: PointGrid,
     join: TreeJoin,
+    parallel: bool,
 }
 
 impl Scene {
@@ -104,6 +113,7 @@ impl Scene {
             frame: 0,
             grid: PointGrid::new(),
             join: TreeJoin::new(),
+            parallel: false,
         }
     }
 
@@ -119,6 +129,7 @@ impl Scene {
     pub fn parallel(mut self) -> Self {
         self.grid = PointGrid::parallel();
         self.join = TreeJoin::parallel();
+        self.parallel = true;
         self
     }
 

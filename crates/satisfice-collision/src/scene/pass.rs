@@ -3,12 +3,17 @@
 use super::link::{Link, Near, couple, keeps};
 use super::{Completeness, Contact, Frame, Scene, Skips};
 use crate::Error;
-use crate::broad::{Pair, Visit};
+use crate::broad::{Couple, Pair, Visit};
 
 /// Pairs verified between two questions to the budget.
 const STRIDE: usize = 64;
 /// Pairs of groups of eight boxes visited between two questions to the budget.
 const VISITS: usize = 16;
+
+/// A descent on several threads goes on in so many parts, however many threads there are.
+const PARTS: usize = 16;
+/// Visits of each part between two questions to the budget.
+const VISITS_OF_PART: usize = 256;
 
 /// A frame that is being enumerated piece by piece. First come the contacts of the last frame that hold whatever moved (see
 /// [`Scene::measure_contacts`]), then the others are verified, those of the bodies with most contacts first; then the
@@ -220,7 +225,11 @@ impl Scene {
                         couple.start(stack);
                     }
                     let mut found = Vec::new();
-                    couple.step(stack, VISITS, usize::MAX, &mut found);
+                    if self.parallel && stack.len() >= PARTS {
+                        step_in_parts(&couple, stack, &mut found);
+                    } else {
+                        couple.step(stack, VISITS, usize::MAX, &mut found);
+                    }
                     for pair in found {
                         if delivered[..*verified].binary_search(&pair).is_err() {
                             delivered.push(pair);
@@ -235,5 +244,22 @@ impl Scene {
             Phase::Done => {}
         }
         Ok(())
+    }
+}
+
+/// Goes on with a descent on the threads of the current pool. What is found, and in which order, does not depend on their number.
+fn step_in_parts(couple: &Couple<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pair>) {
+    use rayon::prelude::*;
+    let mut parts: Vec<(Vec<Visit>, Vec<Pair>)> = (0..PARTS).map(|_| Default::default()).collect();
+    let first = stack.len().saturating_sub(PARTS * VISITS);
+    for (at, visit) in stack.drain(first..).enumerate() {
+        parts[at % PARTS].0.push(visit);
+    }
+    parts.par_iter_mut().for_each(|(stack, found)| {
+        couple.step(stack, VISITS_OF_PART, usize::MAX, found);
+    });
+    for (rest, pairs) in &mut parts {
+        stack.append(rest);
+        found.append(pairs);
     }
 }

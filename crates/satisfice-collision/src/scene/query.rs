@@ -13,19 +13,30 @@ impl Scene {
     /// # Errors
     /// As [`Scene::contacts`].
     pub fn touching(&mut self) -> Result<Vec<(usize, usize)>, Error> {
-        self.settle();
-        let mut touching = Vec::new();
-        for at in 0..self.links.len() {
-            let bodies = (
-                self.links[at].a.min(self.links[at].b),
-                self.links[at].a.max(self.links[at].b),
-            );
-            if !touching.contains(&bodies) && self.any(at)?.is_some() {
-                touching.push(bodies);
-            }
-        }
+        let witnesses = self.witnesses()?;
+        let mut touching: Vec<_> = witnesses.iter().map(Contact::bodies).collect();
         touching.sort_unstable();
         Ok(touching)
+    }
+
+    /// The same with a contact that shows it for each pair of bodies: the same one for the same scene.
+    ///
+    /// # Errors
+    /// As [`Scene::contacts`].
+    pub fn witnesses(&mut self) -> Result<Vec<Contact>, Error> {
+        self.settle();
+        let mut found: Vec<Contact> = Vec::new();
+        for at in 0..self.links.len() {
+            let (a, b) = (self.links[at].a, self.links[at].b);
+            let bodies = (a.min(b), a.max(b));
+            if found.iter().all(|contact| contact.bodies() != bodies)
+                && let Some(pair) = self.any(at)?
+            {
+                found.push(self.links[at].contact(pair));
+            }
+        }
+        found.sort_unstable();
+        Ok(found)
     }
 
     /// Some contact, if there is any: the same one for the same scene.

@@ -1,0 +1,154 @@
+//! The options of `satisfice collide`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum, ValueHint};
+
+use crate::arguments::SearchArguments;
+use crate::quantity;
+
+/// Find the pairs of mesh features that are closer than a threshold.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  satisfice collide left.obj right.ply --threshold 0.01
+      All pairs of vertices, one of each mesh, with a distance below 0.01 in the unit of the meshes.
+  satisfice collide A.obj B.obj --threshold 0.01 --pairs triangle-triangle --json - --picture contacts.png
+      All pairs of triangles (distance 0 where they intersect) as JSON on stdout, and a picture of them.
+  satisfice collide cloth.ply --self --pairs edge-edge --ring-width 1 --threshold 0.005 --out pairs.csv
+      Pairs of edges of one mesh; edges that share a vertex, or that a third edge joins, are no pairs.
+  satisfice collide a.stl b.stl --threshold 0.5 --method latest-hit-qpso --time 100ms --json -
+      As many pairs as a search engine finds in 100 ms, and what share of all that is.
+  satisfice collide *.obj --threshold 0.1 --pairs triangle-triangle --touching
+      Only which bodies touch, with one pair of triangles that shows it for each pair of bodies.
+
+Meshes are .obj, .ply or .stl files; OBJ may hold points and lines alone. Features are numbered from 0: vertices and triangles as in
+the file, edges in the order of their lower, then their higher vertex. Ctrl-C keeps what was found.")]
+pub(crate) struct CollideArguments {
+    /// Mesh files: .obj, .ply or .stl.
+    #[arg(value_name = "MESH", required = true, value_hint = ValueHint::FilePath)]
+    pub(crate) meshes: Vec<PathBuf>,
+
+    /// A pair is found if its distance is below this, in the unit of the meshes.
+    #[arg(long, value_name = "D", value_parser = quantity::positive, allow_hyphen_values = true)]
+    pub(crate) threshold: f64,
+
+    /// Which features make pairs.
+    #[arg(long, value_name = "KIND", default_value = "vertex-vertex")]
+    pub(crate) pairs: PairKind,
+
+    /// Look for pairs within each mesh as well; features that share a vertex are none.
+    #[arg(long = "self")]
+    pub(crate) within: bool,
+
+    /// Within a mesh, features of which two vertices are at most K edges apart are no pairs, either
+    /// [default: 1 for vertex-vertex, otherwise 0].
+    #[arg(long, value_name = "K", value_parser = quantity::width, requires = "within", allow_hyphen_values = true)]
+    pub(crate) ring_width: Option<usize>,
+
+    #[command(flatten)]
+    pub(crate) find: FindArguments,
+
+    /// `exact` finds every pair by the cheapest method, `tree`, `grid` (vertices only) and `brute-force` by that one;
+    /// the name of an engine searches until the budget ends.
+    #[arg(long, value_name = "exact|ENGINE", default_value = "exact")]
+    pub(crate) method: String,
+
+    /// Keep an engine out of regions that bounds (boxes around the features) prove to be without pairs.
+    #[arg(long)]
+    pub(crate) prune: bool,
+
+    #[command(flatten)]
+    pub(crate) search: SearchArguments,
+
+    /// Write the report as JSON; `-` is stdout and replaces the summary.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
+    pub(crate) json: Option<PathBuf>,
+
+    /// Write the pairs as CSV: body and feature of a, body and feature of b, distance.
+    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Draw the bodies with the pairs marked where they are closest, and their triangles highlighted.
+    #[arg(long, value_name = "FILE.png", value_hint = ValueHint::FilePath)]
+    pub(crate) picture: Option<PathBuf>,
+}
+
+/// What is asked for instead of all pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Args)]
+#[group(multiple = false)]
+pub(crate) struct FindArguments {
+    /// Only which bodies touch: stop at the first pair of each two bodies.
+    #[arg(long)]
+    touching: bool,
+
+    /// Stop at the first pair of all.
+    #[arg(long)]
+    first: bool,
+
+    /// Only the K closest pairs, nearest first.
+    #[arg(long, value_name = "K", value_parser = quantity::count, allow_hyphen_values = true)]
+    closest: Option<u64>,
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Find {
+    All,
+    Touching,
+    First,
+    Closest(u64),
+}
+
+impl FindArguments {
+    pub(crate) fn find(self) -> Find {
+        match self {
+            Self { closest: Some(k), .. } => Find::Closest(k),
+            Self { touching: true, .. } => Find::Touching,
+            Self { first: true, .. } => Find::First,
+            _ => Find::All,
+        }
+    }
+}
+
+impl Find {
+    /// What a report says of it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Touching => "touching",
+            Self::First => "first",
+            Self::Closest(_) => "closest",
+        }
+    }
+}
+
+/// The kinds of pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PairKind {
+    /// Two vertices.
+    VertexVertex,
+    /// A vertex of one, an edge of the other.
+    VertexEdge,
+    /// A vertex of one, a triangle of the other.
+    VertexTriangle,
+    /// Two edges.
+    EdgeEdge,
+    /// An edge of one, a triangle of the other.
+    EdgeTriangle,
+    /// Two triangles.
+    TriangleTriangle,
+}
+
+impl From<PairKind> for satisfice_collision::distance::PairKind {
+    fn from(kind: PairKind) -> Self {
+        match kind {
+            PairKind::VertexVertex => Self::VertexVertex,
+            PairKind::VertexEdge => Self::VertexEdge,
+            PairKind::VertexTriangle => Self::VertexTriangle,
+            PairKind::EdgeEdge => Self::EdgeEdge,
+            PairKind::EdgeTriangle => Self::EdgeTriangle,
+            PairKind::TriangleTriangle => Self::TriangleTriangle,
+        }
+    }
+}
