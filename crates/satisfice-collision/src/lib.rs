@@ -1,5 +1,5 @@
 //! Mesh collision and self-collision detection: meshes, how they are read, made and moved, exact distances, broad
-//! phases, and the vertex-vertex problem of Eq. 1 for the search engines of `satisfice`.
+//! phases, scenes, and the pairs of vertices, edges and triangles as problems for the search engines of `satisfice`.
 //!
 //! Points are plain `[f64; 3]`. "Size" means the longest extent of the bounding box everywhere.
 
@@ -20,4 +20,4 @@ pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, Mesh};
 pub use order::VertexOrder;
 pub use placement::Placement;
-pub use problem::VertexPairs;
+pub use problem::{FeaturePairs, VertexPairs};

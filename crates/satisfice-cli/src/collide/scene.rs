@@ -123,7 +123,7 @@ impl World {
             let missing = if lacks(a) { a } else { b };
             let plural = plural(missing);
             bail!(
-                "there are no pairs {} to look for, since {} {plural}: choose other features by --pairs",
+                "there are no {} pairs to look for, since {} {plural}: choose other features by --pairs",
                 world.request.kind,
                 if lacks(missing) {
                     "no mesh has any"
