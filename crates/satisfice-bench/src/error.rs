@@ -34,6 +34,22 @@ pub enum Error {
     /// A chart that could not be encoded.
     #[error("cannot encode the chart: {0}")]
     Chart(String),
+    /// A suite that cannot be run as it is written.
+    #[error("{place}: {what}")]
+    Suite {
+        /// Its name or file, and the part of it.
+        place: String,
+        /// What is wrong, and what would be right.
+        what: String,
+    },
+    /// A file of a sweep that cannot be read or written.
+    #[error("{}: {what}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
     /// A picture of a scene that could not be drawn.
     #[error("cannot draw the picture: {0}")]
     Picture(String),

@@ -22,10 +22,12 @@ pub mod json;
 pub mod listing;
 pub mod picture;
 pub mod plot;
+pub mod quantity;
 pub mod record;
 pub mod resume;
 pub mod run;
 pub mod settings;
+pub mod sweep;
 pub mod verify;
 
 pub use error::Error;

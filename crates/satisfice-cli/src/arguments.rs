@@ -33,6 +33,7 @@ Examples:
   satisfice run queens --set n=6 --evaluations 1e5 --json report.json
   satisfice verify report.json                             is that report true?
   satisfice collide a.obj b.ply --threshold 0.01           which vertices are closer than 0.01?
+  satisfice bench mine.toml --seeds 0..16 --out results    engines compared on problems, over seeds
 
 Exit codes: 0 at least one hit (or nothing to complain of), 1 no hit (or a report that is false), 2 an error."
 )]
@@ -46,6 +47,7 @@ pub(crate) enum Command {
     List(ListArguments),
     Run(RunArguments),
     Collide(CollideArguments),
+    Bench(BenchArguments),
     Verify(VerifyArguments),
     Completions(CompletionsArguments),
 }
@@ -207,6 +209,48 @@ impl SearchArguments {
     pub(crate) fn limits(&self) -> (Option<Duration>, Option<u64>) {
         (self.time, self.hits)
     }
+}
+
+/// Compare engines on problems over seeds: a suite that comes with the program, or a TOML file.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  satisfice bench smoke --out results
+      The suite `smoke`, in the folder results: results.jsonl, a line a run, summary.json, and ioh, which IOHanalyzer reads.
+  satisfice bench mine.toml --seeds 0..16 --engines portfolio,random
+      Two engines and 16 seeds in the place of those of the file.
+
+A suite is such a file; a list of values is swept over:
+  seeds = \"0..8\"
+  [[part]]
+  engines = [\"random\", { name = \"latest-hit-qpso\", particles = [10, 30] }]
+  problems = [{ name = \"rastrigin\", dimension = [2, 3] }, \"queens\"]
+  evaluations = 100_000            # and / or time = \"100ms\", hits, slices, probes
+  at-evaluations = [1000, 10_000]  # and / or at-times = [\"10ms\"]: where hits are noted
+  against = \"random\"             # with whom the others are compared, seed by seed
+
+Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command goes on where
+it was interrupted: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.")]
+pub(crate) struct BenchArguments {
+    /// Name of a suite, or a TOML file; a name that is none gets a list of them.
+    #[arg(value_name = "SUITE|FILE.toml", value_hint = ValueHint::FilePath)]
+    pub(crate) suite: String,
+
+    /// Only these engines, separated by commas.
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
+    pub(crate) engines: Vec<String>,
+
+    /// Seeds A to B - 1 in the place of those of the suite.
+    #[arg(long, value_name = "A..B", value_parser = satisfice_bench::sweep::seeds, allow_hyphen_values = true)]
+    pub(crate) seeds: Option<std::ops::Range<u64>>,
+
+    /// Folder for the results [default: bench-SUITE].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: Option<PathBuf>,
+
+    /// How many runs limited by evaluations go on at a time; 0 for as many as there are cores.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = quantity::threads, allow_hyphen_values = true)]
+    pub(crate) jobs: usize,
 }
 
 /// Evaluate every solution of a report anew and check its counts; says what does not fit.

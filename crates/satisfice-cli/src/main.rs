@@ -1,6 +1,7 @@
 //! The command `satisfice`.
 
 mod arguments;
+mod bench;
 mod checkpoint;
 mod collide;
 mod completions;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Command::List(arguments) => list::list(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Collide(arguments) => collide::collide(&arguments),
+        Command::Bench(arguments) => bench::bench(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Completions(arguments) => completions::completions(&arguments),
     };

@@ -7,6 +7,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use satisfice_bench::Progress;
 
 const STEPS: u64 = 1000;
+/// How often a sweep is told of where there is no terminal.
+const TELL_EVERY: Duration = Duration::from_secs(5);
 
 /// A bar on a terminal, nothing elsewhere.
 pub(crate) struct Bar(Option<ProgressBar>);
@@ -39,6 +41,64 @@ impl Bar {
                 "{} hits, {:.1e} evaluations, {:.1} s",
                 progress.now.hits, progress.now.evaluations as f64, progress.now.elapsed_seconds
             ));
+        }
+    }
+}
+
+/// The runs of a sweep: a bar on a terminal, a line every few seconds elsewhere.
+pub(crate) struct Runs {
+    bar: Option<ProgressBar>,
+    all: usize,
+    done: usize,
+    told: Instant,
+}
+
+impl Runs {
+    /// So many runs, of which some are done.
+    pub(crate) fn new(all: usize, done: usize) -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::with_draw_target(Some(all as u64), ProgressDrawTarget::stderr());
+            if let Ok(style) =
+                ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {eta} to go  {msg}")
+            {
+                bar.set_style(style);
+            }
+            bar.set_position(done as u64);
+            bar.reset_eta();
+            bar
+        });
+        Self {
+            bar,
+            all,
+            done,
+            told: now(),
+        }
+    }
+
+    /// Says what goes on.
+    pub(crate) fn say(&self, what: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(what.to_owned());
+        }
+    }
+
+    /// Another run has ended.
+    pub(crate) fn finished(&mut self, what: &str) {
+        self.done += 1;
+        if let Some(bar) = &self.bar {
+            bar.inc(1);
+            bar.set_message(what.to_owned());
+        } else if self.told.elapsed() > TELL_EVERY {
+            self.told = now();
+            eprintln!("{} of {} runs; {what}", self.done, self.all);
+        }
+    }
+}
+
+impl Drop for Runs {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
         }
     }
 }
@@ -94,4 +154,12 @@ impl Drop for Counting {
             bar.finish_and_clear();
         }
     }
+}
+
+#[expect(
+    clippy::disallowed_methods,
+    reason = "when to say something, nothing of a result"
+)]
+fn now() -> Instant {
+    Instant::now()
 }

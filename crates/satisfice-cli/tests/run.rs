@@ -22,6 +22,7 @@ fn help_is_as_it_was_written() {
         ("help_list", "list --help"),
         ("help_run", "run --help"),
         ("help_collide", "collide --help"),
+        ("help_bench", "bench --help"),
         ("help_verify", "verify --help"),
         ("help_completions", "completions --help"),
     ] {

@@ -2,7 +2,7 @@
 
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
-use kuva::plot::{LinePlot, LineStyle};
+use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
 use kuva::render::annotations::ReferenceLine;
 use kuva::render::figure::Figure;
 use kuva::render::layout::Layout;
@@ -115,11 +115,25 @@ fn panel(panel: &Panel) -> (Vec<Plot>, Layout) {
             least = (least.0.min(x), least.1.min(low));
             greatest = (greatest.0.max(x), greatest.1.max(high));
         }
+        if curve.marks {
+            let dots = ScatterPlot::new()
+                .with_data(shown.iter().map(|&i| curve.points[i]))
+                .with_color("#000000")
+                .with_size(3.5);
+            plots.push(Plot::Scatter(match &curve.label {
+                Some(label) => dots.with_legend(label.clone()),
+                None => dots,
+            }));
+            continue;
+        }
         let mut line = LinePlot::new()
             .with_data(shown.iter().map(|&i| curve.points[i]))
             .with_color(COLOURS[index % COLOURS.len()])
             .with_line_style(STYLES[index % STYLES.len()].clone())
             .with_stroke_width(2.0);
+        if curve.steps {
+            line = line.with_step();
+        }
         if banded {
             line = line.with_band(
                 shown.iter().map(|&i| curve.band[i].0),

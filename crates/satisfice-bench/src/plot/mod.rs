@@ -45,6 +45,10 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// For each point the least and the greatest y of a band around it; empty where there is none.
     pub band: Vec<(f64, f64)>,
+    /// Whether its points are marked by black dots instead of joined.
+    pub marks: bool,
+    /// Whether it goes up in steps.
+    pub steps: bool,
 }
 
 /// File format of a chart.

@@ -1,0 +1,202 @@
+//! What is asked of one run: hits at fixed evaluations and times, the way to a recall, the area under the curve, waste.
+
+use serde::{Deserialize, Serialize};
+
+use crate::record::{Record, Solution, recall};
+
+/// Evaluations, seconds, |C|.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Moment(pub u64, pub f64, pub u64);
+
+/// The recalls whose cost is told.
+pub const RECALLS: [f64; 3] = [0.5, 0.9, 0.99];
+
+/// At most so many hits enter a curve by themselves.
+const CURVE_HITS: usize = 200;
+
+/// Of one run. Where nothing is known of a reference count, what needs one is `None`; where the run shared the machine with
+/// others, so is what needs a clock.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Metrics {
+    /// When the first hit came.
+    pub first_hit: Option<Cost>,
+    /// What it cost to reach each of [`RECALLS`], `None` where it was not reached.
+    pub to_recall: Vec<Option<Cost>>,
+    /// |C| at the key's `at_evaluations`.
+    pub at_evaluations: Vec<u64>,
+    /// |C| at the key's `at_seconds`.
+    pub at_seconds: Vec<u64>,
+    /// The paper's r(t) = |C(t)| / |C(end)| at the key's `at_seconds`; rewards whoever stops finding.
+    pub r: Vec<f64>,
+    /// Mean recall over the evaluations of the budget: the area under the curve, from 0 to 1.
+    pub area_evaluations: Option<f64>,
+    /// Mean recall over the time of the budget, from 0 to 1.
+    pub area_seconds: Option<f64>,
+    /// Share of the evaluations whose solution was in C already.
+    pub duplicates: f64,
+    /// Distinct hits a call of the fitness.
+    pub precision: f64,
+}
+
+/// What something cost.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Evaluations.
+    pub evaluations: u64,
+    /// Seconds; `None` where the run shared the machine.
+    pub seconds: Option<f64>,
+}
+
+impl Metrics {
+    /// From a record whose reference count is entered. Cost: O(hits).
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "shares")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a rank among the hits"
+    )]
+    pub fn of(record: &Record, at_evaluations: &[u64], at_seconds: &[f64], alone: bool) -> Self {
+        let found = &record.solutions;
+        let cost = |hit: &Solution| Cost {
+            evaluations: hit.evaluation,
+            seconds: alone.then_some(hit.seconds),
+        };
+        let rank = |share: f64| {
+            record
+                .reference_hits
+                .map(|all| (share * all as f64).ceil().max(1.0) as usize)
+        };
+        let by_second = |seconds: f64| found.partition_point(|hit| hit.seconds <= seconds) as u64;
+        let at_seconds: Vec<u64> = if alone {
+            at_seconds.iter().map(|&seconds| by_second(seconds)).collect()
+        } else {
+            Vec::new()
+        };
+        let evaluations = record
+            .counts
+            .evaluations
+            .max(record.budget.evaluations.unwrap_or(0)) as f64;
+        let seconds = record
+            .budget
+            .time_seconds
+            .unwrap_or(record.elapsed_seconds)
+            .max(record.elapsed_seconds);
+        let area = |cost: &dyn Fn(&Solution) -> f64, whole: f64| {
+            let all = record.reference_hits.filter(|&all| all > 0 && whole > 0.0)? as f64;
+            Some(
+                found
+                    .iter()
+                    .map(|hit| (1.0 - cost(hit) / whole).max(0.0))
+                    .sum::<f64>()
+                    / all,
+            )
+        };
+        Self {
+            first_hit: found.first().map(cost),
+            to_recall: RECALLS
+                .iter()
+                .map(|&share| rank(share).and_then(|rank| found.get(rank - 1)).map(cost))
+                .collect(),
+            at_evaluations: at_evaluations
+                .iter()
+                .map(|&evaluations| found.partition_point(|hit| hit.evaluation <= evaluations) as u64)
+                .collect(),
+            r: at_seconds
+                .iter()
+                .map(|&hits| recall(hits, record.hits).unwrap_or(0.0))
+                .collect(),
+            at_seconds,
+            area_evaluations: area(&|hit| hit.evaluation as f64, evaluations),
+            area_seconds: alone.then(|| area(&|hit| hit.seconds, seconds)).flatten(),
+            duplicates: record.counts.duplicates as f64 / record.counts.evaluations.max(1) as f64,
+            precision: record.hits as f64 / record.counts.fitness_calls.max(1) as f64,
+        }
+    }
+}
+
+/// The points of the trace, and hits at equal distances in number.
+pub(super) fn curve(record: &Record) -> Vec<Moment> {
+    let mut curve: Vec<Moment> = record
+        .trace
+        .iter()
+        .map(|point| Moment(point.evaluations, point.elapsed_seconds, point.hits))
+        .collect();
+    let found = &record.solutions;
+    let shown = found.len().min(CURVE_HITS);
+    curve.extend((1..=shown).map(|k| {
+        let rank = k * found.len() / shown;
+        Moment(found[rank - 1].evaluation, found[rank - 1].seconds, rank as u64)
+    }));
+    curve.push(Moment(
+        record.counts.evaluations,
+        record.elapsed_seconds,
+        record.hits,
+    ));
+    // Several hits may share an evaluation: the last of them counts. The order in time is that in evaluations.
+    curve.sort_by_key(|moment| (moment.0, moment.2));
+    let (mut seconds, mut hits) = (0.0_f64, 0);
+    for moment in &mut curve {
+        seconds = seconds.max(moment.1);
+        hits = hits.max(moment.2);
+        (moment.1, moment.2) = (seconds, hits);
+    }
+    curve.reverse();
+    curve.dedup_by_key(|moment| moment.0);
+    curve.reverse();
+    curve
+}
+
+#[cfg(test)]
+mod tests {
+    use satisfice::Budget;
+
+    use super::*;
+    use crate::{Request, catalogue};
+
+    /// Against the definitions, counted hit by hit in another way.
+    #[test]
+    fn metrics_are_what_they_are_called() {
+        let problem = catalogue::find("islands").unwrap().build([]).unwrap();
+        let mut record = problem
+            .run(
+                &Request::new("random", Budget::evaluations(20_000)).seed(3),
+                &mut |_| {},
+            )
+            .unwrap();
+        let hits = record.hits;
+        assert!(hits > 20, "{hits}");
+        record.set_reference(Some(2 * hits));
+        let metrics = Metrics::of(&record, &[100, 20_000], &[1e9], true);
+        let early = record
+            .solutions
+            .iter()
+            .filter(|hit| hit.evaluation <= 100)
+            .count() as u64;
+        assert_eq!(metrics.at_evaluations, [early, hits]);
+        assert_eq!(
+            (metrics.at_seconds.as_slice(), metrics.r.as_slice()),
+            ([hits].as_slice(), [1.0].as_slice())
+        );
+        let last = record.solutions.last().unwrap();
+        assert_eq!(metrics.to_recall[0].unwrap().evaluations, last.evaluation);
+        assert_eq!(metrics.to_recall[1], None);
+        let mean = (1..=20_000_u64)
+            .map(|e| record.solutions.iter().filter(|hit| hit.evaluation <= e).count() as f64)
+            .sum::<f64>()
+            / (20_000.0 * 2.0 * hits as f64);
+        approx::assert_abs_diff_eq!(metrics.area_evaluations.unwrap(), mean, epsilon = 1e-4);
+        assert!(Metrics::of(&record, &[], &[1e9], false).at_seconds.is_empty());
+
+        let curve = curve(&record);
+        for Moment(evaluations, _, count) in &curve {
+            let exact = record
+                .solutions
+                .iter()
+                .filter(|hit| hit.evaluation <= *evaluations)
+                .count() as u64;
+            assert_eq!(*count, exact, "at {evaluations}");
+        }
+        assert!(curve.is_sorted_by(|a, b| a.0 < b.0 && a.1 <= b.1 && a.2 <= b.2));
+    }
+}

@@ -1,0 +1,46 @@
+//! Sweeps: engines x problems x parameters x seeds, from a TOML file or a named suite, to a table.
+//!
+//! ```
+//! use satisfice::Cancel;
+//! use satisfice_bench::sweep::{Plan, Suite, execute, groups, table};
+//! let suite = Suite::parse("mine", r#"
+//!     seeds = "0..4"
+//!     [[part]]
+//!     engines = ["random", "descent-flood"]
+//!     problems = [{ name = "rastrigin", dimension = 2 }]
+//!     evaluations = 5000
+//! "#)?;
+//! let plan = Plan::new(suite)?; // here names and values are checked, all of them
+//! # let folder = tempfile::tempdir()?;
+//! # let folder = folder.path();
+//! let done = execute(&plan, folder, 2, &Cancel::new(), &mut |_| {})?; // a line in results.jsonl as each run ends
+//! println!("{}", table(&groups(&plan, &done.rows)));
+//! # assert_eq!(done.rows.len(), 8);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Timings are not disturbed**: runs that a clock limits come last and one at a time, while this program does nothing else;
+//! runs limited by evaluations share the cores, and their times are not reported. Reference counts are made before any run.
+
+mod execute;
+pub mod figures;
+mod files;
+pub mod ioh;
+mod machine;
+pub mod metrics;
+mod plan;
+mod publish;
+mod report;
+mod results;
+mod row;
+pub mod statistics;
+mod suite;
+mod summary;
+
+pub use execute::{Event, Finished, execute};
+pub use plan::{Plan, Planned};
+pub use publish::publish;
+pub use results::{Known, Results};
+pub use row::{Key, Row};
+pub use suite::{Choice, Part, Suite, names, seeds};
+pub use summary::{Group, Line, Reached, cells, groups, heading, rows_of, table, timed};

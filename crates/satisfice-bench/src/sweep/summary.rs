@@ -1,0 +1,365 @@
+//! What the runs of a sweep amount to: a table for each problem of each part.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::metrics::{Cost, RECALLS};
+use super::plan::Plan;
+use super::row::Row;
+use super::statistics::{Estimate, Paired};
+use crate::quantity::shown;
+
+/// One problem of one part under its budget.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// The part of the suite.
+    pub part: String,
+    /// The problem with the parameters that the suite names.
+    pub problem: String,
+    /// The budget in words.
+    pub budget: String,
+    /// Whether a clock limits it.
+    pub timed: bool,
+    /// How many hits there are, where that is known.
+    pub reference_hits: Option<u64>,
+    /// Evaluations at which hits are noted.
+    pub at_evaluations: Vec<u64>,
+    /// Times in seconds at which hits are noted.
+    pub at_seconds: Vec<f64>,
+    /// Label of the engine that the others are compared with.
+    pub against: String,
+    /// A line an engine, in the order of the suite.
+    pub lines: Vec<Line>,
+}
+
+/// One engine of a group, over its seeds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// The engine with the parameters that the suite names.
+    pub engine: String,
+    /// Runs that have ended.
+    pub runs: usize,
+    /// Distinct hits at the end.
+    pub hits: Estimate,
+    /// Recall at the end.
+    pub recall: Option<Estimate>,
+    /// Evaluations.
+    pub evaluations: Estimate,
+    /// Seconds, where nothing ran beside it.
+    pub seconds: Option<Estimate>,
+    /// What the first hit cost.
+    pub first_hit: Reached,
+    /// What each of [`RECALLS`] cost.
+    pub to_recall: Vec<Reached>,
+    /// |C| at the group's evaluations.
+    pub at_evaluations: Vec<Estimate>,
+    /// |C| at the group's times.
+    pub at_seconds: Vec<Estimate>,
+    /// The paper's r(t) at the group's times.
+    pub r: Vec<Estimate>,
+    /// Mean recall over the budget's evaluations.
+    pub area_evaluations: Option<Estimate>,
+    /// Mean recall over the budget's time.
+    pub area_seconds: Option<Estimate>,
+    /// Share of the evaluations that were repetitions.
+    pub duplicates: Estimate,
+    /// Distinct hits a fitness call.
+    pub precision: Estimate,
+    /// Hits seed by seed against the engine the group is compared with; `None` for itself.
+    pub paired: Option<Paired>,
+}
+
+/// What something cost, over the runs; infinite in runs that never got there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reached {
+    /// Runs that got there.
+    pub runs: usize,
+    /// Evaluations.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub evaluations: Option<Estimate>,
+    /// Seconds.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub seconds: Option<Estimate>,
+}
+
+/// The groups of a plan's rows, in its order; a group without a finished run is left out.
+#[must_use]
+pub fn groups(plan: &Plan, rows: &[Row]) -> Vec<Group> {
+    let mut groups = Vec::new();
+    for part in &plan.suite.parts {
+        let of_part: Vec<&Row> = rows.iter().filter(|row| row.key.part == part.name).collect();
+        let planned = || plan.runs.iter().filter(|run| run.key.part == part.name);
+        for problem in unique(planned().map(|run| run.problem_label.as_str())) {
+            let of_group: Vec<&Row> = of_part
+                .iter()
+                .copied()
+                .filter(|row| row.problem_label == problem)
+                .collect();
+            let engines = unique(planned().map(|run| run.engine_label.as_str()));
+            groups.extend(group(&of_group, &engines, part.against.as_deref()));
+        }
+    }
+    groups
+}
+
+/// Rows of a group, by engine.
+#[must_use]
+pub fn rows_of<'a>(rows: &'a [Row], group: &Group, engine: &str) -> Vec<&'a Row> {
+    rows.iter()
+        .filter(|row| {
+            row.key.part == group.part && row.problem_label == group.problem && row.engine_label == engine
+        })
+        .collect()
+}
+
+fn unique<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut seen = Vec::new();
+    names.for_each(|name| {
+        if !seen.contains(&name) {
+            seen.push(name);
+        }
+    });
+    seen
+}
+
+fn group(rows: &[&Row], engines: &[&str], against: Option<&str>) -> Option<Group> {
+    let first = rows.first()?;
+    let of = |engine: &str| -> Vec<&Row> {
+        rows.iter()
+            .copied()
+            .filter(|row| row.engine_label == engine)
+            .collect()
+    };
+    let against = engines
+        .iter()
+        .find(|&&label| against.is_some_and(|name| label == name || label.split(' ').next() == Some(name)))
+        .or(engines.first())?;
+    let base = of(against);
+    let mut lines: Vec<Line> = engines
+        .iter()
+        .filter_map(|engine| line(&of(engine), (engine != against).then_some(base.as_slice())))
+        .collect();
+    Paired::correct(
+        &mut lines
+            .iter_mut()
+            .filter_map(|line| line.paired.as_mut())
+            .collect::<Vec<_>>(),
+    );
+    let key = &first.key;
+    Some(Group {
+        part: key.part.clone(),
+        problem: first.problem_label.clone(),
+        budget: budget(first),
+        timed: key.budget.time_seconds.is_some(),
+        reference_hits: first.reference_hits,
+        at_evaluations: key.at_evaluations.clone(),
+        at_seconds: key.at_seconds.clone(),
+        against: (*against).to_owned(),
+        lines,
+    })
+}
+
+fn budget(row: &Row) -> String {
+    let limits = &row.key.budget;
+    let mut said: Vec<String> = Vec::new();
+    said.extend(limits.time_seconds.map(shown::seconds));
+    said.extend(
+        limits
+            .evaluations
+            .map(|count| format!("{} evaluations", shown::count(count))),
+    );
+    said.extend(limits.hits.map(|hits| format!("{hits} hits")));
+    let slices = if limits.slices > 1 {
+        format!(", {} slices", limits.slices)
+    } else {
+        String::new()
+    };
+    said.join(" or ") + &slices
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts below 2^53")]
+fn line(rows: &[&Row], base: Option<&[&Row]>) -> Option<Line> {
+    let engine = rows.first()?.engine_label.clone();
+    let over = |value: &dyn Fn(&Row) -> Option<f64>| -> Option<Estimate> {
+        let all: Option<Vec<f64>> = rows.iter().map(|row| value(row)).collect();
+        Estimate::of(&all?)
+    };
+    let reached = |cost: &dyn Fn(&Row) -> Option<Cost>| {
+        let costs: Vec<Option<Cost>> = rows.iter().map(|row| cost(row)).collect();
+        let by = |value: &dyn Fn(&Cost) -> Option<f64>| {
+            let all: Option<Vec<f64>> = costs
+                .iter()
+                .map(|cost| cost.as_ref().map_or(Some(f64::INFINITY), value))
+                .collect();
+            // JSON knows no infinity: more than half of the runs never got there.
+            Estimate::of(&all?).filter(|estimate| estimate.median.is_finite())
+        };
+        Reached {
+            runs: costs.iter().flatten().count(),
+            evaluations: by(&|cost| Some(cost.evaluations as f64)),
+            seconds: by(&|cost| cost.seconds),
+        }
+    };
+    let list = |values: &dyn Fn(&Row) -> Vec<f64>| -> Vec<Estimate> {
+        let all: Vec<Vec<f64>> = rows.iter().map(|row| values(row)).collect();
+        let columns = all.iter().map(Vec::len).min().unwrap_or(0);
+        (0..columns)
+            .filter_map(|column| Estimate::of(&all.iter().map(|row| row[column]).collect::<Vec<_>>()))
+            .collect()
+    };
+    let counts = |all: &[u64]| all.iter().map(|&count| count as f64).collect();
+    Some(Line {
+        engine,
+        runs: rows.len(),
+        hits: over(&|row| Some(row.hits as f64))?,
+        recall: over(&|row| row.recall),
+        evaluations: over(&|row| Some(row.counts.evaluations as f64))?,
+        seconds: over(&|row| row.alone.then_some(row.elapsed_seconds)),
+        first_hit: reached(&|row| row.metrics.first_hit),
+        to_recall: (0..RECALLS.len())
+            .map(|at| reached(&|row| row.metrics.to_recall.get(at).copied().flatten()))
+            .collect(),
+        at_evaluations: list(&|row| counts(&row.metrics.at_evaluations)),
+        at_seconds: list(&|row| counts(&row.metrics.at_seconds)),
+        r: list(&|row| row.metrics.r.clone()),
+        area_evaluations: over(&|row| row.metrics.area_evaluations),
+        area_seconds: over(&|row| row.metrics.area_seconds),
+        duplicates: over(&|row| Some(row.metrics.duplicates))?,
+        precision: over(&|row| Some(row.metrics.precision))?,
+        paired: base.map(|base| {
+            let pairs: Vec<(f64, f64)> = rows
+                .iter()
+                .filter_map(|row| {
+                    let other = base.iter().find(|other| other.key.seed == row.key.seed)?;
+                    Some((row.hits as f64, other.hits as f64))
+                })
+                .collect();
+            Paired::of(&pairs)
+        }),
+    })
+}
+
+/// The groups as text for a terminal.
+#[must_use]
+pub fn table(groups: &[Group]) -> String {
+    let mut text = String::new();
+    for group in groups {
+        let all = group
+            .reference_hits
+            .map_or_else(|| "not known".to_owned(), |all| all.to_string());
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{}: {}, {}; hits that there are: {all}",
+            group.part, group.problem, group.budget
+        );
+        let mut rows = vec![heading(group)];
+        rows.extend(group.lines.iter().map(|line| cells(group, line)));
+        let widths: Vec<usize> = (0..rows[0].len())
+            .map(|column| {
+                rows.iter()
+                    .map(|row| row[column].chars().count())
+                    .max()
+                    .unwrap_or(0)
+            })
+            .collect();
+        for row in rows {
+            let mut line = format!("  {:<w$}", row[0], w = widths[0]);
+            for (cell, w) in row.iter().zip(&widths).skip(1) {
+                let _ = write!(line, "  {cell:>w$}");
+            }
+            let _ = writeln!(text, "{}", line.trim_end());
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Names of the columns of a group.
+#[must_use]
+pub fn heading(group: &Group) -> Vec<String> {
+    let mut cells = vec!["engine".to_owned(), "runs".to_owned()];
+    cells.extend(
+        group
+            .at_evaluations
+            .iter()
+            .map(|&count| format!("at {}", shown::count(count))),
+    );
+    if group.timed {
+        cells.extend(
+            group
+                .at_seconds
+                .iter()
+                .map(|&time| format!("at {}", shown::seconds(time))),
+        );
+    }
+    cells.extend(["hits (95 %)", "recall"].map(str::to_owned));
+    if group.reference_hits.is_some() {
+        let unit = if group.timed { "time" } else { "evaluations" };
+        cells.extend(RECALLS.map(|share| format!("{unit} to {} %", 100.0 * share)));
+    }
+    cells.push(if group.timed { "evaluations" } else { "repeated" }.to_owned());
+    cells.push(format!("against {}", group.against));
+    cells
+}
+
+/// What stands in the columns of [`heading`] for one engine.
+#[must_use]
+pub fn cells(group: &Group, line: &Line) -> Vec<String> {
+    let mut cells = vec![line.engine.clone(), line.runs.to_string()];
+    cells.extend(line.at_evaluations.iter().map(|hits| shown::number(hits.median)));
+    if group.timed {
+        let missing = group.at_seconds.len().saturating_sub(line.at_seconds.len());
+        cells.extend(line.at_seconds.iter().map(|hits| shown::number(hits.median)));
+        cells.extend(std::iter::repeat_n("-".to_owned(), missing));
+    }
+    cells.push(format!(
+        "{} ({} to {})",
+        shown::number(line.hits.median),
+        shown::number(line.hits.low),
+        shown::number(line.hits.high)
+    ));
+    cells.push(line.recall.map_or_else(
+        || "-".to_owned(),
+        |recall| format!("{:.1} %", 100.0 * recall.median),
+    ));
+    if group.reference_hits.is_some() {
+        cells.extend(line.to_recall.iter().map(|reached| {
+            let cost = if group.timed {
+                reached.seconds.map(|seconds| shown::seconds(seconds.median))
+            } else {
+                reached
+                    .evaluations
+                    .map(|evaluations| shown::number(evaluations.median))
+            };
+            match cost {
+                Some(cost) if reached.runs == line.runs => cost,
+                Some(cost) => format!("{cost} ({} of {})", reached.runs, line.runs),
+                None => format!("never ({} of {})", reached.runs, line.runs),
+            }
+        }));
+    }
+    cells.push(if group.timed {
+        shown::number(line.evaluations.median)
+    } else {
+        format!("{:.1} %", 100.0 * line.duplicates.median)
+    });
+    cells.push(line.paired.as_ref().map_or_else(
+        || "-".to_owned(),
+        |paired| format!("{}:{}, p = {:.2}", paired.wins, paired.losses, paired.p_holm),
+    ));
+    cells
+}
+
+/// For how long a plan's timed runs last at most, together.
+#[must_use]
+pub fn timed(plan: &Plan) -> Duration {
+    plan.runs
+        .iter()
+        .filter_map(|run| {
+            Some(run.request.budget.time? * u32::try_from(run.request.slices).unwrap_or(u32::MAX))
+        })
+        .sum()
+}

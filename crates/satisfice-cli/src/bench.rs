@@ -1,0 +1,90 @@
+//! `satisfice bench`: a sweep, from its suite to its report.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use satisfice_bench::quantity::shown;
+use satisfice_bench::sweep::{self, Event, Plan, Suite};
+
+use crate::arguments::BenchArguments;
+use crate::progress::Runs;
+use crate::{interrupt, output};
+
+pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
+    let mut suite = Suite::open(&arguments.suite)?;
+    if let Some(seeds) = &arguments.seeds {
+        suite = suite.with_seeds(seeds);
+    }
+    if !arguments.engines.is_empty() {
+        suite = suite.with_engines(&arguments.engines);
+    }
+    let folder = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("bench-{}", suite.name)));
+    let plan = Plan::new(suite)?;
+    let cancel = interrupt::listen()?;
+
+    let mut runs = None;
+    let mut watch = |event: &Event<'_>| match event {
+        Event::Begun { runs: all, done } => {
+            let timed = sweep::timed(&plan).as_secs_f64();
+            let clock = if timed > 0.0 {
+                format!(", {} of them by the clock", shown::seconds(timed))
+            } else {
+                String::new()
+            };
+            eprintln!(
+                "{all} runs{clock}; {done} of them are in {} already",
+                folder.display()
+            );
+            runs = Some(Runs::new(*all, *done));
+        }
+        Event::Counting(problem) => runs
+            .iter()
+            .for_each(|runs| runs.say(&format!("counting all hits of {problem}"))),
+        Event::Finished(row) => {
+            let (engine, problem, seed) = (&row.engine_label, &row.problem_label, row.key.seed);
+            let what = format!("{} hits by {engine} on {problem}, seed {seed}", row.hits);
+            runs.iter_mut().for_each(|runs| runs.finished(&what));
+        }
+    };
+    let finished = sweep::execute(&plan, &folder, arguments.jobs, &cancel, &mut watch)?;
+    drop(runs);
+    let groups = sweep::publish(&folder, &plan, &finished.rows, &command())?;
+    output::print(sweep::table(&groups).as_bytes())?;
+    if finished.foreign > 0 {
+        eprintln!(
+            "{} runs in the folder are not of this suite and seeds; they are left out of its tables",
+            finished.foreign
+        );
+    }
+    if finished.rows.len() < finished.runs {
+        let missing = finished.runs - finished.rows.len();
+        eprintln!(
+            "interrupted: {missing} of {} runs are missing; the same command goes on from here",
+            finished.runs
+        );
+    }
+    eprintln!("look at {}", folder.join("report.html").display());
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The command line, to be given again.
+fn command() -> String {
+    let plain = |text: &str| {
+        text.chars()
+            .all(|c| c.is_ascii_alphanumeric() || "-_./,=".contains(c))
+    };
+    let quoted = |text: String| {
+        if plain(&text) {
+            text
+        } else {
+            format!("'{}'", text.replace('\'', "'\\''"))
+        }
+    };
+    std::iter::once("satisfice".to_owned())
+        .chain(std::env::args().skip(1).map(quoted))
+        .collect::<Vec<_>>()
+        .join(" ")
+}
