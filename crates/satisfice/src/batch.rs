@@ -3,12 +3,20 @@
 use crate::scalar::Real;
 
 /// Positions proposed by an engine: a flat list, `dimension` numbers a point.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Batch<S> {
-    positions: Vec<S>,
+    /// The coordinates of `points` points; what stands behind them is memory to be used again, because to shorten and
+    /// lengthen a list costs as much as a cheap fitness.
+    memory: Vec<S>,
     dimension: usize,
-    /// Kept beside the coordinates: a division would cost as much as a cheap fitness.
+    /// Kept beside the coordinates: so would a division.
     points: usize,
+}
+
+impl<S: Real> PartialEq for Batch<S> {
+    fn eq(&self, other: &Self) -> bool {
+        self.dimension == other.dimension && self.positions() == other.positions()
+    }
 }
 
 impl<S: Real> Batch<S> {
@@ -16,7 +24,7 @@ impl<S: Real> Batch<S> {
     #[must_use]
     pub fn new(dimension: usize) -> Self {
         Self {
-            positions: Vec::new(),
+            memory: Vec::new(),
             dimension: dimension.max(1),
             points: 0,
         }
@@ -27,7 +35,7 @@ impl<S: Real> Batch<S> {
         let dimension = dimension.max(1);
         let points = positions.len() / dimension;
         positions.len().is_multiple_of(dimension).then_some(Self {
-            positions,
+            memory: positions,
             dimension,
             points,
         })
@@ -35,7 +43,7 @@ impl<S: Real> Batch<S> {
 
     /// The coordinates, point after point.
     pub(crate) fn positions(&self) -> &[S] {
-        &self.positions
+        &self.memory[..self.points * self.dimension]
     }
 
     /// Number of points.
@@ -62,38 +70,47 @@ impl<S: Real> Batch<S> {
     /// Removes all points, keeps the memory.
     #[inline]
     pub fn clear(&mut self) {
-        self.positions.clear();
         self.points = 0;
     }
 
     /// Keeps the first `points` points.
     #[inline]
     pub fn truncate(&mut self, points: usize) {
-        if points < self.points {
-            self.positions.truncate(points * self.dimension);
-            self.points = points;
-        }
+        self.points = self.points.min(points);
     }
 
     /// Adds a point. One of a wrong length is cut, or filled with NaN, which the space turns into its middle.
     #[inline]
     pub fn push(&mut self, position: &[S]) {
-        self.positions
-            .extend_from_slice(&position[..position.len().min(self.dimension)]);
-        if position.len() < self.dimension {
-            self.positions
-                .resize(self.positions.len() + self.dimension - position.len(), S::nan());
-        }
-        self.points += 1;
+        let row = self.push_row();
+        let given = position.len().min(row.len());
+        row[..given].copy_from_slice(&position[..given]);
+        row[given..].fill(S::nan());
     }
 
     /// Adds a point and lets `fill` write its coordinates, which are 0 before.
     #[inline]
     pub fn push_with(&mut self, fill: impl FnOnce(&mut [S])) {
-        let start = self.positions.len();
-        self.positions.resize(start + self.dimension, S::zero());
+        let row = self.push_row();
+        row.fill(S::zero());
+        fill(row);
+    }
+
+    /// Adds a point with coordinates that are still to be written.
+    #[inline]
+    pub(crate) fn push_row(&mut self) -> &mut [S] {
+        let start = self.points * self.dimension;
+        let end = start + self.dimension;
+        if self.memory.len() < end {
+            self.grow(end);
+        }
         self.points += 1;
-        fill(&mut self.positions[start..]);
+        &mut self.memory[start..end]
+    }
+
+    #[cold]
+    fn grow(&mut self, length: usize) {
+        self.memory.resize(length, S::zero());
     }
 
     /// Point `index`.
@@ -103,7 +120,8 @@ impl<S: Real> Batch<S> {
     #[inline]
     #[must_use]
     pub fn point(&self, index: usize) -> &[S] {
-        &self.positions[index * self.dimension..(index + 1) * self.dimension]
+        assert!(index < self.points, "there is no such point");
+        &self.memory[index * self.dimension..(index + 1) * self.dimension]
     }
 
     /// Point `index`, to be changed.
@@ -112,7 +130,8 @@ impl<S: Real> Batch<S> {
     /// If there is no such point.
     #[inline]
     pub fn point_mut(&mut self, index: usize) -> &mut [S] {
-        &mut self.positions[index * self.dimension..(index + 1) * self.dimension]
+        assert!(index < self.points, "there is no such point");
+        &mut self.memory[index * self.dimension..(index + 1) * self.dimension]
     }
 
     /// All points, in order.

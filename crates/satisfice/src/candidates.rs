@@ -5,6 +5,7 @@ use crate::batch::{Batch, Outcome};
 use crate::error::Error;
 use crate::problem::SatisficingProblem;
 use crate::scalar::Real;
+use crate::space::Space;
 
 /// The candidates of one batch between proposal and outcome. Memory is kept from batch to batch.
 #[derive(Debug)]
@@ -19,8 +20,7 @@ pub(crate) struct Candidates<S, T> {
     /// ...and which of them, where threads have left gaps.
     done: Vec<bool>,
     has_gaps: bool,
-    /// One for each point of the batch. Before they are settled: `Deleted` for a point that is not live, `Known` for a live
-    /// one that is in C, else `NotEvaluated`.
+    /// One for each point of the batch. Before they are settled: `Deleted` for a point that is not live, else `NotEvaluated`.
     pub(crate) outcomes: Vec<Outcome<S>>,
     /// Whether they are uniform probes, whose hits the engine does not see.
     pub(crate) probing: bool,
@@ -57,18 +57,9 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         limit: usize,
         deletes: bool,
     ) {
-        let space = problem.space();
         self.reset(deletes);
-        self.values.resize(space.dimension(), S::zero());
         for i in 0..batch.len().min(limit) {
-            let point = batch.point_mut(i);
-            let values: &[S] = if space.has_integers() {
-                space.keep_inside_with_values(point, &mut self.values);
-                &self.values
-            } else {
-                space.keep_inside(point);
-                point
-            };
+            let values = inside(problem.space(), batch.point_mut(i), &mut self.values);
             match self.solutions.get_mut(self.live) {
                 Some(slot) => problem.decode_into(values, slot),
                 None => self.solutions.push(problem.decode(values)),
@@ -76,6 +67,27 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
             self.file(archive);
         }
         self.make_room(batch.len());
+    }
+
+    /// Brings one point inside, decodes it and lets `judge` see the solution.
+    #[inline]
+    pub(crate) fn with_one<P: SatisficingProblem<Scalar = S, Solution = T>, R>(
+        &mut self,
+        problem: &P,
+        point: &mut [S],
+        judge: impl FnOnce(&T) -> R,
+    ) -> R {
+        let values = inside(problem.space(), point, &mut self.values);
+        if !core::mem::needs_drop::<T>() {
+            // Without memory to keep, it is best in registers: read back from a list, numbers of different widths wait for
+            // each other.
+            return judge(&problem.decode(values));
+        }
+        match self.solutions.first_mut() {
+            Some(slot) => problem.decode_into(values, slot),
+            None => self.solutions.push(problem.decode(values)),
+        }
+        judge(&self.solutions[0])
     }
 
     /// The same for solutions that are known already, at the points of `batch`.
@@ -121,12 +133,10 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     /// Files the solution in slot `live` as the next point.
     #[inline]
     fn file(&mut self, archive: &Archive<T>) {
-        let outcome = if !archive.contains(&self.solutions[self.live]) {
-            Outcome::NotEvaluated
-        } else if self.deletes {
+        let outcome = if self.deletes && archive.contains(&self.solutions[self.live]) {
             Outcome::Deleted
         } else {
-            Outcome::Known(S::nan()) // its fitness is filled in by `settle`
+            Outcome::NotEvaluated
         };
         self.live += usize::from(outcome != Outcome::Deleted);
         self.outcomes.push(outcome);
@@ -189,5 +199,20 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         self.fitness[..self.live].copy_from_slice(fitness);
         self.ready = self.live;
         Ok(())
+    }
+}
+
+/// Brings a point inside and gives its values, which stand in `memory` where they are not the point itself.
+#[inline(always)]
+fn inside<'a, S: Real>(space: &Space<S>, point: &'a mut [S], memory: &'a mut Vec<S>) -> &'a [S] {
+    if space.has_integers() {
+        if memory.len() != point.len() {
+            memory.resize(point.len(), S::zero());
+        }
+        space.keep_inside_with_values(point, memory);
+        memory
+    } else {
+        space.keep_inside(point);
+        point
     }
 }

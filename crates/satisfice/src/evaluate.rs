@@ -57,6 +57,15 @@ impl Threads {
     }
 }
 
+/// How a batch is judged.
+#[derive(Debug, Clone, Copy)]
+struct Rules {
+    /// Whether found solutions are deleted from the space, as far as the engine is concerned.
+    deletes: bool,
+    /// Whether they are uniform probes, whose hits the engine does not see.
+    probing: bool,
+}
+
 /// The books of one slice.
 #[derive(Debug)]
 pub(crate) struct Ledger {
@@ -69,6 +78,8 @@ pub(crate) struct Ledger {
     next_count: u64,
     next_time: Duration,
     next_progress: Duration,
+    /// Whether one of these has come, as of the last look at the clock.
+    tick_is_due: bool,
 }
 
 impl Ledger {
@@ -84,6 +95,7 @@ impl Ledger {
             next_count: 1,
             next_time: budget.time.map_or(Duration::MAX, |time| time / 100),
             next_progress: PROGRESS_EVERY,
+            tick_is_due: false,
         }
     }
 
@@ -114,17 +126,15 @@ impl Ledger {
             next_count: next,
             next_time: step.saturating_mul(passed.saturating_add(1)),
             next_progress: elapsed + PROGRESS_EVERY,
+            tick_is_due: false,
         }
     }
 
     /// How many more evaluations the budget allows; calls of bounds count as such.
     #[inline]
     pub(crate) fn remaining(&self) -> usize {
-        let left = self
-            .budget
-            .evaluations
-            .map_or(u64::MAX, |limit| limit.saturating_sub(self.spent()));
-        usize::try_from(left).unwrap_or(usize::MAX)
+        let limit = self.budget.evaluations.unwrap_or(u64::MAX);
+        usize::try_from(limit.saturating_sub(self.spent())).unwrap_or(usize::MAX)
     }
 
     #[inline]
@@ -151,6 +161,12 @@ impl Ledger {
         self.stop.is_some()
     }
 
+    /// The same right after an evaluation, which has looked at the budget.
+    #[inline]
+    pub(crate) fn has_stopped(&mut self) -> bool {
+        self.stop.is_some() || self.interrupted()
+    }
+
     /// Share of the budget used, as of the last look at the clock.
     #[inline]
     pub(crate) fn share(&self) -> f64 {
@@ -175,10 +191,11 @@ impl Ledger {
 
     #[inline]
     fn pass(&mut self, evaluations: usize) {
-        if let Some(elapsed) = self.clock.pass(evaluations as u64)
-            && self.budget.time.is_some_and(|limit| elapsed >= limit)
-        {
-            self.stop = Some(StopReason::Time);
+        if let Some(elapsed) = self.clock.pass(evaluations as u64) {
+            self.tick_is_due |= elapsed >= self.next_time || elapsed >= self.next_progress;
+            if self.budget.time.is_some_and(|limit| elapsed >= limit) {
+                self.stop = Some(StopReason::Time);
+            }
         }
     }
 
@@ -268,6 +285,10 @@ impl Ledger {
         observer: &mut dyn Observer<P::Solution>,
     ) {
         let threshold = problem.threshold();
+        let rules = Rules {
+            deletes: candidates.deletes,
+            probing: candidates.probing,
+        };
         let mut next = 0; // of the live ones
         for i in 0..candidates.outcomes.len() {
             let before = candidates.outcomes[i];
@@ -283,22 +304,75 @@ impl Ledger {
             }
             self.counts.evaluations += 1;
             if is_live {
+                let (solution, fitness) = (&candidates.solutions[slot], candidates.fitness[slot]);
                 candidates.outcomes[i] =
-                    self.judge(problem, candidates, slot, before, threshold, archive, observer);
+                    self.judge(problem, solution, fitness, threshold, rules, archive, observer);
             } else {
                 self.counts.duplicates += 1;
             }
-            if self.counts.evaluations == self.next_count {
-                self.record(archive.len());
-                self.next_count = next_count(self.next_count);
-            }
+            self.trace_if_due(archive.len());
         }
+        self.look_at_limits(archive.len(), observer);
+    }
+
+    /// [`Candidates::prepare`], [`Ledger::evaluate`] and [`Ledger::settle`] for one point in one go, for engines that move
+    /// one point at a time: the way over lists would cost as much as all the rest. Only for a slice that is not over.
+    #[inline]
+    pub(crate) fn evaluate_one<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, P::Solution>,
+        point: &mut [P::Scalar],
+        deletes: bool,
+        archive: &mut Archive<P::Solution>,
+        observer: &mut dyn Observer<P::Solution>,
+    ) -> Outcome<P::Scalar> {
+        let rules = Rules {
+            deletes,
+            probing: false,
+        };
+        let outcome = candidates.with_one(problem, point, |solution| {
+            if deletes && archive.contains(solution) {
+                self.pass(1);
+                self.counts.evaluations += 1;
+                self.counts.duplicates += 1;
+                return Outcome::Deleted;
+            }
+            let fitness = problem.fitness(solution);
+            self.pass(1);
+            self.counts.evaluations += 1;
+            self.judge(
+                problem,
+                solution,
+                fitness,
+                problem.threshold(),
+                rules,
+                archive,
+                observer,
+            )
+        });
+        self.trace_if_due(archive.len());
+        self.look_at_limits(archive.len(), observer);
+        outcome
+    }
+
+    #[inline]
+    fn trace_if_due(&mut self, hits: usize) {
+        if self.counts.evaluations == self.next_count {
+            self.record(hits);
+            self.next_count = next_count(self.next_count);
+        }
+    }
+
+    /// What is looked at once a batch.
+    #[inline]
+    fn look_at_limits<T>(&mut self, hits: usize, observer: &mut dyn Observer<T>) {
         if self.remaining() == 0 && self.stop.is_none() {
             self.stop = Some(StopReason::Evaluations);
         }
-        let seen = self.clock.seen();
-        if seen >= self.next_time || seen >= self.next_progress {
-            self.tick(seen, archive.len(), observer);
+        if self.tick_is_due {
+            self.tick_is_due = false;
+            self.tick(self.clock.seen(), hits, observer);
         }
     }
 
@@ -308,56 +382,65 @@ impl Ledger {
         matches!(self.stop, Some(StopReason::Hits | StopReason::Observer))
     }
 
+    /// Judges a solution that is evaluated. Only one below the threshold is looked up in C.
     #[inline]
     #[expect(
         clippy::too_many_arguments,
-        reason = "one step of `settle`, apart for its length"
+        reason = "one step of `settle` and of `evaluate_one`"
     )]
     fn judge<P: SatisficingProblem>(
         &mut self,
         problem: &P,
-        candidates: &Candidates<P::Scalar, P::Solution>,
-        slot: usize,
-        before: Outcome<P::Scalar>,
+        solution: &P::Solution,
+        fitness: P::Scalar,
         threshold: P::Scalar,
+        rules: Rules,
         archive: &mut Archive<P::Solution>,
         observer: &mut dyn Observer<P::Solution>,
     ) -> Outcome<P::Scalar> {
         self.counts.fitness_calls += 1;
-        let fitness = candidates.fitness[slot];
-        let known = matches!(before, Outcome::Known(_));
-        self.counts.duplicates += u64::from(known);
         if !fitness.is_finite() {
             self.counts.non_finite += 1;
             Outcome::NonFinite
-        } else if known {
-            Outcome::Known(fitness)
         } else if fitness < threshold {
-            let again = |counts: &mut Counts| {
-                counts.duplicates += 1;
-                if candidates.deletes {
-                    Outcome::Deleted
-                } else {
-                    Outcome::Known(fitness)
-                }
-            };
-            // The same as an earlier one of this batch.
-            if archive.contains(&candidates.solutions[slot]) {
-                return again(&mut self.counts);
-            }
-            let solution = problem.canonical(candidates.solutions[slot].clone());
-            let seconds = self.clock.elapsed().as_secs_f64();
-            match archive.enter(solution, self.counts.evaluations, seconds, candidates.probing) {
-                Entered::New => self.greet(archive, observer),
-                // News to the engine only.
-                Entered::Revealed => self.counts.duplicates += 1,
-                // Its representative is known.
-                Entered::Known => return again(&mut self.counts),
-            }
-            Outcome::Hit(fitness)
+            self.welcome(problem, solution, fitness, rules, archive, observer)
         } else {
             Outcome::Miss(fitness)
         }
+    }
+
+    /// Enters a solution below the threshold into C, unless one that is the same is there.
+    #[inline(never)]
+    fn welcome<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        solution: &P::Solution,
+        fitness: P::Scalar,
+        rules: Rules,
+        archive: &mut Archive<P::Solution>,
+        observer: &mut dyn Observer<P::Solution>,
+    ) -> Outcome<P::Scalar> {
+        let again = |counts: &mut Counts| {
+            counts.duplicates += 1;
+            if rules.deletes {
+                Outcome::Deleted
+            } else {
+                Outcome::Known(fitness)
+            }
+        };
+        if archive.contains(solution) {
+            return again(&mut self.counts);
+        }
+        let solution = problem.canonical(solution.clone());
+        let seconds = self.clock.elapsed().as_secs_f64();
+        match archive.enter(solution, self.counts.evaluations, seconds, rules.probing) {
+            Entered::New => self.greet(archive, observer),
+            // News to the engine only.
+            Entered::Revealed => self.counts.duplicates += 1,
+            // Its representative is known.
+            Entered::Known => return again(&mut self.counts),
+        }
+        Outcome::Hit(fitness)
     }
 
     #[cold]

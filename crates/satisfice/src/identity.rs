@@ -4,7 +4,7 @@ use core::hash::{BuildHasher, Hash, Hasher};
 
 use foldhash::fast::FixedState;
 
-use crate::scalar::Real;
+use crate::scalar::{Real, floor};
 use crate::space::Region;
 
 /// The seed of every key; fixed, so that a run is the same on every machine.
@@ -24,7 +24,7 @@ pub trait Identity {
     /// Visits the keys under which a solution that is the same may be filed, until `visit` returns `true`; returns
     /// whether it did.
     #[inline]
-    fn visit_keys(&self, visit: &mut dyn FnMut(u64) -> bool) -> bool {
+    fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
         visit(self.key())
     }
 }
@@ -101,11 +101,19 @@ impl<S: Real> Located<S> {
         let cell = if self.separation == S::zero() {
             x
         } else if edge.is_finite() {
-            (x / edge).floor()
+            floor(x / edge)
         } else {
             S::zero()
         };
         cell + S::zero() // -0.0 and 0.0 are one cell
+    }
+
+    fn own_cells(&self) -> [S; HASHED] {
+        let mut cells = [S::zero(); HASHED];
+        for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
+            *cell = self.cell(x);
+        }
+        cells
     }
 
     /// The first and the last cell on one axis that a solution within the radius may be in.
@@ -138,18 +146,19 @@ fn next_cell<S: Real>(cell: S) -> S {
 
 impl<S: Real> Identity for Located<S> {
     fn key(&self) -> u64 {
-        let mut cells = [S::zero(); HASHED];
-        for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
-            *cell = self.cell(x);
-        }
-        hash_cells(cells)
+        hash_cells(self.own_cells())
     }
 
     fn same(&self, other: &Self) -> bool {
         self.is_within(other.coordinates.iter().copied())
     }
 
-    fn visit_keys(&self, visit: &mut dyn FnMut(u64) -> bool) -> bool {
+    fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
+        // Its own first: what is the same is most often filed there.
+        let own = self.own_cells();
+        if visit(hash_cells(own)) {
+            return true;
+        }
         let mut ends = [[S::zero(); 2]; HASHED];
         let mut cells = [S::zero(); HASHED];
         for ((end, cell), &x) in ends.iter_mut().zip(&mut cells).zip(&self.coordinates) {
@@ -157,7 +166,7 @@ impl<S: Real> Identity for Located<S> {
             *cell = end[0];
         }
         loop {
-            if visit(hash_cells(cells)) {
+            if cells != own && visit(hash_cells(cells)) {
                 return true;
             }
             // The next combination, the first axis fastest.

@@ -50,17 +50,31 @@ pub trait Real:
     /// The next value below.
     #[must_use]
     fn below(self) -> Self;
-    /// Without its fraction, if below 2^63; else the value itself.
+    /// 3/4 of the first power of two above which every value is whole: added and taken away again, it rounds any value of
+    /// less than a third of its magnitude to a whole number.
     #[doc(hidden)]
-    #[must_use]
-    fn truncated(self) -> Self;
+    const ROUNDER: Self;
     #[doc(hidden)]
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error>;
+}
+
+/// The floor. Not every machine has an instruction for it, and a call of the library's costs as much as a cheap fitness: two
+/// additions round, a third corrects.
+#[inline]
+pub(crate) fn floor<S: Real>(x: S) -> S {
+    // Below a third of it the sum stays between powers of two whose values are the whole numbers.
+    if x.abs() * S::of(4.0) < S::ROUNDER {
+        let whole = (x + S::ROUNDER) - S::ROUNDER;
+        if whole > x { whole - S::one() } else { whole }
+    } else {
+        x.floor()
+    }
 }
 
 impl Real for f32 {
     const NAME: &'static str = "f32";
     const MAX_INTEGER: i64 = 1 << 24;
+    const ROUNDER: Self = 12_582_912.0; // 1.5 * 2^23
 
     #[inline]
     #[expect(
@@ -87,19 +101,6 @@ impl Real for f32 {
     fn below(self) -> Self {
         self.next_down()
     }
-    #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        reason = "a number below 2^63 without its fraction is exact either way"
-    )]
-    fn truncated(self) -> Self {
-        if self.abs() < 9.2e18 {
-            (self as i64) as Self
-        } else {
-            self
-        }
-    }
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f32)(values)
     }
@@ -108,6 +109,7 @@ impl Real for f32 {
 impl Real for f64 {
     const NAME: &'static str = "f64";
     const MAX_INTEGER: i64 = 1 << 53;
+    const ROUNDER: Self = 6_755_399_441_055_744.0; // 1.5 * 2^52
 
     #[inline]
     fn of(value: f64) -> Self {
@@ -128,19 +130,6 @@ impl Real for f64 {
     #[inline]
     fn below(self) -> Self {
         self.next_down()
-    }
-    #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        reason = "a number below 2^63 without its fraction is exact either way"
-    )]
-    fn truncated(self) -> Self {
-        if self.abs() < 9.2e18 {
-            (self as i64) as Self
-        } else {
-            self
-        }
     }
     fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f64)(values)

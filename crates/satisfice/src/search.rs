@@ -8,7 +8,7 @@ use crate::archive::Archive;
 use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::candidates::Candidates;
-use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
+use crate::engine::{Ask, Engine, Named, Origin, Steps, WarmStart};
 use crate::error::Error;
 use crate::evaluate::{Ledger, Threads};
 use crate::identity::Identity;
@@ -234,7 +234,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         if self.pool.is_none() {
             self.pool = Some(Threads::new(self.threads)?);
         }
-        while self.propose(problem) {
+        // While an engine advances by itself, no checkpoint can be taken.
+        let alone = saving.is_none();
+        while self.propose(problem, alone.then_some(&mut *observer)) {
             if let (Some(slice), Some(pool)) = (&mut self.slice, &self.pool) {
                 slice.ledger.evaluate(problem, &mut slice.candidates, pool);
             }
@@ -328,7 +330,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
                 got: 0,
             });
         }
-        while self.propose(problem) {
+        while self.propose(problem, None) {
             match &mut self.slice {
                 Some(slice) if !slice.candidates.live().is_empty() => {
                     slice.outstanding = true;
@@ -419,50 +421,75 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         })
     }
 
-    /// Fills the batch and prepares its candidates; `false` when the slice is over.
+    /// Fills the batch and prepares its candidates; `false` when the slice is over. With an observer, an engine that can
+    /// advances by itself on the way.
     #[inline]
-    fn propose<P>(&mut self, problem: &P) -> bool
+    fn propose<P>(&mut self, problem: &P, alone: Option<&mut dyn Observer<T>>) -> bool
     where
         P: SatisficingProblem<Scalar = S, Solution = T>,
     {
-        let proposed = self.propose_next(problem);
+        let proposed = self.propose_next(problem, alone);
         if let Some(slice) = &mut self.slice {
             slice.pending = proposed;
         }
         proposed
     }
 
-    #[inline]
-    fn propose_next<P>(&mut self, problem: &P) -> bool
+    fn propose_next<P>(&mut self, problem: &P, mut alone: Option<&mut dyn Observer<T>>) -> bool
     where
         P: SatisficingProblem<Scalar = S, Solution = T>,
     {
         let Some(slice) = &mut self.slice else {
             return false;
         };
+        let deletes = self.engine.deletes();
         if let Some(pending) = slice.resumed.take() {
-            slice.propose_again(problem, &self.previous, &pending, self.engine.deletes());
+            slice.propose_again(problem, &self.previous, &pending, deletes);
             return true;
         }
-        if slice.ledger.is_over() {
-            return false;
-        }
-        let limit = slice.ledger.remaining();
-        if slice.verified < self.previous.len() {
-            slice.propose_previous(problem, &self.previous, limit);
-            return true;
-        }
-        slice.candidates.probing = slice.probes.is_due(slice.ledger.counts.evaluations);
-        if slice.candidates.probing {
-            slice.probes.propose(problem, &mut slice.batch);
-            slice
-                .candidates
-                .prepare(problem, &slice.archive, &mut slice.batch, limit, true);
-            return true;
-        }
-        slice.origin = Origin::Engine;
         let mut idle = 0;
-        while slice.last == Ask::More && idle < EMPTY_ASKS {
+        loop {
+            if slice.ledger.is_over() {
+                return false;
+            }
+            if slice.verified < self.previous.len() {
+                let limit = slice.ledger.remaining();
+                slice.propose_previous(problem, &self.previous, limit);
+                return true;
+            }
+            slice.candidates.probing = slice.probes.is_due(slice.ledger.counts.evaluations);
+            if slice.candidates.probing {
+                slice.probes.propose(problem, &mut slice.batch);
+                slice.prepare(problem, true);
+                return true;
+            }
+            slice.origin = Origin::Engine;
+            if slice.last != Ask::More || idle >= EMPTY_ASKS {
+                let covered = slice.last == Ask::Covered;
+                slice.ledger.stop = Some(if covered {
+                    StopReason::Covered
+                } else {
+                    StopReason::Exhausted
+                });
+                return false;
+            }
+            if let Some(observer) = &mut alone
+                && slice.last == Ask::More
+            {
+                let mut steps = SingleSteps {
+                    problem,
+                    ledger: &mut slice.ledger,
+                    candidates: &mut slice.candidates,
+                    archive: &mut slice.archive,
+                    probes: &slice.probes,
+                    observer: *observer,
+                    deletes,
+                };
+                if self.engine.advance(&mut self.rng, &mut steps) {
+                    idle = 0;
+                    continue;
+                }
+            }
             slice.batch.clear();
             // Not by `Slice::view`: the batch is borrowed beside it.
             let view = View {
@@ -476,31 +503,16 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             slice.last = self.engine.ask(&view, &mut self.rng, &mut slice.batch);
             let bounds = slice.calls.bounds.get();
             let works = bounds > slice.ledger.counts.bound_calls;
-            let mut limit = limit;
             if works {
                 slice.ledger.count_bounds(bounds);
-                limit = slice.ledger.remaining();
             }
             if !slice.batch.is_empty() {
-                let deletes = self.engine.deletes();
-                slice
-                    .candidates
-                    .prepare(problem, &slice.archive, &mut slice.batch, limit, deletes);
+                slice.prepare(problem, deletes);
                 return true;
             }
             // An engine that works on bounds has not come to its end.
             idle = if works { 0 } else { idle + 1 };
-            if slice.ledger.is_over() {
-                return false;
-            }
         }
-        let covered = slice.last == Ask::Covered;
-        slice.ledger.stop = Some(if covered {
-            StopReason::Covered
-        } else {
-            StopReason::Exhausted
-        });
-        false
     }
 
     /// Settles the batch and tells the engine.
@@ -556,6 +568,16 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         }
     }
 
+    /// Prepares the candidates of the batch, as many as the budget has room for.
+    fn prepare<P>(&mut self, problem: &P, deletes: bool)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T>,
+    {
+        let limit = self.ledger.remaining();
+        self.candidates
+            .prepare(problem, &self.archive, &mut self.batch, limit, deletes);
+    }
+
     /// The next hits of the slice before, to be evaluated anew.
     fn propose_previous<P>(&mut self, problem: &P, previous: &Archive<T>, limit: usize)
     where
@@ -580,5 +602,35 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.verified += next.len();
         self.candidates
             .prepare_solutions(next.iter(), &self.archive, limit);
+    }
+}
+
+/// The search as an engine sees it that advances by itself.
+struct SingleSteps<'a, P: SatisficingProblem> {
+    problem: &'a P,
+    ledger: &'a mut Ledger,
+    candidates: &'a mut Candidates<P::Scalar, P::Solution>,
+    archive: &'a mut Archive<P::Solution>,
+    probes: &'a Probes,
+    observer: &'a mut dyn Observer<P::Solution>,
+    deletes: bool,
+}
+
+impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
+    fn take(&mut self, position: &mut [P::Scalar]) -> (Outcome<P::Scalar>, bool) {
+        let outcome = self.ledger.evaluate_one(
+            self.problem,
+            self.candidates,
+            position,
+            self.deletes,
+            self.archive,
+            self.observer,
+        );
+        let over = self.ledger.has_stopped() || self.probes.is_due(self.ledger.counts.evaluations);
+        (outcome, !over)
+    }
+
+    fn elapsed_share(&self) -> f64 {
+        self.ledger.share()
     }
 }

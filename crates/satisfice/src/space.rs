@@ -5,7 +5,7 @@
 //! and every integer owns a cell of width one.
 
 use crate::error::Error;
-use crate::scalar::Real;
+use crate::scalar::{Real, floor};
 
 /// Whether the values of an axis are all reals between its bounds, or the integers only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -292,14 +292,24 @@ impl<S: Real> Space<S> {
     }
 
     /// [`Space::keep_inside`] and [`Space::values`] in one go.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn keep_inside_with_values(&self, position: &mut [S], values: &mut [S]) {
         for ((axis, x), value) in self.axes.iter().zip(position).zip(values) {
-            let end = axis.end();
+            let is_integer = axis.is_integer();
+            let end = if is_integer {
+                axis.upper + S::one()
+            } else {
+                axis.upper
+            };
             if !(axis.lower <= *x && *x <= end) {
                 *x = bring_inside(*x, axis.lower, end, self.boundary);
             }
-            *value = axis.value(*x);
+            *value = if is_integer {
+                let whole = floor(*x);
+                if whole < axis.upper { whole } else { axis.upper }
+            } else {
+                *x
+            };
         }
     }
 
@@ -331,14 +341,6 @@ impl<S: Real> Space<S> {
     }
 }
 
-/// The floor. Where a machine has no instruction for it, by way of an integer: a call of the library's takes three times as
-/// long.
-#[inline]
-fn floor<S: Real>(x: S) -> S {
-    let whole = x.truncated();
-    if whole > x { whole - S::one() } else { whole }
-}
-
 /// `x` brought into `[lower, end]`.
 #[cold]
 fn bring_inside<S: Real>(x: S, lower: S, end: S, boundary: Boundary) -> S {
@@ -359,10 +361,12 @@ fn bring_inside<S: Real>(x: S, lower: S, end: S, boundary: Boundary) -> S {
         Boundary::Reflect | Boundary::Clamp => {
             // Both ways out fold alike, with period 2 * width. Where that overflows, no finite overshoot reaches it.
             let period = width + width;
-            let rest = if period.is_finite() {
-                overshoot.abs() % period
+            let far = overshoot.abs();
+            // Nearly all of them are less than a period out: no remainder to compute.
+            let rest = if far < period || !period.is_finite() {
+                far
             } else {
-                overshoot.abs()
+                far % period
             };
             if rest > width {
                 width - (rest - width)

@@ -60,8 +60,8 @@ pub enum WarmStart {
 
 /// A search strategy that is asked for points and told what became of them.
 ///
-/// One virtual call a batch: an engine whose next point depends on the last outcome asks for batches of one, and what that
-/// costs stands in `cargo bench --bench engine`.
+/// One virtual call a batch. An engine whose next point depends on the last outcome asks for batches of one, and may offer to
+/// [`advance`](Engine::advance) by itself, which saves half of what the detour costs (`cargo bench --bench engine`).
 ///
 /// Laws, checked for every registered engine by the conformance suite of [`crate::testing`]: numbers are drawn from `rng`
 /// in `ask` only; nothing depends on time, threads or addresses; NaN and infinite fitness do no harm; axes of width zero
@@ -76,6 +76,15 @@ pub trait Engine<S: Real>: Send {
     /// Says what became of each point of `batch`, which holds the proposals as the boundary rule left them. Also called
     /// with points that the engine has not proposed: hits found by exhaustion, and those of a warm start.
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin);
+
+    /// Takes steps of one point each until [`Steps::take`] says that it was the last, and returns `true`; or returns `false`
+    /// without having done anything, and is asked.
+    ///
+    /// A short cut, never a necessity: points and random numbers are those of [`ask`](Engine::ask) and
+    /// [`tell`](Engine::tell) in turn, which drive the engine where points are evaluated by hand or checkpoints are kept.
+    fn advance(&mut self, _rng: &mut SearchRng, _steps: &mut dyn Steps<S>) -> bool {
+        false
+    }
 
     /// Whether found solutions are deleted from the space (F taken as infinite, not evaluated); if not, they are evaluated
     /// again and come back as [`Outcome::Known`].
@@ -101,6 +110,15 @@ pub trait Engine<S: Real>: Send {
     /// # Errors
     /// [`Error::State`] where the state is not of such an engine.
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error>;
+}
+
+/// The search, as an engine sees it that [advances](Engine::advance) by itself.
+pub trait Steps<S> {
+    /// Brings a position inside and evaluates it. Returns its outcome and whether there may be another step.
+    fn take(&mut self, position: &mut [S]) -> (Outcome<S>, bool);
+
+    /// As [`Context::elapsed_share`].
+    fn elapsed_share(&self) -> f64;
 }
 
 /// Who proposed a batch that an engine is told of.

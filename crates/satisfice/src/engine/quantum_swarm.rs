@@ -1,9 +1,9 @@
 //! The machinery of quantum-behaved swarms: Eq. 2 of the paper, particle after particle.
 
-use super::potential_well::{mean_best, step};
+use super::potential_well::{draw, mean_best};
 use super::schedule::Schedule;
 use super::swarm::{Attractor, Swarm};
-use super::{Ask, Engine, Origin, WarmStart};
+use super::{Ask, Engine, Origin, Steps, WarmStart};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::error::Error;
@@ -70,12 +70,31 @@ impl<S: Real> Engine<S> for QuantumSwarm<S> {
             mean_best(swarm.bests(), &mut self.mean);
         }
         let alpha = self.alpha.at(|| context.elapsed_share());
-        for (place, i) in swarm.due().enumerate() {
-            out.push(swarm.position(i));
-            let position = out.point_mut(place);
-            step(rng, alpha, position, swarm.best(i), swarm.attractor(), &self.mean);
+        for i in swarm.due() {
+            let row = out.push_row();
+            row.copy_from_slice(swarm.position(i));
+            displace(rng, alpha, row, swarm.best(i), swarm.attractor(), &self.mean);
         }
         Ask::More
+    }
+
+    fn advance(&mut self, rng: &mut SearchRng, steps: &mut dyn Steps<S>) -> bool {
+        if !self.swarm.is_asynchronous() {
+            return false;
+        }
+        loop {
+            if self.swarm.begins_sweep() {
+                mean_best(self.swarm.bests(), &mut self.mean);
+            }
+            let alpha = self.alpha.at(|| steps.elapsed_share());
+            let mean = &self.mean;
+            let more = self.swarm.step(steps, |x, best, attractor| {
+                displace(rng, alpha, x, best, attractor, mean);
+            });
+            if !more {
+                return true;
+            }
+        }
     }
 
     fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
@@ -92,4 +111,14 @@ impl<S: Real> Engine<S> for QuantumSwarm<S> {
     }
 
     crate::saved_fields!(swarm, mean; check);
+}
+
+/// Moves a particle on all axes. All rows are cut to one length, so that no coordinate's place is checked.
+#[inline]
+fn displace<S: Real>(rng: &mut SearchRng, alpha: S, x: &mut [S], best: &[S], attractor: &[S], mean: &[S]) {
+    let d = x.len();
+    let (best, attractor, mean) = (&best[..d], &attractor[..d], &mean[..d]);
+    for j in 0..d {
+        x[j] = draw(rng, alpha, x[j], best[j], attractor[j], mean[j]);
+    }
 }

@@ -3,7 +3,7 @@
 use core::ops::Range;
 use std::collections::BTreeSet;
 
-use super::Origin;
+use super::{Origin, Steps};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::error::Error;
@@ -147,6 +147,12 @@ impl<S: Real> Swarm<S> {
         self.turn == 0
     }
 
+    /// The particle that moves next.
+    #[inline]
+    pub(super) fn turn(&self) -> usize {
+        self.turn
+    }
+
     /// The particles that move now.
     #[inline]
     pub(super) fn due(&self) -> Range<usize> {
@@ -198,18 +204,25 @@ impl<S: Real> Swarm<S> {
     }
 
     /// Enters what became of the start points, of the particles that were due, or of a hit that somebody else found.
+    #[inline]
     pub(super) fn tell(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        if origin == Origin::Engine && self.started {
+            for (position, &outcome) in batch.points().zip(outcomes) {
+                let row = self.row(self.turn);
+                copy_row(&mut self.positions[row], position);
+                self.settle(outcome);
+            }
+        } else {
+            self.tell_of_others(batch, outcomes, origin);
+        }
+    }
+
+    /// Enters the start points, or a hit that somebody else found.
+    #[cold]
+    fn tell_of_others(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin != Origin::Engine {
             if let Some(i) = outcomes.iter().rposition(|outcome| outcome.is_hit()) {
                 self.remember(batch.point(i));
-            }
-        } else if self.started {
-            for (position, &outcome) in batch.points().zip(outcomes) {
-                self.settle(self.turn, position, outcome);
-                self.turn += 1;
-            }
-            if self.turn >= self.particles {
-                self.turn = 0;
             }
         } else {
             self.started = true;
@@ -221,14 +234,41 @@ impl<S: Real> Swarm<S> {
         }
     }
 
+    /// Whether particles move one at a time, from now on until the slice ends.
     #[inline]
-    fn settle(&mut self, i: usize, position: &[S], outcome: Outcome<S>) {
+    pub(super) fn is_asynchronous(&self) -> bool {
+        self.started && self.batch == 1
+    }
+
+    /// Moves the particle whose turn it is: `displace` changes X in view of P and G. Returns whether there may be another.
+    #[inline]
+    pub(super) fn step(
+        &mut self,
+        steps: &mut dyn Steps<S>,
+        displace: impl FnOnce(&mut [S], &[S], &[S]),
+    ) -> bool {
+        let row = self.row(self.turn);
+        let attractor = if self.latest_hit.is_empty() {
+            &self.bests[self.row(self.leader)]
+        } else {
+            &self.latest_hit
+        };
+        let position = &mut self.positions[row.clone()];
+        displace(position, &self.bests[row], attractor);
+        let (outcome, more) = steps.take(position);
+        self.settle(outcome);
+        more
+    }
+
+    /// Enters what became of the particle whose turn it was, at its new position.
+    #[inline]
+    fn settle(&mut self, outcome: Outcome<S>) {
+        let i = self.turn;
         let row = self.row(i);
         let fitness = outcome.fitness();
-        self.positions[row.clone()].copy_from_slice(position);
         let hit = outcome.is_hit();
         if fitness < self.fitness[i] || (hit && self.deletes) {
-            self.bests[row].copy_from_slice(position);
+            copy_row(&mut self.bests[row.clone()], &self.positions[row]);
             let worse = fitness > self.fitness[i];
             self.fitness[i] = fitness;
             if fitness < self.fitness[self.leader] {
@@ -237,9 +277,11 @@ impl<S: Real> Swarm<S> {
                 self.find_leader();
             }
         }
-        if hit {
-            self.remember(position);
+        if hit && self.attractor == Attractor::LatestHit {
+            self.latest_hit.clear();
+            self.latest_hit.extend_from_slice(&self.positions[self.row(i)]);
         }
+        self.turn = if i + 1 < self.particles { i + 1 } else { 0 };
     }
 
     fn remember(&mut self, hit: &[S]) {
@@ -306,4 +348,14 @@ impl<S: Real> Swarm<S> {
 
 impl<S: Real> Part for Swarm<S> {
     crate::saved_fields!(dimension, positions, bests, fitness, leader, latest_hit, turn, started; check);
+}
+
+/// Copies a row of coordinates. Short ones number by number: a call of the library's costs more than that.
+#[inline]
+fn copy_row<S: Copy>(to: &mut [S], from: &[S]) {
+    match (to, from) {
+        ([a, b], [x, y]) => (*a, *b) = (*x, *y),
+        ([a, b, c], [x, y, z]) => (*a, *b, *c) = (*x, *y, *z),
+        (to, from) => to.copy_from_slice(from),
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::schedule::Schedule;
 use super::swarm::{Attractor, Swarm};
-use super::{Ask, Engine, Origin, WarmStart};
+use super::{Ask, Engine, Origin, Steps, WarmStart};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::error::Error;
@@ -54,6 +54,11 @@ pub(super) struct VelocitySwarm<S> {
     swarm: Swarm<S>,
     coefficients: Coefficients<S>,
     velocities: Vec<S>,
+    /// Vmax in units of each axis.
+    limits: Vec<S>,
+    boundary: Boundary,
+    /// Memory: where the particle in turn comes from.
+    from: Vec<S>,
 }
 
 impl<S: Real> VelocitySwarm<S> {
@@ -67,33 +72,26 @@ impl<S: Real> VelocitySwarm<S> {
             swarm: Swarm::new(values, attractor, deletes),
             coefficients,
             velocities: Vec::new(),
+            limits: Vec::new(),
+            boundary: Boundary::default(),
+            from: Vec::new(),
         }
+    }
+
+    /// Takes the limits and the rule at the boundary from the space: at the beginning of a slice, and after a restoration, which knows no space.
+    fn measure(&mut self, context: &dyn Context<S>) {
+        let v_max = self.coefficients.v_max;
+        self.limits.clear();
+        self.limits
+            .extend(context.space().axes().iter().map(|axis| v_max * axis.width()));
+        self.boundary = context.space().boundary();
     }
 
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         self.swarm.propose_start(context, rng, out);
         for _ in 0..self.swarm.particles() {
-            for axis in context.space().axes() {
-                let limit = self.coefficients.v_max * axis.width();
+            for &limit in &self.limits {
                 self.velocities.push(limit * S::of(2.0 * rng.uniform() - 1.0));
-            }
-        }
-    }
-
-    /// Mends the velocities of the particles that were due and that the boundary rule has moved.
-    fn bounce(&mut self, context: &dyn Context<S>, batch: &Batch<S>) {
-        let factor = match context.space().boundary() {
-            Boundary::Reflect => -S::one(),
-            Boundary::Clamp => S::zero(),
-            Boundary::Wrap => return,
-        };
-        for (place, i) in self.swarm.due().enumerate() {
-            let velocity = &mut self.velocities[self.swarm.row(i)];
-            let moves = self.swarm.position(i).iter().zip(batch.point(place));
-            for (v, (&from, &to)) in velocity.iter_mut().zip(moves) {
-                if from + *v != to {
-                    *v = *v * factor;
-                }
             }
         }
     }
@@ -108,42 +106,66 @@ impl<S: Real> Engine<S> for VelocitySwarm<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
         self.swarm.begin(context.space().dimension());
         self.velocities.clear();
+        self.measure(context);
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        if self.limits.is_empty() {
+            self.measure(context);
+        }
         if !self.swarm.has_started() {
             self.start(context, rng, out);
             return Ask::More;
         }
-        let Coefficients {
-            inertia,
-            cognitive,
-            social,
-            v_max,
-        } = &self.coefficients;
-        let inertia = inertia.at(|| context.elapsed_share());
+        let inertia = self.coefficients.inertia.at(|| context.elapsed_share());
         let swarm = &self.swarm;
-        let attractor = swarm.attractor();
-        for (place, i) in swarm.due().enumerate() {
-            let (best, row) = (swarm.best(i), swarm.row(i));
-            out.push(swarm.position(i));
-            let position = out.point_mut(place);
-            for (j, axis) in context.space().axes().iter().enumerate() {
-                let (x, v) = (&mut position[j], &mut self.velocities[row.start + j]);
-                let to_best = *cognitive * S::of(rng.uniform()) * (best[j] - *x);
-                let to_attractor = *social * S::of(rng.uniform()) * (attractor[j] - *x);
-                let limit = *v_max * axis.width();
-                // In this order a NaN of infinite terms ends at the limit.
-                *v = (inertia * *v + to_best + to_attractor).min(limit).max(-limit);
-                *x = *x + *v;
-            }
+        for i in swarm.due() {
+            let row = out.push_row();
+            row.copy_from_slice(swarm.position(i));
+            let velocity = &mut self.velocities[swarm.row(i)];
+            self.coefficients.displace(
+                rng,
+                inertia,
+                row,
+                velocity,
+                (swarm.best(i), swarm.attractor(), &self.limits),
+            );
         }
         Ask::More
     }
 
-    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+    fn advance(&mut self, rng: &mut SearchRng, steps: &mut dyn Steps<S>) -> bool {
+        if !self.swarm.is_asynchronous() || self.limits.is_empty() {
+            return false;
+        }
+        loop {
+            let inertia = self.coefficients.inertia.at(|| steps.elapsed_share());
+            let (coefficients, limits, from) = (&self.coefficients, &self.limits, &mut self.from);
+            let i = self.swarm.turn();
+            let velocity = &mut self.velocities[self.swarm.row(i)];
+            let more = self.swarm.step(steps, |x, best, attractor| {
+                from.clear();
+                from.extend_from_slice(x);
+                coefficients.displace(rng, inertia, x, velocity, (best, attractor, limits));
+            });
+            bounce(self.boundary, velocity, from, self.swarm.position(i));
+            if !more {
+                return true;
+            }
+        }
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin == Origin::Engine && self.swarm.has_started() {
-            self.bounce(context, batch);
+            for (place, i) in self.swarm.due().enumerate() {
+                let velocity = &mut self.velocities[self.swarm.row(i)];
+                bounce(
+                    self.boundary,
+                    velocity,
+                    self.swarm.position(i),
+                    batch.point(place),
+                );
+            }
         }
         self.swarm.tell(batch, outcomes, origin);
     }
@@ -158,4 +180,51 @@ impl<S: Real> Engine<S> for VelocitySwarm<S> {
     }
 
     crate::saved_fields!(swarm, velocities; check);
+}
+
+impl<S: Real> Coefficients<S> {
+    /// Moves a particle on all axes, given its best, the attractor and the limits of its velocity. All rows are cut to one
+    /// length, so that no coordinate's place is checked.
+    #[inline]
+    fn displace(
+        &self,
+        rng: &mut SearchRng,
+        inertia: S,
+        x: &mut [S],
+        v: &mut [S],
+        (best, attractor, limits): (&[S], &[S], &[S]),
+    ) {
+        let d = x.len();
+        let (v, best, attractor, limits) = (&mut v[..d], &best[..d], &attractor[..d], &limits[..d]);
+        for j in 0..d {
+            let to_best = self.cognitive * S::of(rng.uniform()) * (best[j] - x[j]);
+            let to_attractor = self.social * S::of(rng.uniform()) * (attractor[j] - x[j]);
+            // A NaN of infinite terms ends at the limit.
+            v[j] = limited(inertia * v[j] + to_best + to_attractor, limits[j]);
+            x[j] = x[j] + v[j];
+        }
+    }
+}
+
+/// Mends the velocity of a particle that wanted to move `from` where its velocity took it and ended at `to`, where the rule
+/// at the boundary has moved it.
+#[inline]
+fn bounce<S: Real>(boundary: Boundary, velocity: &mut [S], from: &[S], to: &[S]) {
+    let factor = match boundary {
+        Boundary::Reflect => -S::one(),
+        Boundary::Clamp => S::zero(),
+        Boundary::Wrap => return,
+    };
+    for (v, (&from, &to)) in velocity.iter_mut().zip(from.iter().zip(to)) {
+        if from + *v != to {
+            *v = *v * factor;
+        }
+    }
+}
+
+/// `v` within ±`limit`; NaN is `limit`. The library's minimum and maximum take twice as long.
+#[inline]
+fn limited<S: Real>(v: S, limit: S) -> S {
+    let below = if v < limit { v } else { limit };
+    if below > -limit { below } else { -limit }
 }

@@ -13,6 +13,7 @@ use crate::engine::{Entry, Named};
 use crate::error::Error;
 use crate::identity::Located;
 use crate::parameter::Values;
+use crate::problem::SatisficingProblem;
 use crate::report::Report;
 use crate::scalar::Real;
 use crate::search::Search;
@@ -35,6 +36,8 @@ pub enum Law {
     Budget,
     /// The same seed gives the same report.
     SameSeed,
+    /// So it does where points are evaluated by hand, whether or not the engine [advances](crate::engine::Engine::advance).
+    ByHand,
     /// So it does on any number of threads (feature `rayon`).
     Threads,
     /// A short run is the beginning of a long one; under one horizon where a schedule follows the budget.
@@ -145,6 +148,19 @@ impl<S: Real> Suite<'_, S> {
     fn run(&mut self, case: &Case<S>, budget: &Budget) -> Result<Report<Located<S>>, Error> {
         let mut search = self.search()?;
         self.run_by(&mut search, case, budget)
+    }
+
+    /// The same run, driven by hand.
+    fn run_by_hand(&mut self, case: &Case<S>, budget: &Budget) -> Result<Report<Located<S>>, Error> {
+        let mut search = self.search()?;
+        search.begin(case, budget)?;
+        loop {
+            let fitness: Vec<S> = search.ask(case)?.iter().map(|c| case.fitness(c)).collect();
+            if fitness.is_empty() {
+                return search.finish(case);
+            }
+            search.tell(case, &fitness)?;
+        }
     }
 
     /// A slice of this search, its books audited.

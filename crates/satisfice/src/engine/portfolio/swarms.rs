@@ -2,7 +2,7 @@
 
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
-use crate::engine::potential_well::{mean_best, step};
+use crate::engine::potential_well::{draw, mean_best};
 use crate::parameter::Values;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -168,14 +168,11 @@ impl<S: Real> SubSwarm<S> {
             };
             let position = &mut self.positions[row.clone()];
             for _ in 0..DRAWS {
-                step(
-                    rng,
-                    alpha,
-                    position,
-                    &self.bests[row.clone()],
-                    attractor,
-                    &self.mean,
-                );
+                let towards = attractor.iter().zip(&self.mean);
+                let from = self.bests[row.clone()].iter().zip(towards);
+                for (x, (&p, (&g, &m))) in position.iter_mut().zip(from) {
+                    *x = draw(rng, alpha, *x, p, g, m);
+                }
                 space.keep_inside(position);
                 if visited.is_none_or(|visited| !visited.contains(space, position)) {
                     break;

@@ -20,6 +20,8 @@ impl<S: Real> Suite<'_, S> {
         let report = self.run(case, &budget)?;
         let again = self.search()?.run(case, &budget)?;
         self.say_if(Law::SameSeed, &case.name, difference(&report, &again));
+        let by_hand = self.run_by_hand(case, &budget)?;
+        self.say_if(Law::ByHand, &case.name, difference(&report, &by_hand));
         let (probe, findings) = Probe::around((self.make)()?);
         let probed = Search::new(probe).seed(42).run(case, &budget)?;
         self.say_if(Law::Proposals, &case.name, findings.first());
