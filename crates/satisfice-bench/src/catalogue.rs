@@ -1,7 +1,7 @@
 //! Every problem that has a name. One line each in [`all`].
 
 use satisfice::{Catalogued, Parameter, Values};
-use satisfice_collision::problem::Teapots;
+use satisfice_collision::problem::{Pleats, Teapots};
 use satisfice_problems::{
     Arm, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Himmelblau, Islands, Langford,
     LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat, SevenJoints, Shell,
@@ -61,6 +61,7 @@ impl Entry {
 
 static PROBLEMS: &[Entry] = &[
     entry::<Teapots>(),
+    entry::<Pleats>(),
     entry::<Rastrigin>(),
     entry::<Shell>(),
     entry::<Islands>(),

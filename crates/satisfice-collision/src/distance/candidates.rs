@@ -76,6 +76,11 @@ pub(super) fn nearest(a: &[Point], b: &[Point]) -> Guess {
 }
 
 impl Guess {
+    /// A guess of the parts alone: vertices with a weight above 0.
+    pub(super) fn of_parts(a: [f64; 3], b: [f64; 3]) -> Self {
+        Self { squared: 0.0, a, b }
+    }
+
     fn consider(&mut self, v: Point, a: &[(usize, f64)], b: &[(usize, f64)]) {
         let squared = dot(v, v);
         if squared < self.squared {

@@ -5,6 +5,7 @@
 //! degenerate input: then no certificate speaks, and the slower stages decide.
 
 use super::Point;
+use super::candidates::Guess;
 use super::frame::{self, Frame, Limits, Verdict};
 use super::vector::{add, cross, dot, scale, sub};
 
@@ -45,6 +46,29 @@ pub(super) fn filter<const M: usize, const N: usize>(frame: &Frame<M, N>, limits
 /// The distance in the frame's unit, wrong by at most `accuracy` of itself: the upper bound `|v| + E` and the lower bound
 /// `gap / |v|` agree that far. `None` where they never do.
 pub(super) fn distance<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) -> Option<f64> {
+    let (squared, _) = converge(frame, accuracy)?;
+    let distance = squared.sqrt();
+    (frame::SPAN_ERROR * frame.rho <= accuracy * distance).then_some(distance)
+}
+
+/// The vertices that the nearest points of two features that do not meet are made of, with weights of no meaning but that they
+/// are positive. `None` where that is not seen.
+pub(super) fn parts<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Option<Guess> {
+    // Near enough that further steps would rarely change the parts; whether they are right is proved elsewhere.
+    const NEAR: f64 = 1e-12;
+    let (_, simplex) = converge(frame, NEAR)?;
+    let (mut a, mut b) = ([0.0; 3], [0.0; 3]);
+    for w in &simplex.w[..simplex.len] {
+        let mut all = (0..M).flat_map(|i| (0..N).map(move |j| (i, j)));
+        let (i, j) = all.find(|&(i, j)| sub(frame.a[i], frame.b[j]) == *w)?;
+        (a[i], b[j]) = (1.0, 1.0);
+    }
+    Some(Guess::of_parts(a, b))
+}
+
+/// The difference nearest to 0, squared, and the differences whose hull it lies in.
+#[inline(always)]
+fn converge<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) -> Option<(f64, Simplex)> {
     let mut v = frame.difference(&[1.0 / M as f64; M], &[1.0 / N as f64; N]);
     let mut squared = dot(v, v);
     let mut simplex = Simplex { w: [v; 4], len: 1 };
@@ -53,8 +77,7 @@ pub(super) fn distance<const M: usize, const N: usize>(frame: &Frame<M, N>, accu
         let safe = gap - frame::GAP_ERROR * frame.rho * (v[0].abs() + v[1].abs() + v[2].abs());
         // (gap / |v|)^2 >= |v|^2 (1 - accuracy)^2, roundings being far below any accuracy asked for
         if safe > frame::LEAST_GAP && safe >= squared * (1.0 - accuracy) {
-            let distance = squared.sqrt();
-            return (frame::SPAN_ERROR * frame.rho <= accuracy * distance).then_some(distance);
+            return Some((squared, simplex));
         }
         if simplex.w[..simplex.len].contains(&w) {
             return None;

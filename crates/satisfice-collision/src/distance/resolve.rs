@@ -4,7 +4,7 @@ use super::candidates::{self, edges};
 use super::extended::Pair;
 use super::frame::{self, Frame, Limits, NoFrame, Verdict};
 use super::vector::{add, ldexp, scale, sub};
-use super::{DecidedBy, Decision, Feature, Point, Proximity, Threshold, exact};
+use super::{DecidedBy, Decision, Feature, Point, Proximity, Threshold, exact, gjk};
 
 /// A kind of pair as convex hulls of `M` and `N` points, with its own fast filter.
 pub(super) trait Hulls<const M: usize, const N: usize> {
@@ -111,22 +111,18 @@ pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Poi
             );
         }
     };
+    // The cheap guess is right for nearly all features that do not meet.
+    if let Some(guess) = gjk::parts(&frame)
+        && let Some(proximity) = proved(a, b, &frame, &guess)
+    {
+        return proximity;
+    }
     if let Some((weights_a, weights_b)) = pierced(&frame) {
         return assemble(a, b, 0.0, weights_a, weights_b, DecidedBy::Filter);
     }
     let guess = candidates::nearest(&frame.a, &frame.b);
-    if let Some(pair) = Pair::new(a, b, &frame, &guess)
-        && let Some(distance) = pair.distance()
-    {
-        let distance = ldexp(distance, frame.exponent);
-        return assemble(
-            a,
-            b,
-            distance,
-            pair.weights_a,
-            pair.weights_b,
-            DecidedBy::Extended,
-        );
+    if let Some(proximity) = proved(a, b, &frame, &guess) {
+        return proximity;
     }
     let nearest = exact::nearest(a, b);
     assemble(
@@ -137,6 +133,26 @@ pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Poi
         nearest.weights_b,
         DecidedBy::Exact,
     )
+}
+
+/// What a guess comes to, if it is proved to be the nearest.
+fn proved<const M: usize, const N: usize>(
+    a: &[Point; M],
+    b: &[Point; N],
+    frame: &Frame<M, N>,
+    guess: &candidates::Guess,
+) -> Option<Proximity> {
+    let pair = Pair::new(a, b, frame, guess)?;
+    let distance = ldexp(pair.distance()?, frame.exponent);
+    let (weights_a, weights_b) = (pair.weights_a, pair.weights_b);
+    Some(assemble(
+        a,
+        b,
+        distance,
+        weights_a,
+        weights_b,
+        DecidedBy::Extended,
+    ))
 }
 
 /// Weights of a common point, if an edge of one provably passes through the face of the other.

@@ -193,6 +193,9 @@ impl SatisficingProblem for Teapots {
     fn fitness(&self, solution: &(u32, u32)) -> f64 {
         self.pairs.fitness(solution)
     }
+    fn fitness_all(&self, solutions: &[(u32, u32)], fitness: &mut [f64]) {
+        self.pairs.fitness_all(solutions, fitness);
+    }
     fn threshold(&self) -> f64 {
         self.pairs.threshold()
     }

@@ -27,9 +27,18 @@ pub(super) struct Link {
     pub(super) pairs: Vec<Pair>,
     pub(super) seen: Option<u64>,
     skin: Option<Skin>,
-    /// For each of `pairs` how far below the threshold its distance was at the frame `bounded`, rounded down.
+    measured: Measured,
+}
+
+/// How far below the threshold the distances of a link's pairs were at a frame, rounded down.
+#[derive(Default)]
+struct Measured {
+    frame: Option<u64>,
+    /// In the order of the pairs.
     slack: Vec<f32>,
-    bounded: Option<u64>,
+    /// The pairs in the order of falling slack, and their slacks.
+    likely: Vec<Contact>,
+    falling: Vec<f32>,
 }
 
 /// Every pair that was within the threshold plus a margin; complete while the bodies have not used the margin up.
@@ -53,12 +62,27 @@ impl Link {
     pub(super) fn forget(&mut self, seen: Option<u64>) {
         self.seen = seen;
         self.skin = None;
-        self.bounded = None;
+        self.measured.frame = None;
     }
 
-    /// The slacks, if they were measured at the frame `at` for the pairs there are.
-    pub(super) fn slack(&self, at: Option<u64>) -> Option<&[f32]> {
-        (at.is_some() && self.bounded == at && self.slack.len() == self.pairs.len()).then_some(&self.slack)
+    /// The pairs of frame `at` in the order of falling slack, if they were measured and are still those of that frame.
+    pub(super) fn likely(&self, at: Option<u64>) -> Option<&[Contact]> {
+        (at.is_some() && self.measured.frame == at && self.seen == at).then_some(&self.measured.likely)
+    }
+
+    /// How many of `likely` are closer than the bodies have moved, and so hold without a look.
+    pub(super) fn holding(&self, motion: f64) -> usize {
+        self.measured
+            .falling
+            .partition_point(|&slack| f64::from(slack) > motion)
+    }
+
+    /// Those pairs in the order of the pairs.
+    pub(super) fn held(&self, motion: f64) -> impl Iterator<Item = Pair> {
+        let slacks = self.pairs.iter().zip(&self.measured.slack);
+        slacks
+            .filter(move |(_, slack)| f64::from(**slack) > motion)
+            .map(|(pair, _)| *pair)
     }
 }
 
@@ -90,8 +114,7 @@ impl Scene {
                         pairs: Vec::new(),
                         seen: None,
                         skin: None,
-                        slack: Vec::new(),
-                        bounded: None,
+                        measured: Measured::default(),
                     });
                 } else {
                     self.filtered += u64::from(a <= b);
@@ -279,8 +302,9 @@ impl Scene {
             if seen != Some(self.frame) {
                 continue;
             }
-            let mut slack = std::mem::take(&mut self.links[at].slack);
+            let mut measured = std::mem::take(&mut self.links[at].measured);
             let link = &self.links[at];
+            let slack = &mut measured.slack;
             slack.clear();
             slack.extend(link.pairs.iter().map(|&pair| {
                 // a distance is within one unit in the last place; the cast may round up by half of one of f32
@@ -290,9 +314,36 @@ impl Scene {
             slack
                 .iter_mut()
                 .for_each(|slack| *slack = slack.next_down().max(0.0));
-            let link = &mut self.links[at];
-            (link.slack, link.bounded) = (slack, seen);
+            // numbers that are not negative are ordered as their bits are
+            let mut order: Vec<u64> = (0..)
+                .zip(&*slack)
+                .map(|(pair, slack)| u64::from(!slack.to_bits()) << 32 | pair)
+                .collect();
+            order.sort_unstable();
+            let place = |key: &u64| *key as u32 as usize;
+            measured.likely.clear();
+            let contacts = order.iter().map(|key| link.contact(link.pairs[place(key)]));
+            measured.likely.extend(contacts);
+            measured.falling.clear();
+            measured.falling.extend(order.iter().map(|key| slack[place(key)]));
+            measured.frame = seen;
+            self.links[at].measured = measured;
         }
+        // The next pass begins with the link of most pairs: its contacts are laid out here, so that it need not copy them.
+        let first = self.order().first().copied();
+        self.laid_out.clear();
+        if let Some(first) = first
+            && let Some(likely) = self.links[first].likely(Some(self.frame))
+        {
+            self.laid_out.extend_from_slice(likely);
+        }
+    }
+
+    /// The links, those with most pairs first.
+    pub(super) fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.links.len()).collect();
+        order.sort_by_key(|&at| (std::cmp::Reverse(self.links[at].pairs.len()), at));
+        order
     }
 
     /// How much the distance of two features of a link can have changed since the last frame.

@@ -95,6 +95,8 @@ pub struct Scene {
     grid: PointGrid,
     join: TreeJoin,
     parallel: bool,
+    /// What the next pass may deliver first, in its order.
+    laid_out: Vec<Contact>,
 }
 
 impl Scene {
@@ -114,6 +116,7 @@ impl Scene {
             grid: PointGrid::new(),
             join: TreeJoin::new(),
             parallel: false,
+            laid_out: Vec::new(),
         }
     }
 

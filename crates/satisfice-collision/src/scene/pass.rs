@@ -1,6 +1,6 @@
 //! A frame under a budget: the likeliest pairs first, and an exact resume.
 
-use super::link::{Link, Near, couple, keeps};
+use super::link::{Near, couple, keeps};
 use super::{Completeness, Contact, Frame, Scene, Skips};
 use crate::Error;
 use crate::broad::{Couple, Pair, Visit};
@@ -16,35 +16,65 @@ const PARTS: usize = 16;
 const VISITS_OF_PART: usize = 256;
 
 /// A frame that is being enumerated piece by piece. First come the contacts of the last frame that hold whatever moved (see
-/// [`Scene::measure_contacts`]), then the others are verified, those of the bodies with most contacts first; then the
-/// bodies are searched in the same order.
+/// [`Scene::measure_contacts`]), at no cost: they were laid out between the frames. Then the others are verified, the closest
+/// of the last frame first, those of the bodies with most contacts first of all; then the bodies are searched in the same
+/// order.
 pub struct Pass {
     frame: u64,
     order: Vec<usize>,
-    /// For each link the pairs delivered so far.
-    delivered: Vec<Vec<Pair>>,
-    contacts: Vec<Contact>,
+    links: Vec<Progress>,
+    delivered: Delivered,
     phase: Phase,
     skips: Skips,
 }
 
+/// What a pass has delivered of one link.
+#[derive(Default)]
+struct Progress {
+    /// So many of the likely contacts, from the first on, hold by the bound of motion and are delivered.
+    held: usize,
+    /// Whether these are all that hold so.
+    held_all: bool,
+    /// The other pairs delivered.
+    others: Vec<Pair>,
+    /// All pairs delivered before the search, sorted.
+    verified: Vec<Pair>,
+}
+
+/// Contacts in the order of their delivery. The first ones may lie there already before they are delivered.
+#[derive(Default)]
+struct Delivered {
+    contacts: Vec<Contact>,
+    count: usize,
+    /// So many of the first link's likely contacts lie there.
+    laid_out: usize,
+}
+
+impl Delivered {
+    fn push(&mut self, contact: Contact) {
+        match self.contacts.get_mut(self.count) {
+            Some(place) => *place = contact,
+            None => self.contacts.push(contact),
+        }
+        self.count += 1;
+    }
+}
+
 enum Phase {
-    /// Taking over the contacts that hold by the bound of motion, from pair `next` of the link at `turn` of the order on.
+    /// Taking over the contacts that hold by the bound of motion, of the link at `turn` of the order.
     Held {
         turn: usize,
-        next: usize,
     },
-    /// Verifying the others, likewise.
+    /// Verifying the others, from the likely one `next` on.
     Verify {
         turn: usize,
         next: usize,
     },
-    /// Descending; the stack is empty between links. `verified` counts the pairs of this link from the first phase.
+    /// Descending; the stack is empty between links.
     Search {
         turn: usize,
         stack: Vec<Visit>,
         started: bool,
-        verified: usize,
     },
     Done,
 }
@@ -53,7 +83,7 @@ impl Pass {
     /// The contacts found so far, in the order in which they were found; nothing twice.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
-        &self.contacts
+        &self.delivered.contacts[..self.delivered.count]
     }
 
     /// `Proved` once every pair has been decided or excluded.
@@ -75,7 +105,8 @@ impl Pass {
     #[must_use]
     pub fn into_frame(self) -> Frame {
         let completeness = self.completeness();
-        let mut contacts = self.contacts;
+        let mut contacts = self.delivered.contacts;
+        contacts.truncate(self.delivered.count);
         contacts.sort_unstable();
         Frame {
             contacts,
@@ -90,14 +121,25 @@ impl Scene {
     #[must_use]
     pub fn pass(&mut self) -> Pass {
         self.settle();
-        let mut order: Vec<usize> = (0..self.links.len()).collect();
-        order.sort_by_key(|&at| (std::cmp::Reverse(self.links[at].pairs.len()), at));
+        let order = self.order();
+        let last = self.frame.checked_sub(1);
+        let likely = order.first().and_then(|&at| self.links[at].likely(last));
+        let laid_out = likely.map_or(0, <[Contact]>::len);
+        let usable = laid_out > 0 && self.laid_out.len() == laid_out;
         Pass {
             frame: self.frame,
             order,
-            delivered: vec![Vec::new(); self.links.len()],
-            contacts: Vec::new(),
-            phase: Phase::Held { turn: 0, next: 0 },
+            links: self.links.iter().map(|_| Progress::default()).collect(),
+            delivered: if usable {
+                Delivered {
+                    contacts: std::mem::take(&mut self.laid_out),
+                    count: 0,
+                    laid_out,
+                }
+            } else {
+                Delivered::default()
+            },
+            phase: Phase::Held { turn: 0 },
             skips: self.start_skips(),
         }
     }
@@ -113,60 +155,95 @@ impl Scene {
         pass: &mut Pass,
         stop: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Completeness, Error> {
-        if pass.frame != self.frame || !self.linked || pass.delivered.len() != self.links.len() {
+        if pass.frame != self.frame || !self.linked || pass.links.len() != self.links.len() {
             return Err(Error::parameter(
                 "pass",
                 pass.frame,
                 "a pass of the present frame",
             ));
         }
-        while !matches!(pass.phase, Phase::Done) && !stop(pass.contacts.len()) {
+        while !matches!(pass.phase, Phase::Done) && !stop(pass.delivered.count) {
             self.piece(pass)?;
         }
         Ok(pass.completeness())
     }
 
-    /// Ends a pass: its contacts are what the next frame starts from, complete or not.
-    pub fn finish(&mut self, pass: Pass) -> Frame {
-        let done = matches!(pass.phase, Phase::Done);
-        if pass.frame == self.frame && pass.delivered.len() == self.links.len() {
-            for (link, pairs) in self.links.iter_mut().zip(&pass.delivered) {
-                link.pairs.clone_from(pairs);
-                link.pairs.sort_unstable();
-                link.forget(done.then_some(self.frame));
-            }
+    /// Ends a pass: its contacts are what the next frame starts from, complete or not. Cost: linear in them.
+    pub fn finish(&mut self, mut pass: Pass) -> Frame {
+        if pass.frame != self.frame || pass.links.len() != self.links.len() {
+            return pass.into_frame();
         }
-        pass.into_frame()
+        let (completeness, skips) = (pass.completeness(), pass.skips);
+        let mut contacts = pass.delivered.contacts;
+        contacts.clear();
+        let done = completeness == Completeness::Proved;
+        for at in 0..self.links.len() {
+            let pairs = self.sorted(at, &mut pass.links[at]);
+            let link = &mut self.links[at];
+            contacts.extend(pairs.iter().map(|&pair| link.contact(pair)));
+            link.pairs = pairs;
+            link.forget(done.then_some(self.frame));
+        }
+        Frame {
+            contacts,
+            completeness,
+            skips,
+        }
     }
 
-    /// The slack of each contact of the last frame, and how much of it the bodies' motion has used; a contact that was closer
-    /// than the bodies have moved is one still.
-    fn held<'l>(&self, link: &'l Link) -> Option<(&'l [f32], f64)> {
-        Some((link.slack(self.frame.checked_sub(1))?, self.motion(link)))
+    /// All pairs that a pass has delivered of a link, sorted.
+    fn sorted(&self, at: usize, progress: &mut Progress) -> Vec<Pair> {
+        let link = &self.links[at];
+        let mut others = std::mem::take(&mut progress.others);
+        others.sort_unstable();
+        let others = merged(progress.verified.iter().copied(), others);
+        if !progress.verified.is_empty() {
+            return others;
+        }
+        if progress.held_all {
+            merged(link.held(self.motion(link)), others)
+        } else {
+            let likely = link.likely(self.frame.checked_sub(1)).unwrap_or_default();
+            let held = likely[..progress.held].iter().map(|contact| Pair {
+                a: contact.a,
+                b: contact.b,
+            });
+            let mut held: Vec<Pair> = held.collect();
+            held.sort_unstable();
+            merged(held.into_iter(), others)
+        }
     }
 
     fn piece(&mut self, pass: &mut Pass) -> Result<(), Error> {
+        let last = self.frame.checked_sub(1);
         match &mut pass.phase {
-            Phase::Held { turn, next } => {
+            Phase::Held { turn } => {
                 let Some(&at) = pass.order.get(*turn) else {
                     pass.phase = Phase::Verify { turn: 0, next: 0 };
                     return Ok(());
                 };
                 let link = &self.links[at];
-                let held = self.held(link);
-                let end = held.map_or(0, |(slack, _)| slack.len().min(*next + 16 * STRIDE));
-                if let Some((slack, motion)) = held {
-                    for (&pair, &slack) in link.pairs[*next..end].iter().zip(&slack[*next..end]) {
-                        if f64::from(slack) > motion {
-                            pass.delivered[at].push(pair);
-                            pass.contacts.push(link.contact(pair));
-                            pass.skips.held_by_motion += 1;
-                        }
+                let progress = &mut pass.links[at];
+                let likely = link.likely(last).unwrap_or_default();
+                let holding = if likely.is_empty() {
+                    0
+                } else {
+                    link.holding(self.motion(link))
+                };
+                let end = holding.min(progress.held + 16 * STRIDE);
+                let lie_there = *turn == 0 && end <= pass.delivered.laid_out;
+                if lie_there {
+                    pass.delivered.count = end;
+                } else {
+                    for &contact in &likely[progress.held..end] {
+                        pass.delivered.push(contact);
                     }
                 }
-                *next = end;
-                if held.is_none() || end == link.pairs.len() {
-                    (*turn, *next) = (*turn + 1, 0);
+                pass.skips.held_by_motion += (end - progress.held) as u64;
+                progress.held = end;
+                if end == holding {
+                    progress.held_all = !likely.is_empty();
+                    *turn += 1;
                 }
             }
             Phase::Verify { turn, next } => {
@@ -175,18 +252,25 @@ impl Scene {
                         turn: 0,
                         stack: Vec::new(),
                         started: false,
-                        verified: 0,
                     };
                     return Ok(());
                 };
                 let link = &self.links[at];
+                let progress = &mut pass.links[at];
+                let likely = link.likely(last);
+                *next = (*next).max(progress.held);
                 let end = link.pairs.len().min(*next + STRIDE);
-                let held = self.held(link);
-                for (i, &pair) in (*next..).zip(&link.pairs[*next..end]) {
-                    let taken = held.is_some_and(|(slack, motion)| f64::from(slack[i]) > motion);
-                    if !taken && self.decide(link, pair) {
-                        pass.delivered[at].push(pair);
-                        pass.contacts.push(link.contact(pair));
+                for i in *next..end {
+                    let pair = match likely {
+                        Some(likely) => Pair {
+                            a: likely[i].a,
+                            b: likely[i].b,
+                        },
+                        None => link.pairs[i],
+                    };
+                    if self.decide(link, pair) {
+                        progress.others.push(pair);
+                        pass.delivered.push(link.contact(pair));
                     }
                 }
                 *next = end;
@@ -194,20 +278,14 @@ impl Scene {
                     (*turn, *next) = (*turn + 1, 0);
                 }
             }
-            Phase::Search {
-                turn,
-                stack,
-                started,
-                verified,
-            } => {
+            Phase::Search { turn, stack, started } => {
                 let Some(&at) = pass.order.get(*turn) else {
                     pass.phase = Phase::Done;
                     return Ok(());
                 };
-                let delivered = &mut pass.delivered[at];
                 if !*started {
-                    delivered.sort_unstable();
-                    *verified = delivered.len();
+                    let verified = self.sorted(at, &mut pass.links[at]);
+                    pass.links[at].verified = verified;
                     if self.boxes_apart(at) {
                         pass.skips.boxes_apart += 1;
                         *turn += 1;
@@ -230,10 +308,11 @@ impl Scene {
                     } else {
                         couple.step(stack, VISITS, usize::MAX, &mut found);
                     }
+                    let Progress { verified, others, .. } = &mut pass.links[at];
                     for pair in found {
-                        if delivered[..*verified].binary_search(&pair).is_err() {
-                            delivered.push(pair);
-                            pass.contacts.push(link.contact(pair));
+                        if verified.binary_search(&pair).is_err() {
+                            others.push(pair);
+                            pass.delivered.push(link.contact(pair));
                         }
                     }
                 }
@@ -262,4 +341,18 @@ fn step_in_parts(couple: &Couple<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pa
         stack.append(rest);
         found.append(pairs);
     }
+}
+
+/// Two sorted sequences as one.
+fn merged(one: impl Iterator<Item = Pair>, other: Vec<Pair>) -> Vec<Pair> {
+    let mut all = Vec::with_capacity(one.size_hint().0 + other.len());
+    let mut other = other.into_iter().peekable();
+    for pair in one {
+        while let Some(before) = other.next_if(|before| *before < pair) {
+            all.push(before);
+        }
+        all.push(pair);
+    }
+    all.extend(other);
+    all
 }

@@ -1,0 +1,237 @@
+//! A deforming scene frame by frame: a pleated cloth whose waves run on, a ball that comes down through it, a table that
+//! stays. What touches what in each frame, how long it took, what was skipped, and what a tenth of the time is enough for.
+//!
+//! `cargo run --release --example deforming`
+
+use std::env;
+use std::error::Error;
+use std::fmt::Write;
+use std::fs;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use satisfice_bench::picture::{Picture, View};
+use satisfice_collision::broad::Method;
+use satisfice_collision::distance::{PairKind, Threshold};
+use satisfice_collision::scene::{Body, Completeness, Contact, Scene, Skips};
+use satisfice_collision::{Mesh, Placement, generate};
+
+const KIND: PairKind = PairKind::TriangleTriangle;
+/// The cloth is 3 long and 1 wide before it is laid in pleats.
+const DELTA: f64 = 0.012;
+const GAP: f64 = 0.05;
+const LAYERS: usize = 5;
+const FRAMES: usize = 20;
+/// The cloth rests from this frame on, the ball from three later on.
+const REST: usize = 12;
+/// The frame that is compared with brute force.
+const SAMPLED: usize = 7;
+/// The frame that is drawn.
+const DRAWN: usize = 11;
+
+const TABLE: usize = 0;
+const BALL: usize = 1;
+const CLOTH: usize = 2;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let quick = env::var_os("SATISFICE_QUICK").is_some_and(|value| value != "0");
+    let film = Film::new(if quick { (61, 17, 1) } else { (121, 41, 3) })?;
+    let mut scene = film.scene(Method::Auto)?;
+    let mut hurried = film.scene(Method::Auto)?;
+    println!(
+        "{} triangles of the cloth, {} of the ball, {} of the table; pairs within {DELTA}.\n\
+         `kept`: share of a frame's pairs that the frame before had. `tenth`: share of them found in a tenth of the time by a scene\n\
+         that knows the frame before.\n",
+        film.cloth(0)?.triangles().len(),
+        film.ball.triangles().len(),
+        film.table.triangles().len()
+    );
+    println!("frame      ms    pairs   kept  tenth  skipped");
+    let mut csv = "frame,milliseconds,pairs,kept,found_in_a_tenth,skipped\n".to_owned();
+    let (mut before, mut shares, mut rested) = (Vec::new(), Vec::new(), false);
+    for frame in 0..FRAMES {
+        film.go_to(&mut scene, frame)?;
+        let (answer, milliseconds) = timed(|| scene.contacts())?;
+        assert_eq!(answer.completeness, Completeness::Proved);
+        let contacts = answer.contacts;
+
+        // The second scene knows the whole frame before, and has a tenth of the time for this one.
+        film.go_to(&mut hurried, frame)?;
+        let found = within(&mut hurried, milliseconds / 10.0)?;
+        assert!(
+            found
+                .iter()
+                .all(|contact| contacts.binary_search(contact).is_ok()),
+            "frame {frame}: a budget never invents contacts"
+        );
+        assert_eq!(
+            hurried.contacts()?.contacts,
+            contacts,
+            "frame {frame}: an interrupted frame can be completed"
+        );
+        hurried.measure_contacts();
+
+        if frame == SAMPLED {
+            let (expected, brute) = timed(|| film.brute_force(frame))?;
+            assert_eq!(contacts, expected, "frame {frame} differs from brute force");
+            assert!(contacts.len() > 100);
+            println!(
+                "       the {} pairs of frame {frame} are those of brute force, which took {brute:.0} ms",
+                expected.len()
+            );
+        }
+        let kept = share(count_in(&contacts, &before), contacts.len());
+        let tenth = share(found.len(), contacts.len());
+        if frame > 0 && frame < REST {
+            shares.push(tenth);
+        }
+        rested |= frame > REST + 3 && answer.skips.unmoved_bodies >= 3;
+        let skips = shown(&answer.skips);
+        println!(
+            "{frame:>5} {milliseconds:>7.2} {:>8} {:>5.0}% {:>5.0}%  {skips}",
+            contacts.len(),
+            100.0 * kept,
+            100.0 * tenth
+        );
+        writeln!(
+            csv,
+            "{frame},{milliseconds},{},{kept},{tenth},{skips}",
+            contacts.len()
+        )?;
+        if frame == DRAWN {
+            write("deforming.png", &film.picture(&scene, frame, &contacts)?)?;
+        }
+        before = contacts;
+    }
+    write("deforming.csv", csv.as_bytes())?;
+    println!(
+        "\nin a tenth of the time {:.0} % of the pairs of a moving frame on the mean",
+        100.0 * shares.iter().sum::<f64>() / shares.len() as f64
+    );
+    assert!(rested, "bodies at rest are not visited");
+    Ok(())
+}
+
+/// The bodies and how they move.
+struct Film {
+    /// Columns and rows of the cloth.
+    size: (usize, usize),
+    ball: Mesh,
+    table: Mesh,
+}
+
+impl Film {
+    fn new((columns, rows, fineness): (usize, usize, u32)) -> Result<Self, Box<dyn Error>> {
+        let flat = generate::cloth(1.2, 1.4, 7, 7)?;
+        let lower = Placement::from_translation([0.0, 0.0, -1.45 * GAP])?;
+        Ok(Self {
+            size: (columns, rows),
+            ball: generate::icosphere(0.12, fineness)?,
+            table: lower.place(&flat)?,
+        })
+    }
+
+    /// The cloth at a frame: its waves move by 3 thousandths of a turn, then rest.
+    fn cloth(&self, frame: usize) -> Result<Mesh, Box<dyn Error>> {
+        let phase = 0.003 * frame.min(REST) as f64;
+        Ok(generate::pleats(self.size.0, self.size.1, LAYERS, GAP, phase)?)
+    }
+
+    /// The ball at a frame: it comes down from above the cloth.
+    fn course(frame: usize) -> Result<Placement, Box<dyn Error>> {
+        let height = LAYERS as f64 * GAP + 0.1 - 0.008 * frame.min(REST + 3) as f64;
+        Ok(Placement::from_translation([0.05, 0.1, height])?)
+    }
+
+    fn scene(&self, method: Method) -> Result<Scene, Box<dyn Error>> {
+        let mut scene = Scene::new(KIND, Threshold::new(DELTA)?).with_method(method);
+        assert_eq!(scene.add(Body::fixed(self.table.clone())), TABLE);
+        assert_eq!(scene.add(Body::rigid(self.ball.clone())), BALL);
+        assert_eq!(scene.add(Body::deforming(self.cloth(0)?)), CLOTH);
+        Ok(scene)
+    }
+
+    fn go_to(&self, scene: &mut Scene, frame: usize) -> Result<(), Box<dyn Error>> {
+        scene.place(BALL, Self::course(frame)?)?;
+        scene.deform(CLOTH, self.cloth(frame)?.vertices())?;
+        Ok(())
+    }
+
+    /// The same frame by a scene that has seen no other and decides every pair.
+    fn brute_force(&self, frame: usize) -> Result<Vec<Contact>, Box<dyn Error>> {
+        let mut scene = self.scene(Method::BruteForce)?;
+        self.go_to(&mut scene, frame)?;
+        Ok(scene.contacts()?.contacts)
+    }
+
+    fn picture(&self, scene: &Scene, frame: usize, contacts: &[Contact]) -> Result<Vec<u8>, Box<dyn Error>> {
+        let (ball, cloth) = (Self::course(frame)?.place(&self.ball)?, self.cloth(frame)?);
+        let view = View {
+            azimuth: -62.0,
+            elevation: 22.0,
+        };
+        let mut picture = Picture::new(1200, 760, view);
+        for body in [&self.table, &ball, &cloth] {
+            picture.body(body);
+        }
+        for contact in contacts {
+            picture.highlight(contact.body_a, contact.a);
+            picture.highlight(contact.body_b, contact.b);
+            // Inside the cloth they are so many that they would hide it.
+            if contact.body_a != contact.body_b {
+                let nearest = scene.proximity(*contact)?;
+                picture.pair(nearest.point_a, nearest.point_b, true);
+            }
+        }
+        Ok(picture.png()?)
+    }
+}
+
+/// What a scene finds before a deadline, in milliseconds from now.
+#[expect(clippy::disallowed_methods, reason = "an example that shows times")]
+fn within(scene: &mut Scene, milliseconds: f64) -> Result<Vec<Contact>, Box<dyn Error>> {
+    let start = Instant::now();
+    let mut pass = scene.pass();
+    scene.advance(&mut pass, &mut |_| {
+        start.elapsed().as_secs_f64() * 1e3 > milliseconds
+    })?;
+    Ok(scene.finish(pass).contacts)
+}
+
+/// A result and how many milliseconds it took.
+#[expect(clippy::disallowed_methods, reason = "an example that shows times")]
+fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
+    let start = Instant::now();
+    Ok((work()?, start.elapsed().as_secs_f64() * 1e3))
+}
+
+fn shown(skips: &Skips) -> String {
+    let reasons = skips.by_reason().into_iter().filter(|(_, count)| *count > 0);
+    let shown: Vec<_> = reasons
+        .map(|(reason, count)| format!("{count} {reason}"))
+        .collect();
+    shown.join("; ")
+}
+
+fn count_in(contacts: &[Contact], others: &[Contact]) -> usize {
+    let known = |contact: &&Contact| others.binary_search(contact).is_ok();
+    contacts.iter().filter(known).count()
+}
+
+fn share(part: usize, whole: usize) -> f64 {
+    if whole == 0 {
+        1.0
+    } else {
+        part as f64 / whole as f64
+    }
+}
+
+/// Writes into `out/deforming`, or the folder in `SATISFICE_OUT`.
+fn write(name: &str, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
+    let folder = env::var_os("SATISFICE_OUT").map_or_else(|| PathBuf::from("out/deforming"), PathBuf::from);
+    fs::create_dir_all(&folder)?;
+    let path = folder.join(name);
+    fs::write(&path, bytes)?;
+    println!("       wrote {}", path.display());
+    Ok(())
+}
