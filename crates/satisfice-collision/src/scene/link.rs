@@ -8,7 +8,7 @@ use super::{Contact, Scene, Skips};
 use crate::Error;
 use crate::broad::{Couple, FeatureKind, Method, Moved, Pair, inflate, intersection};
 use crate::distance::{
-    PairKind, Proximity, Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
+    PairKind, Point, Proximity, Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
     vertex_triangle, vertex_vertex,
 };
 
@@ -39,6 +39,9 @@ struct Measured {
     /// The pairs in the order of falling slack, and their slacks.
     likely: Vec<Contact>,
     falling: Vec<f32>,
+    /// Of rigid bodies the closest points of the likely pairs, in the bodies' own coordinates: wherever the bodies go, the
+    /// distance of these points is one that the features do not exceed.
+    witnesses: Vec<[Point; 2]>,
 }
 
 /// Every pair that was within the threshold plus a margin; complete while the bodies have not used the margin up.
@@ -75,6 +78,11 @@ impl Link {
         self.measured
             .falling
             .partition_point(|&slack| f64::from(slack) > motion)
+    }
+
+    /// Closest points of the likely pairs, where bodies move as a whole.
+    pub(super) fn witnesses(&self) -> &[[Point; 2]] {
+        &self.measured.witnesses
     }
 
     /// Those pairs in the order of the pairs.
@@ -306,9 +314,17 @@ impl Scene {
             let link = &self.links[at];
             let slack = &mut measured.slack;
             slack.clear();
+            let whole = [link.a, link.b]
+                .iter()
+                .all(|&body| self.states[body].body.motion != Motion::Deforming);
+            let mut witnesses = Vec::new();
             slack.extend(link.pairs.iter().map(|&pair| {
+                let nearest = self.proximity_of(link.contact(pair));
+                if whole {
+                    witnesses.push(self.witness(link, pair, &nearest));
+                }
                 // a distance is within one unit in the last place; the cast may round up by half of one of f32
-                let distance = self.proximity_of(link.contact(pair)).distance;
+                let distance = nearest.distance;
                 ((delta - distance * (1.0 + 1e-12)) * (1.0 - 1e-12)).max(0.0) as f32
             }));
             slack
@@ -324,6 +340,11 @@ impl Scene {
             measured.likely.clear();
             let contacts = order.iter().map(|key| link.contact(link.pairs[place(key)]));
             measured.likely.extend(contacts);
+            measured.witnesses.clear();
+            if whole {
+                let falling = order.iter().map(|key| witnesses[place(key)]);
+                measured.witnesses.extend(falling);
+            }
             measured.falling.clear();
             measured.falling.extend(order.iter().map(|key| slack[place(key)]));
             measured.frame = seen;
@@ -337,6 +358,36 @@ impl Scene {
         {
             self.laid_out.extend_from_slice(likely);
         }
+    }
+
+    /// The closest points of a pair in the bodies' own coordinates.
+    fn witness(&self, link: &Link, pair: Pair, nearest: &Proximity) -> [Point; 2] {
+        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        [
+            (link.a, kind_a, pair.a, nearest.weights_a),
+            (link.b, kind_b, pair.b, nearest.weights_b),
+        ]
+        .map(|(body, kind, feature, weights)| self.states[body].own_point(kind, feature, weights))
+    }
+
+    /// How near the closest points of a link's likely pairs, posed anew, have to be for their features to be within the threshold
+    /// for certain: posing and weighing round in proportion to the lengths involved.
+    pub(super) fn reach(&self, link: &Link) -> f64 {
+        let sizes = self.states[link.a].extent() + self.states[link.b].extent();
+        self.threshold.get() - 1e-12 * sizes
+    }
+
+    /// Whether the closest points of a likely pair, wherever its bodies are now, are nearer than `reach`.
+    #[inline]
+    pub(super) fn still_near(&self, link: &Link, [p, q]: &[Point; 2], reach: f64) -> bool {
+        let (p, q) = (
+            self.states[link.a].posed_point(*p),
+            self.states[link.b].posed_point(*q),
+        );
+        let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        // where squares vanish, nothing is certain
+        let square = x * x + y * y + z * z;
+        reach > 1e-150 && square * (1.0 + 1e-15) < reach * reach
     }
 
     /// The links, those with most pairs first.

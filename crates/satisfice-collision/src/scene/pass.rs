@@ -6,7 +6,7 @@ use crate::Error;
 use crate::broad::{Couple, Pair, Visit};
 
 /// Pairs verified between two questions to the budget.
-const STRIDE: usize = 64;
+const STRIDE: usize = 128;
 /// Pairs of groups of eight boxes visited between two questions to the budget.
 const VISITS: usize = 16;
 
@@ -260,6 +260,8 @@ impl Scene {
                 let likely = link.likely(last);
                 *next = (*next).max(progress.held);
                 let end = link.pairs.len().min(*next + STRIDE);
+                let reach = self.reach(link);
+                let witnesses = if likely.is_some() { link.witnesses() } else { &[] };
                 for i in *next..end {
                     let pair = match likely {
                         Some(likely) => Pair {
@@ -268,7 +270,11 @@ impl Scene {
                         },
                         None => link.pairs[i],
                     };
-                    if self.decide(link, pair) {
+                    let near = witnesses
+                        .get(i)
+                        .is_some_and(|points| self.still_near(link, points, reach));
+                    pass.skips.held_by_motion += u64::from(near);
+                    if near || self.decide(link, pair) {
                         progress.others.push(pair);
                         pass.delivered.push(link.contact(pair));
                     }

@@ -19,7 +19,8 @@ pub struct Skips {
     pub without_partner: u64,
     /// Pairs of features kept from the last frame because neither moved.
     pub unmoved_pairs: u64,
-    /// Contacts of the last frame that were closer than the bodies have moved since, and so still hold.
+    /// Contacts of the last frame that still hold, as the bodies' motion alone says: they were closer than it is long, or their
+    /// then closest points are near enough still.
     pub held_by_motion: u64,
     /// Pairs of near features that are neighbours on the mesh.
     pub mesh_neighbours: u64,

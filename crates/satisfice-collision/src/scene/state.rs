@@ -246,6 +246,35 @@ impl State {
         }
     }
 
+    /// The point of a feature with these weights, before the placement.
+    pub(super) fn own_point(&self, kind: FeatureKind, feature: u32, weights: [f64; 3]) -> Point {
+        let corners = self.corners_of(kind, feature).map(|v| self.vertices[v as usize]);
+        if kind == FeatureKind::Vertex {
+            return corners[0];
+        }
+        std::array::from_fn(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
+    }
+
+    /// Where a point of the body is in the world.
+    #[inline]
+    pub(super) fn posed_point(&self, point: Point) -> Point {
+        if self.rests {
+            point
+        } else {
+            self.placement.apply(point)
+        }
+    }
+
+    /// No coordinate of the body, before or after its placement, is larger.
+    pub(super) fn extent(&self) -> f64 {
+        let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        largest(&self.local.min)
+            + largest(&self.local.max)
+            + largest(&self.bounds.min)
+            + largest(&self.bounds.max)
+            + largest(&self.placement.translation())
+    }
+
     /// How many features of a kind there are.
     pub(super) fn count(&self, kind: FeatureKind) -> usize {
         match kind {

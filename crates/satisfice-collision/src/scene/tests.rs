@@ -336,7 +336,7 @@ fn a_budget_cut_finds_last_frames_contacts_first() {
     scene.deform(body, &fold(0.05)).unwrap();
     let mut pass = scene.pass();
     // as many questions as the verification of last frame's pairs takes
-    let mut left = all / 64 + 1;
+    let mut left = all / 128 + 1;
     scene
         .advance(&mut pass, &mut |_| {
             left -= 1;
