@@ -85,6 +85,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         if frame > 0 && frame < REST {
             shares.push(tenth);
         }
+        if frame > REST + 3 {
+            assert_eq!(
+                found.len(),
+                contacts.len(),
+                "frame {frame}: what rests is known at once"
+            );
+        }
         rested |= frame > REST + 3 && answer.skips.unmoved_bodies >= 3;
         let skips = shown(&answer.skips);
         println!(

@@ -68,6 +68,17 @@ impl Link {
         self.measured.frame = None;
     }
 
+    /// Nothing has moved up to this frame: all that is known holds.
+    pub(super) fn rested(&mut self, frame: u64) {
+        if self.measured.frame == self.seen {
+            self.measured.frame = Some(frame);
+        }
+        if let Some(skin) = &mut self.skin {
+            skin.seen = frame;
+        }
+        self.seen = Some(frame);
+    }
+
     /// The pairs of frame `at` in the order of falling slack, if they were measured and are still those of that frame.
     pub(super) fn likely(&self, at: Option<u64>) -> Option<&[Contact]> {
         (at.is_some() && self.measured.frame == at && self.seen == at).then_some(&self.measured.likely)
@@ -140,18 +151,24 @@ impl Scene {
         }
     }
 
+    /// Whether the pairs that are known are those of the present frame, since nothing has moved.
+    pub(super) fn is_at_rest(&self, link: &Link) -> bool {
+        let unmoved = |body: usize| self.states[body].moved == Moved::None;
+        let last = self.frame.checked_sub(1);
+        link.seen == Some(self.frame)
+            || (last.is_some() && link.seen == last && unmoved(link.a) && unmoved(link.b))
+    }
+
     /// Brings the pairs of a link up to the present frame.
     pub(super) fn enumerate(&mut self, at: usize, skips: &mut Skips) -> Result<(), Error> {
         let frame = self.frame;
+        let at_rest = self.is_at_rest(&self.links[at]);
         let link = &mut self.links[at];
         let (a, b) = (&self.states[link.a], &self.states[link.b]);
         let last = link.seen == frame.checked_sub(1) && frame > 0;
-        if link.seen == Some(frame) || (last && a.moved == Moved::None && b.moved == Moved::None) {
+        if at_rest {
             skips.unmoved_bodies += 1;
-            link.seen = Some(frame);
-            if let Some(skin) = &mut link.skin {
-                skin.seen = frame;
-            }
+            link.rested(frame);
             return Ok(());
         }
         if link.a != link.b && intersection(&a.bounds, &inflate(&b.bounds, self.threshold.get())).is_none() {

@@ -31,6 +31,8 @@ pub struct Pass {
 /// What a pass has delivered of one link.
 #[derive(Default)]
 struct Progress {
+    /// Whether nothing moved, so that the pairs that are known are those of this frame; `held` counts them then.
+    at_rest: bool,
     /// So many of the likely contacts, from the first on, hold by the bound of motion and are delivered.
     held: usize,
     /// Whether these are all that hold so.
@@ -181,6 +183,10 @@ impl Scene {
             let pairs = self.sorted(at, &mut pass.links[at]);
             let link = &mut self.links[at];
             contacts.extend(pairs.iter().map(|&pair| link.contact(pair)));
+            if pass.links[at].at_rest {
+                link.rested(self.frame);
+                continue;
+            }
             link.pairs = pairs;
             link.forget(done.then_some(self.frame));
         }
@@ -194,6 +200,9 @@ impl Scene {
     /// All pairs that a pass has delivered of a link, sorted.
     fn sorted(&self, at: usize, progress: &mut Progress) -> Vec<Pair> {
         let link = &self.links[at];
+        if progress.at_rest {
+            return link.pairs[..progress.held].to_vec();
+        }
         let mut others = std::mem::take(&mut progress.others);
         others.sort_unstable();
         let others = merged(progress.verified.iter().copied(), others);
@@ -224,6 +233,19 @@ impl Scene {
                 };
                 let link = &self.links[at];
                 let progress = &mut pass.links[at];
+                progress.at_rest = self.is_at_rest(link);
+                if progress.at_rest {
+                    let end = link.pairs.len().min(progress.held + 16 * STRIDE);
+                    for &pair in &link.pairs[progress.held..end] {
+                        pass.delivered.push(link.contact(pair));
+                    }
+                    progress.held = end;
+                    if end == link.pairs.len() {
+                        pass.skips.unmoved_bodies += 1;
+                        *turn += 1;
+                    }
+                    return Ok(());
+                }
                 let likely = link.likely(last).unwrap_or_default();
                 let holding = if likely.is_empty() {
                     0
@@ -257,6 +279,10 @@ impl Scene {
                 };
                 let link = &self.links[at];
                 let progress = &mut pass.links[at];
+                if progress.at_rest {
+                    (*turn, *next) = (*turn + 1, 0);
+                    return Ok(());
+                }
                 let likely = link.likely(last);
                 *next = (*next).max(progress.held);
                 let end = link.pairs.len().min(*next + STRIDE);
@@ -289,6 +315,10 @@ impl Scene {
                     pass.phase = Phase::Done;
                     return Ok(());
                 };
+                if pass.links[at].at_rest {
+                    *turn += 1;
+                    return Ok(());
+                }
                 if !*started {
                     let verified = self.sorted(at, &mut pass.links[at]);
                     pass.links[at].verified = verified;

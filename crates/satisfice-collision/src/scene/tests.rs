@@ -361,6 +361,42 @@ fn a_budget_cut_finds_last_frames_contacts_first() {
     );
 }
 
+/// Bodies that rest are not visited by a pass, either: what is known of them comes at once, and counts as complete.
+#[test]
+fn a_pass_takes_over_what_has_not_moved() {
+    let ball = generate::icosphere(0.5, 2).unwrap();
+    let mut scene = Scene::new(PairKind::TriangleTriangle, Threshold::new(0.05).unwrap());
+    let at = |x: f64| Placement::from_translation([x, 0.01, 0.02]).unwrap();
+    scene.add(Body::fixed(ball.clone()));
+    for x in [0.9, 1.8] {
+        scene.add(Body::rigid(ball.clone()).at(at(x)));
+    }
+    let before = scene.contacts().unwrap().contacts;
+    let complete = |scene: &mut Scene| {
+        let mut pass = scene.pass();
+        scene.advance(&mut pass, &mut |_| false).unwrap();
+        scene.finish(pass)
+    };
+    let same = complete(&mut scene);
+    assert_eq!((&same.contacts, same.skips.unmoved_bodies), (&before, 2 + 1));
+    // The last ball moves: of three pairs of bodies only the first one rests.
+    scene.place(2, at(1.81)).unwrap();
+    let mut pass = scene.pass();
+    let of_first = before.iter().filter(|contact| contact.bodies() == (0, 1)).count();
+    scene.advance(&mut pass, &mut |found| found >= of_first).unwrap();
+    assert!(pass.contacts().len() >= of_first && of_first > 100);
+    let part = scene.finish(pass).contacts;
+    let answer = complete(&mut scene);
+    assert_eq!(answer.completeness, Completeness::Proved);
+    let mut fresh = Scene::new(PairKind::TriangleTriangle, Threshold::new(0.05).unwrap());
+    fresh.add(Body::fixed(ball.clone()));
+    for x in [0.9, 1.81] {
+        fresh.add(Body::rigid(ball.clone()).at(at(x)));
+    }
+    assert_eq!(answer.contacts, fresh.contacts().unwrap().contacts);
+    assert!(part.iter().all(|contact| answer.contacts.contains(contact)));
+}
+
 #[test]
 fn filters_leave_out_bodies_and_vertices() {
     let ball = generate::icosphere(0.5, 1).unwrap();
