@@ -252,6 +252,8 @@ fn chart(runs: &[(&str, Vec<Found>)], truth: usize, seeds: u64) -> Chart {
                     .map(|t| (t, Spread::of(reports.iter().map(|report| value(report, t))).mean))
                     .collect(),
                 band: Vec::new(),
+                marks: false,
+                steps: false,
             })
             .collect::<Vec<_>>()
     };
