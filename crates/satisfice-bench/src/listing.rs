@@ -11,6 +11,8 @@ use crate::catalogue;
 pub struct Listing {
     /// The engines.
     pub engines: Vec<Item>,
+    /// The parameters that every engine takes beside its own.
+    pub common_engine_parameters: Vec<Row>,
     /// The problems.
     pub problems: Vec<Item>,
 }
@@ -106,6 +108,7 @@ pub fn listing() -> Listing {
                 parameters: rows(entry.parameters),
             })
             .collect(),
+        common_engine_parameters: rows(engine::COMMON_PARAMETERS),
         problems: catalogue::all()
             .iter()
             .map(|entry| Item {

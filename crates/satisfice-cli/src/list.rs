@@ -19,6 +19,8 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<ExitCode> {
             "--engine NAME --engine-set PARAMETER=VALUE",
             &listing.engines,
         );
+        text.push_str("\n  Every engine also takes:\n");
+        text.push_str(&parameters(&listing.common_engine_parameters));
         text.push('\n');
         text.push_str(&table(
             "problem",
@@ -37,23 +39,31 @@ fn table(what: &str, usage: &str, items: &[Item]) -> String {
     for item in items {
         let _ = writeln!(text, "\n  {}: {}", item.name, item.summary);
         let _ = writeln!(text, "      source: {}", item.reference);
-        let rows: Vec<[String; 4]> = item.parameters.iter().map(columns).collect();
-        let width = |column: usize| {
-            rows.iter()
-                .map(|row| row[column].chars().count())
-                .max()
-                .unwrap_or(0)
-        };
-        let widths = [width(0), width(1), width(2)];
-        for [name, default, range, summary] in &rows {
-            let _ = writeln!(
-                text,
-                "      {name:<a$}  {default:<b$}  {range:<c$}  {summary}",
-                a = widths[0],
-                b = widths[1],
-                c = widths[2]
-            );
-        }
+        text.push_str(&parameters(&item.parameters));
+    }
+    text
+}
+
+/// A table of parameters, a line each.
+fn parameters(rows: &[Row]) -> String {
+    let rows: Vec<[String; 4]> = rows.iter().map(columns).collect();
+    let width = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths = [width(0), width(1), width(2)];
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    for [name, default, range, summary] in &rows {
+        let _ = writeln!(
+            text,
+            "      {name:<a$}  {default:<b$}  {range:<c$}  {summary}",
+            a = widths[0],
+            b = widths[1],
+            c = widths[2]
+        );
     }
     text
 }

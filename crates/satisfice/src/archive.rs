@@ -136,13 +136,34 @@ impl<T: Identity> Archive<T> {
         if self.solutions.is_empty() {
             return false;
         }
+        solution.visit_keys(&mut |key| self.may_hold(key) && self.find(key, solution).is_some())
+    }
+
+    /// [`Archive::contains`], where hit `recent` is looked at first and left for the next time: whoever finds a known hit
+    /// again often does so many times.
+    #[inline]
+    pub(crate) fn contains_again(&self, solution: &T, recent: &mut usize) -> bool {
+        if self.solutions.get(*recent).is_some_and(|hit| hit.same(solution)) && !self.is_hidden(*recent) {
+            return true;
+        }
+        let mut found = None;
         solution.visit_keys(&mut |key| {
-            self.may_hold(key)
-                && self
-                    .table
-                    .find(key, |&i| self.solutions[i as usize].same(solution))
-                    .is_some()
-        })
+            if self.may_hold(key) {
+                found = self.find(key, solution);
+            }
+            found.is_some()
+        });
+        if let Some(index) = found {
+            *recent = index as usize;
+        }
+        found.is_some()
+    }
+
+    #[inline]
+    fn find(&self, key: u64, solution: &T) -> Option<u32> {
+        self.table
+            .find(key, |&i| self.solutions[i as usize].same(solution))
+            .copied()
     }
 
     /// Whether a hit that is the same as `solution` passes `test`.
@@ -198,10 +219,7 @@ impl<T: Identity> Archive<T> {
     pub(crate) fn position(&self, solution: &T) -> Option<usize> {
         let mut found = None;
         solution.visit_keys(&mut |key| {
-            found = self
-                .table
-                .find(key, |&i| self.solutions[i as usize].same(solution))
-                .copied();
+            found = self.find(key, solution);
             found.is_some()
         });
         found

@@ -78,6 +78,8 @@ pub(crate) struct Ledger {
     next_count: u64,
     next_time: Duration,
     next_progress: Duration,
+    /// The hit that was found again last.
+    recent: usize,
     /// Whether one of these has come, as of the last look at the clock.
     tick_is_due: bool,
 }
@@ -96,6 +98,7 @@ impl Ledger {
             next_time: budget.time.map_or(Duration::MAX, |time| time / 100),
             next_progress: PROGRESS_EVERY,
             tick_is_due: false,
+            recent: 0,
         }
     }
 
@@ -127,6 +130,7 @@ impl Ledger {
             next_time: step.saturating_mul(passed.saturating_add(1)),
             next_progress: elapsed + PROGRESS_EVERY,
             tick_is_due: false,
+            recent: 0,
         }
     }
 
@@ -428,7 +432,7 @@ impl Ledger {
                 Outcome::Known(fitness)
             }
         };
-        if archive.contains(solution) {
+        if archive.contains_again(solution, &mut self.recent) {
             return again(&mut self.counts);
         }
         let solution = problem.canonical(solution.clone());

@@ -28,8 +28,25 @@ pub struct Entry {
     pub build_f64: Build<f64>,
 }
 
+/// Parameters that every engine takes beside its own.
+pub const COMMON_PARAMETERS: &[Parameter] = &[
+    Parameter::choice(
+        "exhaust",
+        "whether the neighbourhood of every hit is exhausted beside the engine, with up to half of the evaluations",
+        "no",
+        &["no", "yes"],
+    ),
+    Parameter::choice(
+        "prune",
+        "whether the engine is kept out of regions that the problem's lower bounds exclude, where it offers any",
+        "no",
+        &["no", "yes"],
+    ),
+];
+
 impl Entry {
-    /// The engine with parameters `(name, text)`, the others at their defaults.
+    /// The engine with parameters `(name, text)`, its own and [common ones](COMMON_PARAMETERS), the others at their
+    /// defaults.
     ///
     /// # Errors
     /// [`Error::Unknown`] and [`Error::Parameter`] as in [`Values::with`].
@@ -37,12 +54,23 @@ impl Entry {
         &self,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Named<S>, Error> {
-        let values = Values::with(self.parameters, self.name, settings)?;
-        Ok(Named {
+        let (common, own): (Vec<_>, Vec<_>) = settings
+            .into_iter()
+            .partition(|(name, _)| COMMON_PARAMETERS.iter().any(|row| row.name == *name));
+        let common = Values::with(COMMON_PARAMETERS, self.name, common)?;
+        let values = Values::with(self.parameters, self.name, own)?;
+        let mut named = Named {
             name: self.name.to_owned(),
             parameters: values.texts(),
             engine: S::build(self, &values)?,
-        })
+        };
+        if common.text("exhaust") == "yes" {
+            named = named.exhausting();
+        }
+        if common.text("prune") == "yes" {
+            named = named.pruned();
+        }
+        Ok(named)
     }
 }
 

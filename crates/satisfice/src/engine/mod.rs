@@ -11,6 +11,7 @@ mod branch_and_bound;
 mod descent;
 mod descent_flood;
 mod entry;
+mod exhausting;
 mod flood;
 mod informants;
 mod latest_hit_qpso;
@@ -32,7 +33,7 @@ mod swarm;
 mod velocity_swarm;
 mod walk;
 
-pub use entry::{Build, Entry, Named, all, build, default, find};
+pub use entry::{Build, COMMON_PARAMETERS, Entry, Named, all, build, default, find};
 
 /// What an engine says after proposing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
