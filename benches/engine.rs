@@ -1,5 +1,6 @@
 //! What an evaluation costs: every engine on a free fitness, on the teapots and on a fitness of ten microseconds, the same
-//! arithmetic as a hand-written loop beside the engine that it copies, the archive, and argmin's particle swarm.
+//! arithmetic as a hand-written loop beside the engine that it copies, one thread and two, the archive, and argmin's particle
+//! swarm.
 //!
 //! `cargo bench --bench engine`; the figures are nanoseconds an evaluation (elements a second). Seeds are fixed. The
 //! hand-written loops draw the same numbers as the engines: their hits are compared first.
@@ -266,6 +267,27 @@ fn engines(c: &mut Criterion) {
     every_engine(c, "ten-microseconds", "lattice", &Slow(Lattice::new()), 1_000);
 }
 
+/// Ten-microsecond evaluations in batches of at least 64, on one thread and on two: the ratio is the speed-up.
+fn threads(c: &mut Criterion) {
+    let problem = Slow(Lattice::new());
+    let evaluations = 4_096;
+    let mut group = c.benchmark_group("threads");
+    settings(&mut group, evaluations);
+    for (name, batch) in [("random", "64"), ("portfolio", "64")] {
+        for threads in [1, 2] {
+            group.bench_function(format!("{name}/{threads}"), |b| {
+                b.iter(|| {
+                    let engine = engine::find(name).unwrap().build([("batch", batch)]).unwrap();
+                    let mut search = Search::new(engine).seed(7).threads(threads);
+                    let budget = Budget::evaluations(evaluations as u64);
+                    search.run(black_box(&problem), &budget).unwrap().hit_count()
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
 fn archive(c: &mut Criterion) {
     let mut group = c.benchmark_group("archive");
     for hits in [1_000_u32, 100_000, 1_000_000] {
@@ -344,5 +366,5 @@ fn peers(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, engines, archive, peers);
+criterion_group!(benches, engines, threads, archive, peers);
 criterion_main!(benches);
