@@ -133,8 +133,8 @@ static ENGINES: &[Entry] = &[
     entry!(
         portfolio,
         "portfolio",
-        "swarms, local searches, learned steps and uniform points that compete for evaluations by their yield",
-        "this project; parts after Chen et al. 2012, Igel et al. 2006, Luby et al. 1993, Agrawal, Goyal 2012"
+        "swarms, local searches, recombined hits, learned steps and uniform points that compete for evaluations by their yield",
+        "this project; parts after Chen et al. 2012, Igel et al. 2006, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012"
     ),
     entry!(
         random,

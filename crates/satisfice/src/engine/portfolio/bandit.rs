@@ -6,8 +6,11 @@ use crate::seed::SearchRng;
 
 /// Evaluations after which a past hit counts for 1/e: yields change as a search goes on.
 const MEMORY: f64 = 1000.0;
+/// Hits that have to be remembered, of all arms together, before the past fades: where hits are rare, nothing else tells the
+/// sources apart.
+const EVIDENCE: f64 = 3.0;
 /// Prior of an arm, in hits and evaluations: hopeful, so that every arm is tried.
-const PRIOR_HITS: f64 = 0.5;
+const PRIOR_HITS: f64 = 0.25;
 const PRIOR_EVALUATIONS: f64 = 20.0;
 
 /// What one source has yielded lately, and in all.
@@ -36,11 +39,16 @@ impl Arm {
         self.total_hits += u64::from(hit);
     }
 
-    /// Lets the past fade by `evaluations` of all arms together.
-    pub(super) fn fade(&mut self, evaluations: usize) {
+    /// Lets the past of all arms fade by `evaluations` of all of them together.
+    pub(super) fn fade(arms: &mut [Self], evaluations: usize) {
+        if arms.iter().map(|arm| arm.hits).sum::<f64>() < EVIDENCE {
+            return;
+        }
         let factor = (-(evaluations as f64) / MEMORY).exp();
-        self.hits *= factor;
-        self.evaluations *= factor;
+        for arm in arms {
+            arm.hits *= factor;
+            arm.evaluations *= factor;
+        }
     }
 
     /// A draw from the posterior of this arm's yield.
@@ -92,8 +100,9 @@ mod tests {
                 (&mut bad, 0.005)
             };
             arm.book(rng.uniform() < rate);
-            good.fade(1);
-            bad.fade(1);
+            let mut arms = [good, bad];
+            Arm::fade(&mut arms, 1);
+            [good, bad] = arms;
             pulls[usize::from(choose_good)] += 1;
         }
         assert!(pulls[1] > 4 * pulls[0] && pulls[0] > 100, "{pulls:?}");

@@ -5,6 +5,8 @@ mod climbers;
 mod moves;
 mod neighbourhoods;
 mod one_plus_one;
+mod populations;
+mod recombination;
 mod swarms;
 mod translations;
 mod visited;
@@ -12,6 +14,8 @@ mod visited;
 use bandit::{Arm, draw};
 use climbers::Climbers;
 use neighbourhoods::Neighbourhoods;
+use populations::Populations;
+use recombination::recombine;
 use swarms::Swarms;
 use translations::Translations;
 use visited::Visited;
@@ -53,7 +57,16 @@ pub(super) const PARAMETERS: &[Parameter] = &[
         "without",
         "a source to leave out, for ablation",
         "none",
-        &["none", "swarms", "climbers", "steps", "learning", "neighbours"],
+        &[
+            "none",
+            "swarms",
+            "climbers",
+            "populations",
+            "steps",
+            "learning",
+            "recombination",
+            "neighbours",
+        ],
     ),
 ];
 
@@ -70,6 +83,10 @@ enum Source {
     Step,
     /// A hit moved by the difference of two hits, on trial.
     Trial,
+    /// Some coordinates of a hit, the others of another.
+    Cross,
+    /// A member of a population that adapts its covariance.
+    Member,
     /// A neighbour of a hit, by the problem's own word.
     Neighbour,
 }
@@ -77,13 +94,21 @@ enum Source {
 /// A candidate's source, and which swarm, climber, step or trial of it.
 type Tag = (Source, usize);
 
+/// Number of sources with an arm, and some of these.
+const ARMS: usize = 6;
+const TRIAL: usize = 3;
+const CROSS: usize = 4;
+const MEMBER: usize = 5;
+
 /// The arm of a source; steps and neighbours keep their own books.
 fn arm_of(source: Source) -> Option<usize> {
     match source {
         Source::Uniform => Some(0),
         Source::Swarm => Some(1),
         Source::Climber => Some(2),
-        Source::Trial => Some(3),
+        Source::Trial => Some(TRIAL),
+        Source::Cross => Some(CROSS),
+        Source::Member => Some(MEMBER),
         Source::Step | Source::Neighbour => None,
     }
 }
@@ -93,8 +118,8 @@ impl Saved for Source {
         (*self as u64).save(state);
     }
     fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        use Source::{Climber, Neighbour, Step, Swarm, Trial, Uniform};
-        let all = [Uniform, Swarm, Climber, Step, Trial, Neighbour];
+        use Source::{Climber, Cross, Member, Neighbour, Step, Swarm, Trial, Uniform};
+        let all = [Uniform, Swarm, Climber, Step, Trial, Cross, Member, Neighbour];
         let word: usize = from.read()?;
         all.get(word)
             .copied()
@@ -110,6 +135,7 @@ impl Saved for Source {
 ///   (1+1) strategy along continuous axes; a search that comes back to a known hit ends at once;
 /// - steps that have led from hit to hit, applied to every hit: neighbourhoods are exhausted by the short ones, and
 ///   repetitions and manifolds of hits followed by those that are learned from differences of hits;
+/// - recombinations of two hits, which find the rest of a product of sets of coordinates;
 /// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses.
 ///
 /// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
@@ -119,13 +145,14 @@ pub(super) struct Portfolio<S> {
     /// Candidates that come from one choice of source.
     block: usize,
     without: String,
-    arms: [Arm; 4],
+    arms: [Arm; ARMS],
     hits: Vec<S>,
     visited: Option<Visited>,
     /// The next point of the lattice, once so many are visited that uniform draws mostly repeat.
     scan: u64,
     swarms: Swarms<S>,
     climbers: Climbers<S>,
+    populations: Populations<S>,
     steps: Option<Translations<S>>,
     neighbourhoods: Neighbourhoods<S>,
     tags: Vec<Tag>,
@@ -140,12 +167,13 @@ pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Erro
         batch,
         block,
         without: values.text("without").to_owned(),
-        arms: [Arm::default(); 4],
+        arms: [Arm::default(); ARMS],
         hits: Vec::new(),
         visited: None,
         scan: 0,
         swarms: Swarms::new(values),
         climbers: Climbers::new(block),
+        populations: Populations::new(),
         steps: None,
         neighbourhoods: Neighbourhoods::default(),
         tags: Vec::new(),
@@ -174,9 +202,15 @@ impl<S: Real> Portfolio<S> {
         if uses("climbers") {
             offer(self.arms[2].draw(rng), (Source::Climber, 0));
         }
+        if uses("populations") && self.populations.are_usable() {
+            offer(self.arms[MEMBER].draw(rng), (Source::Member, 0));
+        }
         let hits = self.hit_count();
         if uses("learning") && hits >= 3 {
-            offer(self.arms[3].draw(rng), (Source::Trial, 0));
+            offer(self.arms[TRIAL].draw(rng), (Source::Trial, 0));
+        }
+        if uses("recombination") && hits >= 2 && self.position.len() > 1 {
+            offer(self.arms[CROSS].draw(rng), (Source::Cross, 0));
         }
         if uses("steps")
             && let Some((index, good, all)) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
@@ -221,6 +255,7 @@ impl<S: Real> Portfolio<S> {
                 .swarms
                 .propose(context.space(), self.visited.as_ref(), rng, out),
             Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
+            Source::Member => self.populations.propose(context, rng, out),
             Source::Uniform => {
                 if self.visited.as_ref().is_some_and(Visited::is_dense) {
                     if !self.scan_on(context) {
@@ -250,12 +285,22 @@ impl<S: Real> Portfolio<S> {
             }
             Source::Trial => {
                 if !self.draw_trial(rng) || !self.is_fresh(context) {
+                    // Paid like a miss: else a source that has run dry would be asked for ever.
+                    self.arms[TRIAL].book(false);
                     return true;
                 }
                 out.push(&self.position);
                 self.trials
                     .truncate((self.trials.len() / self.position.len()) * self.position.len());
                 Some(self.trials.len() / self.position.len() - 1)
+            }
+            Source::Cross => {
+                if !recombine(&self.hits, rng, &mut self.position) || !self.is_fresh(context) {
+                    self.arms[CROSS].book(false);
+                    return true;
+                }
+                out.push(&self.position);
+                Some(0)
             }
             Source::Neighbour => {
                 if !self.neighbourhoods.propose(&mut self.position) {
@@ -340,6 +385,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
         self.scan = 0;
         self.swarms.begin(dimension);
         self.climbers.begin(context);
+        self.populations.begin(context);
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
             Some(steps) => steps.begin(),
@@ -406,13 +452,14 @@ impl<S: Real> Engine<S> for Portfolio<S> {
             match source {
                 Source::Swarm => self.swarms.tell(index, position, outcome),
                 Source::Climber => self.climbers.tell(index, position, outcome),
+                Source::Member => self.populations.tell(index, context, outcome),
                 Source::Step => {
                     if let Some(steps) = &mut self.steps {
                         steps.book(index, outcome.is_hit());
                     }
                 }
                 Source::Neighbour => self.neighbourhoods.book(outcome.fitness(), outcome.is_hit()),
-                Source::Uniform | Source::Trial => {}
+                Source::Uniform | Source::Trial | Source::Cross => {}
             }
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
@@ -426,9 +473,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                 steps.learn(&self.trials[index * dimension..(index + 1) * dimension], space);
             }
         }
-        for arm in &mut self.arms {
-            arm.fade(outcomes.len());
-        }
+        Arm::fade(&mut self.arms, outcomes.len());
     }
 
     fn save(&self, state: &mut State) {
@@ -437,6 +482,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
         self.scan.save(state);
         self.swarms.save(state);
         self.climbers.save(state);
+        self.populations.save(state);
         self.steps.save(state);
         self.neighbourhoods.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
@@ -449,6 +495,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
         self.scan = from.read()?;
         self.swarms.restore(from)?;
         self.climbers.restore(from)?;
+        self.populations.restore(from)?;
         self.steps = from.read()?;
         self.neighbourhoods = from.read()?;
         (self.tags, self.trials) = from.read()?;

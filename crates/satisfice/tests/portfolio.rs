@@ -1,0 +1,65 @@
+//! What some sources of the default engine are for.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use core::f64::consts::TAU;
+
+use satisfice::{Budget, Search, Space, engine, from_fn};
+
+/// Hits of three seeds together.
+fn hits(
+    without: &str,
+    evaluations: u64,
+    space: &Space<f64>,
+    delta: f64,
+    fitness: fn(&[f64]) -> f64,
+) -> usize {
+    (0..3)
+        .map(|seed| {
+            let engine = engine::find("portfolio")
+                .unwrap()
+                .build([("without", without)])
+                .unwrap();
+            let problem = from_fn(space.clone(), delta, fitness).separation(0.02);
+            let mut search = Search::new(engine).seed(seed);
+            search
+                .run(&problem, &Budget::evaluations(evaluations))
+                .unwrap()
+                .hit_count()
+        })
+        .sum()
+}
+
+/// 9^3 = 729 minima, one for each choice of nine places on three axes; uneven ones, because on a grid translations would do as
+/// well. With recombination 2,187 of 2,187 when this was written, without it 260.
+#[test]
+fn recombination_finds_a_product_of_places() {
+    let valleys = |x: &[f64]| {
+        x.iter()
+            .map(|x| 1.0 - (TAU * 8.0 * (x + 0.3 * x * x) / 1.3).cos())
+            .sum()
+    };
+    let space = Space::cube(3, 0.0, 1.0).unwrap();
+    let (with, without) = (
+        hits("none", 30_000, &space, 1e-4, valleys),
+        hits("recombination", 30_000, &space, 1e-4, valleys),
+    );
+    assert!(with == 3 * 729 && with > 4 * without, "{with} {without}");
+}
+
+/// A cusp of fractal walls, as steep as |x|^0.63 on every scale. With the other local searches left out, nothing but the
+/// populations gets to its bottom: 1 in 10^9 of the space is below delta.
+#[test]
+fn populations_find_the_bottom_of_a_rugged_cusp() {
+    let cusp = |x: &[f64]| {
+        let place = [0.21, 0.77, 0.4, 0.5];
+        let wall = |x: f64| -> f64 {
+            (0..20)
+                .map(|k| 0.5_f64.powi(k) * (1.0 - (TAU * 3.0_f64.powi(k) * x).cos()))
+                .sum()
+        };
+        x.iter().zip(place).map(|(x, place)| wall(x - place)).sum()
+    };
+    let space = Space::cube(4, 0.0, 0.9).unwrap();
+    assert_eq!(hits("climbers", 60_000, &space, 1e-3, cusp), 3);
+}
