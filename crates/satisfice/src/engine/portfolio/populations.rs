@@ -309,12 +309,12 @@ mod tests {
         for dimension in 1..6 {
             let space = Space::<f64>::cube(dimension, -1.0, 3.0).unwrap();
             let offset = vec![0.3; dimension];
-            let mut seen = vec![[false; 16]; dimension];
+            let mut seen = vec![[false; 8]; dimension];
             let mut position = vec![0.0; dimension];
             for k in 0..64 {
                 spread(&offset, k, &space, &mut position);
                 for (seen, x) in seen.iter_mut().zip(&position) {
-                    seen[((x + 1.0) * 4.0) as usize] = true;
+                    seen[((x + 1.0) * 2.0) as usize] = true;
                 }
             }
             assert!(seen.iter().flatten().all(|seen| *seen), "{dimension}");

@@ -1,0 +1,229 @@
+//! The CEC2013 niching suite: peak ratios within the competition's evaluations, by place, at 1e-4 and 1e-5; and a race against
+//! the clock on Vincent's function.
+//!
+//! ```text
+//! cargo run --release -p satisfice-problems --example cec2013 -- data=DIR [runs=50] [problems=1-20] [engine=portfolio] [race=8]
+//! ```
+//!
+//! `DIR` is the folder `data` of <https://github.com/mikeagn/CEC2013>; without it, problems 11 to 20 are left out. Each run searches
+//! once, for delta = 1e-5, and what it found is scored at both accuracies. The race has two entrants on problems 7 and 9: the
+//! engine, and a plain multistart of compass search with a hashed radius test, which stops a search as soon as it is near a known
+//! maximum. Each runs until it has all maxima, or for 30 s.
+
+use std::collections::HashMap;
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+use satisfice::{Budget, SatisficingProblem, Search, SearchRng, engine};
+use satisfice_problems::{Cec2013, Score, peak_ratio};
+
+const ACCURACIES: [f64; 2] = [1e-4, 1e-5];
+/// A race ends here at the latest.
+const LIMIT: Duration = Duration::from_secs(30);
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let known = ["data", "runs", "problems", "engine", "race"];
+    for argument in &arguments {
+        let name = argument.split('=').next().unwrap_or_default();
+        if !argument.contains('=') || !known.contains(&name) {
+            return Err(format!(
+                "`{argument}`: write NAME=VALUE with a NAME of {}",
+                known.join(", ")
+            )
+            .into());
+        }
+    }
+    let value = |name: &str, default: &str| {
+        let prefix = format!("{name}=");
+        let found = arguments
+            .iter()
+            .find_map(|argument| argument.strip_prefix(&prefix));
+        found.unwrap_or(default).to_owned()
+    };
+    let quick = std::env::var_os("SATISFICE_QUICK").is_some();
+    let data = value("data", "");
+    let runs: u64 = value("runs", if quick { "2" } else { "50" }).parse()?;
+    let races: u64 = value("race", if quick { "1" } else { "8" }).parse()?;
+    let engine = value("engine", "portfolio");
+    let problems = range(&value("problems", if data.is_empty() { "1-10" } else { "1-20" }))?;
+    if runs == 0 {
+        return Err("`runs=0`: at least one run".into());
+    }
+
+    println!("engine {engine}, seeds 0 to {}, delta 1e-5\n", runs - 1);
+    println!(
+        "| problem | optima | evaluations | peak ratio 1e-4 | 1e-5 | submitted | last new one at | seconds a run |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    let mut sums = [0.0; 2];
+    for &number in &problems {
+        let row = row(
+            &Cec2013::new(number, ACCURACIES[1], &data)?,
+            number,
+            runs,
+            &engine,
+        )?;
+        for (sum, ratio) in sums.iter_mut().zip(row) {
+            *sum += ratio;
+        }
+    }
+    let means = sums.map(|sum| sum / problems.len() as f64);
+    println!(
+        "\nmean of {} problems: {:.4} at 1e-4, {:.4} at 1e-5 (of all 20, NMMSO has .8255, RS-CMSA-ESII .9081)",
+        problems.len(),
+        means[0],
+        means[1]
+    );
+    if races > 0 {
+        println!("\nseconds until all maxima are found, median of {races} seeds\n");
+        println!("| problem | maxima | {engine} | multistart of compass search | times as fast |");
+        println!("|---|---|---|---|---|");
+        for number in [7, 9] {
+            race(&Cec2013::new(number, ACCURACIES[0], "")?, number, races, &engine)?;
+        }
+    }
+    Ok(())
+}
+
+/// `1-10`, or `7,9`.
+fn range(text: &str) -> Result<Vec<usize>, Box<dyn Error>> {
+    if let Some((first, last)) = text.split_once('-') {
+        return Ok((first.parse()?..=last.parse()?).collect());
+    }
+    text.split(',').map(|word| Ok(word.parse()?)).collect()
+}
+
+/// Runs one problem, prints its row and returns its peak ratios.
+fn row(problem: &Cec2013, number: usize, runs: u64, engine: &str) -> Result<[f64; 2], Box<dyn Error>> {
+    let start = Instant::now();
+    let mut scores: [Vec<Score>; 2] = [Vec::new(), Vec::new()];
+    let (mut submitted, mut last) = (0, 0);
+    for seed in 0..runs {
+        let mut search = Search::new(engine::build(engine)?).seed(seed);
+        let report = search.run(problem, &Budget::evaluations(problem.max_evaluations()))?;
+        let points: Vec<_> = report
+            .hits()
+            .map(|hit| hit.solution.coordinates.clone())
+            .collect();
+        submitted += points.len();
+        last += report.hits().map(|hit| hit.evaluation).max().unwrap_or(0);
+        for (scores, accuracy) in scores.iter_mut().zip(ACCURACIES) {
+            scores.push(problem.score(&points, accuracy));
+        }
+    }
+    let ratios = [peak_ratio(&scores[0]), peak_ratio(&scores[1])];
+    println!(
+        "| {number} | {} | {} | {:.3} | {:.3} | {:.1} | {} | {:.2} |",
+        problem.optima().len(),
+        problem.max_evaluations(),
+        ratios[0],
+        ratios[1],
+        submitted as f64 / runs as f64,
+        last / runs,
+        start.elapsed().as_secs_f64() / runs as f64
+    );
+    Ok(ratios)
+}
+
+fn race(problem: &Cec2013, number: usize, races: u64, engine: &str) -> Result<(), Box<dyn Error>> {
+    let maxima = problem.optima().len();
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    for seed in 0..races {
+        // The reader of the clock is the same for both; who is first takes turns.
+        let mut turns = [true, false];
+        turns.rotate_left((seed % 2) as usize);
+        for is_engine in turns {
+            let start = Instant::now();
+            let points: Vec<Vec<f64>> = if is_engine {
+                let mut search = Search::new(engine::build(engine)?).seed(seed).probes(0.0);
+                let report = search.run(problem, &Budget::time(LIMIT).and_hits(maxima as u64))?;
+                report
+                    .hits()
+                    .map(|hit| hit.solution.coordinates.clone())
+                    .collect()
+            } else {
+                multistart(problem, maxima, seed)
+            };
+            let seconds = start.elapsed().as_secs_f64();
+            let found = problem.score(&points, ACCURACIES[0]).by_place;
+            let seconds = if found == maxima { seconds } else { f64::INFINITY };
+            if is_engine {
+                ours.push(seconds);
+            } else {
+                theirs.push(seconds);
+            }
+        }
+    }
+    let median = |times: &mut Vec<f64>| {
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    let (ours, theirs) = (median(&mut ours), median(&mut theirs));
+    println!(
+        "| {number} | {maxima} | {ours:.4} | {theirs:.4} | {:.1} |",
+        theirs / ours
+    );
+    Ok(())
+}
+
+/// From uniform points: steps along the axes, halved when none is better, until the maximum is within delta or near a known one.
+/// Known maxima are in cells of a hash map as wide as the radius.
+fn multistart(problem: &Cec2013, maxima: usize, seed: u64) -> Vec<Vec<f64>> {
+    let (mut rng, start) = (SearchRng::new(seed), Instant::now());
+    let axes = problem.space().axes();
+    let (radius, goal) = (problem.radius(), problem.peak() - problem.threshold());
+    let cell = |x: &[f64]| -> Vec<i64> { x.iter().map(|x| (x / radius).floor() as i64).collect() };
+    let mut known: HashMap<Vec<i64>, Vec<usize>> = HashMap::new();
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    while found.len() < maxima && start.elapsed() < LIMIT {
+        let mut x: Vec<f64> = axes.iter().map(|axis| axis.at(rng.uniform())).collect();
+        let (mut height, mut step) = (problem.height(&x), 0.02);
+        while step > 1e-9 && height <= goal && !is_known(&x, &cell(&x), &known, &found, radius) {
+            let mut better = false;
+            for (j, axis) in axes.iter().enumerate() {
+                for sign in [1.0, -1.0] {
+                    let before = x[j];
+                    x[j] = (before + sign * step * axis.width()).clamp(axis.lower(), axis.upper());
+                    let there = problem.height(&x);
+                    if there > height {
+                        height = there;
+                        better = true;
+                        break;
+                    }
+                    x[j] = before;
+                }
+            }
+            if !better {
+                step *= 0.5;
+            }
+        }
+        if height > goal && !is_known(&x, &cell(&x), &known, &found, radius) {
+            known.entry(cell(&x)).or_default().push(found.len());
+            found.push(x);
+        }
+    }
+    found
+}
+
+/// Whether a known maximum lies within the radius of `x`: it is in the same cell or in one that touches it.
+fn is_known(
+    x: &[f64],
+    home: &[i64],
+    known: &HashMap<Vec<i64>, Vec<usize>>,
+    found: &[Vec<f64>],
+    radius: f64,
+) -> bool {
+    (0..3_usize.pow(x.len() as u32)).any(|mut code| {
+        let mut cell = home.to_vec();
+        for c in &mut cell {
+            *c += (code % 3) as i64 - 1;
+            code /= 3;
+        }
+        let near = |&index: &usize| {
+            let square: f64 = found[index].iter().zip(x).map(|(a, b)| (a - b) * (a - b)).sum();
+            square <= radius * radius
+        };
+        known.get(&cell).is_some_and(|list| list.iter().any(near))
+    })
+}

@@ -1,0 +1,88 @@
+//! Does the paper's rule serve other problems? The latest-hit swarm against QPSO attracted to the best and against uniform
+//! sampling, on problems whose hits cluster and on one whose hits do not.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use satisfice::{Budget, Catalogued, Search, Values, engine};
+use satisfice_problems::{
+    Arm, Falsification, Islands, Needles, Queens, Rastrigin, SallenKey, SevenJoints, Shell,
+};
+
+const EVALUATIONS: u64 = 30_000;
+const SEEDS: u64 = 6;
+/// The family: the paper's engine, and small swarms with restarts that follow the latest hit of their own.
+const FAMILY: [&str; 3] = ["latest-hit-qpso", "pso-latest-hit", "portfolio"];
+
+/// Hits of all seeds together.
+fn hits<P: Catalogued<Scalar = f64>>(engine: &str, settings: &[(&str, &str)]) -> f64 {
+    let problem =
+        P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap();
+    let count = (0..SEEDS).map(|seed| {
+        let mut search = Search::new(engine::build(engine).unwrap()).seed(seed);
+        let report = search.run(&problem, &Budget::evaluations(EVALUATIONS)).unwrap();
+        report.hit_count()
+    });
+    count.sum::<usize>() as f64
+}
+
+/// The best of the family, and the two that it has to beat.
+fn contest<P: Catalogued<Scalar = f64>>(settings: &[(&str, &str)]) -> [f64; 4] {
+    let family = FAMILY.map(|engine| hits::<P>(engine, settings));
+    let best = family.into_iter().fold(0.0, f64::max);
+    let result = [
+        family[0],
+        best,
+        hits::<P>("qpso", settings),
+        hits::<P>("random", settings),
+    ];
+    println!(
+        "{} {settings:?}: paper, family, best-attracting, uniform {result:?}",
+        P::NAME
+    );
+    result
+}
+
+/// Sums of 6 seeds at 30,000 evaluations. The family's best is the portfolio everywhere but on none; it has from 3 times (arms) to
+/// 100 times as many hits as uniform sampling, so that 1.5 times is far from chance. The paper's own swarm varies by a half from
+/// seed to seed: it is only asked to win over all problems together, by the geometric mean.
+#[test]
+fn latest_hits_lead_where_hits_cluster() {
+    let results = [
+        contest::<Falsification>(&[]),
+        contest::<SallenKey>(&[]),
+        contest::<Arm>(&[]),
+        contest::<Arm>(&[("links", "5")]),
+        contest::<SevenJoints>(&[]),
+        contest::<Islands>(&[]),
+        contest::<Rastrigin>(&[]),
+        contest::<Rastrigin>(&[("dimension", "3")]),
+        contest::<Shell>(&[]),
+        contest::<Queens>(&[]),
+    ];
+    let (mut over_best, mut over_uniform) = (0.0, 0.0);
+    for [paper, family, best, uniform] in results {
+        assert!(family > 1.5 * best && family > 1.5 * uniform, "{results:?}");
+        over_best += (paper.max(1.0) / best.max(1.0)).ln();
+        over_uniform += (paper.max(1.0) / uniform.max(1.0)).ln();
+    }
+    assert!(
+        over_best > 0.0 && over_uniform > 0.0,
+        "{over_best} {over_uniform}"
+    );
+}
+
+/// 1,910 needles among a million points, at places that nothing hints at: 30,000 draws hit 57 of them a seed, 344 of six, with a
+/// deviation of 19. Whatever proposes points without looking back does as well, and nothing does better; a swarm that
+/// repeats itself does worse, but the default engine must not.
+#[test]
+fn nobody_leads_on_needles() {
+    let expected = 1910.0 * (1.0 - (1.0 - 1e-6_f64).powi(EVALUATIONS as i32)) * SEEDS as f64;
+    let deviation = expected.sqrt();
+    for name in ["random", "latest-hit-qpso", "portfolio"] {
+        let found = hits::<Needles>(name, &[]);
+        println!("{name}: {found}, expected {expected:.0} +- {deviation:.0}");
+        assert!(
+            (found - expected).abs() < 4.0 * deviation,
+            "{name}: {found} instead of {expected}"
+        );
+    }
+}
