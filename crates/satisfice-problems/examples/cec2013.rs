@@ -10,10 +10,12 @@
 //! engine, and a plain multistart of compass search with a hashed radius test, which stops a search as soon as it is near a known
 //! maximum. Each runs until it has all maxima, or for 30 s.
 
-use std::collections::HashMap;
+#![expect(clippy::disallowed_methods, reason = "the race is against the clock")]
+
 use std::error::Error;
 use std::time::{Duration, Instant};
 
+use hashbrown::HashMap;
 use satisfice::{Budget, SatisficingProblem, Search, SearchRng, engine};
 use satisfice_problems::{Cec2013, Score, peak_ratio};
 
@@ -167,19 +169,22 @@ fn race(problem: &Cec2013, number: usize, races: u64, engine: &str) -> Result<()
     Ok(())
 }
 
-/// From uniform points: steps along the axes, halved when none is better, until the maximum is within delta or near a known one.
-/// Known maxima are in cells of a hash map as wide as the radius.
+/// From uniform points: steps along the axes, halved when none is better, until the maximum is within delta. Whether a known one is
+/// near is looked up whenever the step is halved, in a hash map of cells as wide as the radius.
 fn multistart(problem: &Cec2013, maxima: usize, seed: u64) -> Vec<Vec<f64>> {
     let (mut rng, start) = (SearchRng::new(seed), Instant::now());
     let axes = problem.space().axes();
-    let (radius, goal) = (problem.radius(), problem.peak() - problem.threshold());
-    let cell = |x: &[f64]| -> Vec<i64> { x.iter().map(|x| (x / radius).floor() as i64).collect() };
-    let mut known: HashMap<Vec<i64>, Vec<usize>> = HashMap::new();
-    let mut found: Vec<Vec<f64>> = Vec::new();
-    while found.len() < maxima && start.elapsed() < LIMIT {
+    let goal = problem.peak() - problem.threshold();
+    let mut known = Known {
+        radius: problem.radius(),
+        cells: HashMap::default(),
+        found: Vec::new(),
+    };
+    while known.found.len() < maxima && start.elapsed() < LIMIT {
         let mut x: Vec<f64> = axes.iter().map(|axis| axis.at(rng.uniform())).collect();
         let (mut height, mut step) = (problem.height(&x), 0.02);
-        while step > 1e-9 && height <= goal && !is_known(&x, &cell(&x), &known, &found, radius) {
+        let mut ends = known.has(&x);
+        while !ends && height <= goal && step > 1e-9 {
             let mut better = false;
             for (j, axis) in axes.iter().enumerate() {
                 for sign in [1.0, -1.0] {
@@ -196,34 +201,59 @@ fn multistart(problem: &Cec2013, maxima: usize, seed: u64) -> Vec<Vec<f64>> {
             }
             if !better {
                 step *= 0.5;
+                ends = known.has(&x);
             }
         }
-        if height > goal && !is_known(&x, &cell(&x), &known, &found, radius) {
-            known.entry(cell(&x)).or_default().push(found.len());
-            found.push(x);
+        if height > goal && !known.has(&x) {
+            known.add(x);
         }
     }
-    found
+    known.found
 }
 
-/// Whether a known maximum lies within the radius of `x`: it is in the same cell or in one that touches it.
-fn is_known(
-    x: &[f64],
-    home: &[i64],
-    known: &HashMap<Vec<i64>, Vec<usize>>,
-    found: &[Vec<f64>],
+/// Known maxima by their cell.
+struct Known {
     radius: f64,
-) -> bool {
-    (0..3_usize.pow(x.len() as u32)).any(|mut code| {
-        let mut cell = home.to_vec();
-        for c in &mut cell {
-            *c += (code % 3) as i64 - 1;
-            code /= 3;
-        }
+    cells: HashMap<[i32; 3], Vec<usize>, foldhash::fast::FixedState>,
+    found: Vec<Vec<f64>>,
+}
+
+impl Known {
+    fn cell(&self, x: &[f64]) -> [i32; 3] {
+        std::array::from_fn(|j| x.get(j).map_or(0, |x| (x / self.radius).floor() as i32))
+    }
+
+    fn add(&mut self, x: Vec<f64>) {
+        self.cells
+            .entry(self.cell(&x))
+            .or_default()
+            .push(self.found.len());
+        self.found.push(x);
+    }
+
+    /// Whether a known maximum is within the radius: it is in the same cell or in one that touches it.
+    fn has(&self, x: &[f64]) -> bool {
+        let home = self.cell(x);
         let near = |&index: &usize| {
-            let square: f64 = found[index].iter().zip(x).map(|(a, b)| (a - b) * (a - b)).sum();
-            square <= radius * radius
+            let square: f64 = self.found[index]
+                .iter()
+                .zip(x)
+                .map(|(a, b)| (a - b) * (a - b))
+                .sum();
+            square <= self.radius * self.radius
         };
-        known.get(&cell).is_some_and(|list| list.iter().any(near))
-    })
+        (0..3_i32.pow(x.len() as u32)).any(|code| {
+            let cell = [
+                home[0] + code % 3 - 1,
+                home[1] + code / 3 % 3 - 1,
+                home[2] + (code / 9 + 2) % 3 - 1,
+            ];
+            let cell = if x.len() < 3 {
+                [cell[0], cell[1], home[2]]
+            } else {
+                cell
+            };
+            self.cells.get(&cell).is_some_and(|list| list.iter().any(near))
+        })
+    }
 }

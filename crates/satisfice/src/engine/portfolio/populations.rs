@@ -178,8 +178,9 @@ impl<S: Real> Population<S> {
         let members = ((least * times as f64) as usize).min(LARGEST);
         self.mean.resize(n, S::zero());
         let (smallest, largest) = FIRST_STEP;
-        // The square makes large steps the more frequent ones: in many dimensions small ones lead into local minima only.
-        self.sigma = largest * (smallest / largest).powf(rng.uniform().powi(2));
+        // In many dimensions small steps lead into local minima only, in few they are cheap and find narrow basins.
+        let preference = (n as f64 / 4.0).clamp(0.5, 3.0);
+        self.sigma = largest * (smallest / largest).powf(rng.uniform().powf(preference));
         self.matrix.clear();
         self.matrix.resize(n * n, 0.0);
         for diagonal in self.matrix.iter_mut().step_by(n + 1) {
