@@ -484,6 +484,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
                     probes: &slice.probes,
                     observer: *observer,
                     deletes,
+                    over: false,
                 };
                 if self.engine.advance(&mut self.rng, &mut steps) {
                     idle = 0;
@@ -614,10 +615,20 @@ struct SingleSteps<'a, P: SatisficingProblem> {
     probes: &'a Probes,
     observer: &'a mut dyn Observer<P::Solution>,
     deletes: bool,
+    /// Whether the engine has been told that it was the last step.
+    over: bool,
 }
 
 impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
     fn take(&mut self, position: &mut [P::Scalar]) -> (Outcome<P::Scalar>, bool) {
+        if self.over {
+            return (Outcome::NotEvaluated, false); // no budget is overrun by an engine that does not listen
+        }
+        assert_eq!(
+            position.len(),
+            self.problem.space().dimension(),
+            "one number an axis"
+        );
         let outcome = self.ledger.evaluate_one(
             self.problem,
             self.candidates,
@@ -626,8 +637,8 @@ impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
             self.archive,
             self.observer,
         );
-        let over = self.ledger.has_stopped() || self.probes.is_due(self.ledger.counts.evaluations);
-        (outcome, !over)
+        self.over = self.ledger.has_stopped() || self.probes.is_due(self.ledger.counts.evaluations);
+        (outcome, !self.over)
     }
 
     fn elapsed_share(&self) -> f64 {

@@ -4,10 +4,12 @@
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-use satisfice::engine::{self, Ask, Named, Origin};
+use satisfice::engine::{self, Ask, Named, Origin, Steps};
 use satisfice::state::{Part, Reader, State};
 use satisfice::testing::engine::{Law, check, check_entry};
-use satisfice::{Batch, Context, Engine, Error, Outcome, SearchRng, saved_fields};
+use satisfice::{
+    Batch, Budget, Context, Engine, Error, Outcome, Search, SearchRng, Space, from_fn, saved_fields,
+};
 
 type Settings = &'static [(&'static str, &'static str)];
 
@@ -225,4 +227,36 @@ fn an_engine_of_ten_lines_keeps_the_laws() {
         saved_fields!();
     }
     assert_eq!(broken(&mut || Ok(Named::new("uniform", Uniform))), []);
+}
+
+/// Goes on stepping when it has been told to stop.
+struct Deaf;
+
+impl Engine<f64> for Deaf {
+    fn begin(&mut self, _: &dyn Context<f64>) {}
+    fn ask(&mut self, context: &dyn Context<f64>, rng: &mut SearchRng, out: &mut Batch<f64>) -> Ask {
+        out.push_with(|position| rng.position(context.space(), position));
+        Ask::More
+    }
+    fn advance(&mut self, rng: &mut SearchRng, steps: &mut dyn Steps<f64>) -> bool {
+        let mut more = true;
+        while more {
+            more = steps.take(&mut [rng.uniform(), rng.uniform()]).1;
+        }
+        for _ in 0..10 {
+            assert_eq!(steps.take(&mut [0.0, 0.0]), (Outcome::NotEvaluated, false));
+        }
+        true
+    }
+    fn tell(&mut self, _: &dyn Context<f64>, _: &Batch<f64>, _: &[Outcome<f64>], _: Origin) {}
+    saved_fields!();
+}
+
+#[test]
+fn an_engine_that_does_not_listen_overruns_no_budget() {
+    let square = from_fn(Space::cube(2, 0.0, 1.0).unwrap(), 0.5, |x: &[f64]| x[0]);
+    let report = Search::new(Named::new("deaf", Deaf))
+        .run(&square, &Budget::evaluations(777))
+        .unwrap();
+    assert_eq!(report.counts.evaluations, 777);
 }

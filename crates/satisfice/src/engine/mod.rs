@@ -115,7 +115,11 @@ pub trait Engine<S: Real>: Send {
 
 /// The search, as an engine sees it that [advances](Engine::advance) by itself.
 pub trait Steps<S> {
-    /// Brings a position inside and evaluates it. Returns its outcome and whether there may be another step.
+    /// Brings a position inside and evaluates it. Returns its outcome and whether there may be another step; after the last
+    /// one, nothing is evaluated any more.
+    ///
+    /// # Panics
+    /// If the position has not as many coordinates as the space has axes.
     fn take(&mut self, position: &mut [S]) -> (Outcome<S>, bool);
 
     /// As [`Context::elapsed_share`].
