@@ -211,6 +211,18 @@ static ENGINES: &[Entry] = &[
         "Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539"
     ),
     entry!(
+        wang,
+        "wang",
+        "the paper's rival, reconstructed: a particle swarm with niches found by clustering, hits deleted",
+        "after Wang et al. 2006, the rival of Chen et al. 2012, doi 10.3923/itj.2012.536.539; DBSCAN: Ester et al. 1996, KDD-96"
+    ),
+    entry!(
+        li,
+        "li",
+        "reconstructed: bounding volumes exclude regions, then small swarms in the leaves that are left",
+        "after Li et al. 2010, as mentioned by Chen et al. 2012, doi 10.3923/itj.2012.536.539"
+    ),
+    entry!(
         branch_and_bound,
         "branch-and-bound",
         "exact: best-first over regions by the problem's lower bounds; enumeration where there are none",

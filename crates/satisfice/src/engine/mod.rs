@@ -15,6 +15,8 @@ mod exhausting;
 mod flood;
 mod informants;
 mod latest_hit_qpso;
+mod li;
+mod niches;
 mod portfolio;
 pub mod potential_well;
 mod pruned;
@@ -32,6 +34,7 @@ mod spso_2011;
 mod swarm;
 mod velocity_swarm;
 mod walk;
+mod wang;
 
 pub use entry::{Build, COMMON_PARAMETERS, Entry, Named, all, build, default, find};
 

@@ -183,6 +183,14 @@ impl<S: Real> Swarm<S> {
         self.fitness[i]
     }
 
+    /// Forgets P_i: whatever is found next is better.
+    pub(super) fn forget(&mut self, i: usize) {
+        self.fitness[i] = S::infinity();
+        if i == self.leader {
+            self.find_leader();
+        }
+    }
+
     /// All P_i, flat.
     pub(super) fn bests(&self) -> &[S] {
         &self.bests

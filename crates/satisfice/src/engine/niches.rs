@@ -1,0 +1,72 @@
+//! Niches by density: DBSCAN (Ester, Kriegel, Sander, Xu 1996, KDD-96, pp. 226-231).
+
+/// No niche: an outlier.
+pub(super) const OUTLIER: u32 = 0;
+
+/// The niche of each of some points, numbered from 1 in the order of their first members; [`OUTLIER`] for points in none.
+///
+/// A point with at least `min_points` points within `eps`, itself included, is a core; cores within `eps` of each other are
+/// of one niche, and points within `eps` of a core are of the first such niche. O(n^2) distances.
+pub(super) fn dbscan(
+    points: usize,
+    eps: f64,
+    min_points: usize,
+    distance: impl Fn(usize, usize) -> f64,
+) -> Vec<u32> {
+    // NaN is near nothing.
+    let near = |i: usize| {
+        (0..points)
+            .filter(|&j| i == j || distance(i, j) <= eps)
+            .collect::<Vec<_>>()
+    };
+    let mut niches = vec![OUTLIER; points];
+    let mut seen = vec![false; points];
+    let mut found = 0;
+    for first in 0..points {
+        if seen[first] {
+            continue;
+        }
+        seen[first] = true;
+        let mut open = near(first);
+        if open.len() < min_points {
+            continue;
+        }
+        found += 1;
+        niches[first] = found;
+        while let Some(point) = open.pop() {
+            if niches[point] == OUTLIER {
+                niches[point] = found;
+            }
+            if !seen[point] {
+                seen[point] = true;
+                let reached = near(point);
+                if reached.len() >= min_points {
+                    open.extend(reached);
+                }
+            }
+        }
+    }
+    niches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_a_line(points: &[f64]) -> Vec<u32> {
+        dbscan(points.len(), 1.0, 3, |i, j| (points[i] - points[j]).abs())
+    }
+
+    #[test]
+    fn dense_points_are_niches_and_lonely_ones_are_none() {
+        assert_eq!(
+            on_a_line(&[0.0, 9.0, 1.0, 50.0, 9.5, 2.0, 10.0]),
+            [1, 2, 1, OUTLIER, 2, 1, 2]
+        );
+        // An end of a chain is reached from a core, though it is none.
+        assert_eq!(on_a_line(&[0.0, 1.0, 2.0, 3.0]), [1, 1, 1, 1]);
+        assert_eq!(on_a_line(&[0.0, 1.0]), [OUTLIER, OUTLIER]);
+        assert_eq!(on_a_line(&[f64::NAN, 0.0, 0.5, 0.7]), [OUTLIER, 1, 1, 1]);
+        assert_eq!(on_a_line(&[]), [0; 0]);
+    }
+}

@@ -1,0 +1,282 @@
+//! The paper's rival: a particle swarm whose niches are found by clustering. A reconstruction.
+
+use super::niches::{OUTLIER, dbscan};
+use super::pso::{PHI, constriction};
+use super::swarm::{self, Attractor, Swarm};
+use super::velocity_swarm::{Coefficients, v_max};
+use super::{Ask, Engine, Origin, WarmStart};
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::error::Error;
+use crate::parameter::{Parameter, Values};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::{Axis, Boundary};
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    swarm::particles(30),
+    PHI,
+    v_max(0.5),
+    swarm::BATCH,
+    Parameter::integer(
+        "period",
+        "guessed: sweeps between two clusterings",
+        10,
+        1,
+        1_000_000,
+    ),
+    Parameter::real(
+        "eps",
+        "guessed: radius of DBSCAN, as a share of each axis",
+        0.1,
+        0.0,
+        10.0,
+    ),
+    Parameter::integer(
+        "min-points",
+        "guessed: points that make a core of DBSCAN",
+        3,
+        1,
+        1_000_000,
+    ),
+    Parameter::real(
+        "still",
+        "guessed: an outlier slower than this is drawn anew, in cells (1e-4 of a continuous axis)",
+        0.5,
+        0.0,
+        1e9,
+    ),
+];
+
+/// One cell of a continuous axis, as a share of it.
+const CELL: f64 = 1e-4;
+
+/// PSO with constriction and niches, after the rival that the paper names (Wang et al. 2006). **A reconstruction**: of the
+/// original only this is known to us, that a swarm searches pairs of serial numbers and that clustering keeps several
+/// niches. The rows marked as guessed are ours; `docs/results/paper.md` sweeps them.
+///
+/// Every `period` sweeps DBSCAN clusters the personal bests (axes scaled to 1, radius `eps`, `min-points`). A particle of a
+/// niche is attracted by the best of its niche,
+///
+/// ```text
+/// V_i := chi (V_i + phi/2 r1 (P_i - X_i) + phi/2 r2 (G_niche - X_i)),   |V_i| <= Vmax
+/// ```
+///
+/// an outlier by its own best alone, and is drawn anew when it is slower than `still` on every axis. A niche whose members
+/// have come together within a cell is scattered over the space. A hit is deleted: it becomes the personal best, and F is
+/// infinite there from then on.
+#[derive(Debug)]
+pub(super) struct Wang<S> {
+    swarm: Swarm<S>,
+    coefficients: Coefficients<S>,
+    period: u64,
+    eps: f64,
+    min_points: usize,
+    still: f64,
+    velocities: Vec<S>,
+    niches: Vec<u32>,
+    /// Whether a particle is to be drawn anew in this sweep.
+    scattered: Vec<bool>,
+    sweeps: u64,
+}
+
+pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+    Ok(Box::new(Wang {
+        swarm: Swarm::new(values, Attractor::Best, true),
+        coefficients: constriction(values),
+        period: values.count("period") as u64,
+        eps: values.real("eps"),
+        min_points: values.count("min-points"),
+        still: values.real("still"),
+        velocities: Vec::new(),
+        niches: Vec::new(),
+        scattered: Vec::new(),
+        sweeps: 0,
+    }))
+}
+
+/// The length of a cell.
+fn cell<S: Real>(axis: &Axis<S>) -> S {
+    if axis.is_integer() {
+        S::one()
+    } else {
+        S::of(CELL) * axis.width()
+    }
+}
+
+impl<S: Real> Wang<S> {
+    fn draw_velocity(&self, context: &dyn Context<S>, rng: &mut SearchRng, velocity: &mut [S]) {
+        for (axis, v) in context.space().axes().iter().zip(velocity) {
+            *v = self.coefficients.v_max * axis.width() * S::of(2.0 * rng.uniform() - 1.0);
+        }
+    }
+
+    fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
+        self.swarm.propose_start(context, rng, out);
+        let mut velocities = vec![S::zero(); self.swarm.particles() * context.space().dimension()];
+        for velocity in velocities.chunks_mut(context.space().dimension()) {
+            self.draw_velocity(context, rng, velocity);
+        }
+        self.velocities = velocities;
+    }
+
+    /// What happens between two sweeps.
+    fn begin_sweep(&mut self, context: &dyn Context<S>) {
+        let axes = context.space().axes();
+        let particles = self.swarm.particles();
+        if self.sweeps.is_multiple_of(self.period) {
+            let swarm = &self.swarm;
+            let distance = |i: usize, j: usize| {
+                let pairs = swarm.best(i).iter().zip(swarm.best(j));
+                let square = axes.iter().zip(pairs).fold(0.0, |sum, (axis, (&p, &q))| {
+                    let width = axis.width().f64();
+                    // An axis of one value tells nobody apart.
+                    let share = if width > 0.0 { (p - q).f64() / width } else { 0.0 };
+                    sum + share * share
+                });
+                square.sqrt()
+            };
+            self.niches = dbscan(particles, self.eps, self.min_points, distance);
+        }
+        self.sweeps += 1;
+        self.scattered.clear();
+        self.scattered.resize(particles, false);
+        for niche in 1..=self.niches.iter().copied().max().unwrap_or(OUTLIER) {
+            let members: Vec<usize> = (0..particles).filter(|&i| self.niches[i] == niche).collect();
+            let together = axes.iter().enumerate().all(|(j, axis)| {
+                let ends = members
+                    .iter()
+                    .map(|&i| self.swarm.position(i)[j])
+                    .fold((S::infinity(), S::neg_infinity()), |(least, greatest), x| {
+                        (least.min(x), greatest.max(x))
+                    });
+                ends.1 - ends.0 <= cell(axis)
+            });
+            if together {
+                members.iter().for_each(|&i| self.scattered[i] = true);
+            }
+        }
+    }
+
+    /// The best member of a particle's niche; an outlier is its own.
+    fn leader(&self, i: usize) -> usize {
+        let niche = self.niches[i];
+        if niche == OUTLIER {
+            return i;
+        }
+        let members = (0..self.swarm.particles()).filter(|&k| self.niches[k] == niche);
+        members.fold(i, |best, k| {
+            if self.swarm.fitness(k) < self.swarm.fitness(best) {
+                k
+            } else {
+                best
+            }
+        })
+    }
+
+    fn stands_still(&self, context: &dyn Context<S>, i: usize) -> bool {
+        let velocity = &self.velocities[self.swarm.row(i)];
+        let slow =
+            |(axis, v): (&Axis<S>, &S)| v.abs() < S::of(self.still) * cell(axis) || axis.width() <= S::zero();
+        self.niches[i] == OUTLIER && context.space().axes().iter().zip(velocity).all(slow)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        self.swarm
+            .fits_rows_drawn("the velocities", self.velocities.len())?;
+        let particles = self.swarm.particles();
+        let fits = |length: usize| length == particles || (length == 0 && self.sweeps == 0);
+        if fits(self.niches.len()) && fits(self.scattered.len()) {
+            Ok(())
+        } else {
+            Err(Error::State(format!(
+                "its niches are not of a swarm of {particles}"
+            )))
+        }
+    }
+}
+
+impl<S: Real> Engine<S> for Wang<S> {
+    fn begin(&mut self, context: &dyn Context<S>) {
+        self.swarm.begin(context.space().dimension());
+        self.velocities.clear();
+        self.niches.clear();
+        self.scattered.clear();
+        self.sweeps = 0;
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        if !self.swarm.has_started() {
+            self.start(context, rng, out);
+            return Ask::More;
+        }
+        if self.swarm.begins_sweep() {
+            self.begin_sweep(context);
+        }
+        for (place, i) in self.swarm.due().enumerate() {
+            let row = self.swarm.row(i);
+            if self.scattered[i] || self.stands_still(context, i) {
+                self.niches[i] = OUTLIER;
+                self.swarm.forget(i);
+                out.push_with(|position| rng.position(context.space(), position));
+                let mut velocity = vec![S::zero(); row.len()];
+                self.draw_velocity(context, rng, &mut velocity);
+                self.velocities[row].copy_from_slice(&velocity);
+                continue;
+            }
+            let leader = self.leader(i);
+            let Coefficients {
+                inertia,
+                cognitive,
+                social,
+                v_max,
+            } = &self.coefficients;
+            let inertia = inertia.at(|| context.elapsed_share());
+            let (own, attractor) = (self.swarm.best(i), self.swarm.best(leader));
+            out.push(self.swarm.position(i));
+            let position = out.point_mut(place);
+            for (j, axis) in context.space().axes().iter().enumerate() {
+                let (x, v) = (&mut position[j], &mut self.velocities[row.start + j]);
+                let to_best = *cognitive * S::of(rng.uniform()) * (own[j] - *x);
+                let to_niche = *social * S::of(rng.uniform()) * (attractor[j] - *x);
+                let limit = *v_max * axis.width();
+                // In this order a NaN of infinite terms ends at the limit.
+                *v = (inertia * *v + to_best + to_niche).min(limit).max(-limit);
+                *x = *x + *v;
+            }
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        if origin == Origin::Engine && self.swarm.has_started() {
+            // What the boundary has turned back flies back.
+            let factor = match context.space().boundary() {
+                Boundary::Reflect => -S::one(),
+                Boundary::Clamp => S::zero(),
+                Boundary::Wrap => S::one(),
+            };
+            for (place, i) in self.swarm.due().enumerate() {
+                let velocity = &mut self.velocities[self.swarm.row(i)];
+                let moves = self.swarm.position(i).iter().zip(batch.point(place));
+                for (v, (&from, &to)) in velocity.iter_mut().zip(moves) {
+                    if from + *v != to && !self.scattered.get(i).copied().unwrap_or(false) {
+                        *v = *v * factor;
+                    }
+                }
+            }
+        }
+        self.swarm.tell(batch, outcomes, origin);
+    }
+
+    fn deletes(&self) -> bool {
+        true
+    }
+
+    /// The paper's rule, for all swarms alike.
+    fn warm_start(&self) -> WarmStart {
+        WarmStart::Engine
+    }
+
+    crate::saved_fields!(swarm, velocities, niches, scattered, sweeps; check);
+}
