@@ -1,0 +1,516 @@
+//! The simulation: particles, springs, gravity, and contacts that the collision crate detects.
+
+use satisfice_collision::distance::{PairKind, Point, Threshold};
+use satisfice_collision::scene::{Body, Frame, Scene};
+use satisfice_collision::{Error, Mesh, generate};
+
+use crate::springs::{Spring, relax, springs};
+
+/// Steps in which springs are relaxed between two detections.
+const SUBSTEPS: u32 = 2;
+/// Frames a second.
+const FRAMES: f64 = 60.0;
+/// Gravity, m/s^2, along -z.
+const GRAVITY: f64 = 9.81;
+/// Two particles, and a particle and the sphere, are kept this far apart, in spacings.
+const THICKNESS: f64 = 0.85;
+
+/// Which contacts push back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Response {
+    /// Those with the sphere and those of the cloth with itself.
+    #[default]
+    All,
+    /// Those with the sphere alone: the cloth passes through itself.
+    Sphere,
+}
+
+/// What is simulated. Lengths in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Particles on each side of the square cloth, 4 to 1024.
+    pub columns: u32,
+    /// Side of the cloth.
+    pub width: f64,
+    /// Radius of the sphere, whose centre is the origin.
+    pub radius: f64,
+    /// How far the middle of the cloth is beside the centre of the sphere at first, along x.
+    pub beside: f64,
+    /// How far the cloth is above the sphere at first.
+    pub drop: f64,
+    /// Drag of the air, 1/s: speeds fall by exp(-drag t).
+    pub drag: f64,
+    /// Coulomb's coefficient of friction, of all contacts.
+    pub friction: f64,
+    /// Pairs of particles closer than this are detected, in spacings. A little below 1 leaves out most of those that an edge
+    /// joins anyway; above 0.71 nothing slips through the middle of a cell undetected.
+    pub reach: f64,
+    /// Which contacts push back.
+    pub response: Response,
+}
+
+impl Default for Settings {
+    /// 128 x 128 particles, 2 m wide, on a sphere of 0.5 m.
+    fn default() -> Self {
+        Self {
+            columns: 128,
+            width: 2.0,
+            radius: 0.5,
+            beside: 0.05,
+            drop: 0.03,
+            drag: 1.0,
+            friction: 0.3,
+            reach: 0.95,
+            response: Response::All,
+        }
+    }
+}
+
+impl Settings {
+    /// Distance of two particles at rest.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.width / (f64::from(self.columns) - 1.0)
+    }
+
+    /// Distance below which a pair is a contact that is detected.
+    #[must_use]
+    pub fn delta(&self) -> f64 {
+        self.reach * self.spacing()
+    }
+
+    /// Height of the cloth at first.
+    #[must_use]
+    pub fn start_height(&self) -> f64 {
+        self.radius + self.drop + self.spacing()
+    }
+
+    /// Steps with a detection each in a frame: a particle then moves by less than half a spacing at 3 m/s.
+    fn steps(&self) -> u32 {
+        self.columns.div_ceil(16).max(2)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        if !(4..=1024).contains(&self.columns) {
+            return Err(refused("columns", self.columns, "4 to 1024 particles on a side"));
+        }
+        for (name, value) in [
+            ("width", self.width),
+            ("radius", self.radius),
+            ("reach", self.reach),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(refused(name, value, "a finite length above 0"));
+            }
+        }
+        for (name, value) in [
+            ("drop", self.drop),
+            ("drag", self.drag),
+            ("friction", self.friction),
+        ] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(refused(name, value, "a finite number of at least 0"));
+            }
+        }
+        if self.beside.is_finite() {
+            Ok(())
+        } else {
+            Err(refused("beside", self.beside, "a finite length"))
+        }
+    }
+}
+
+/// A cloth on its way.
+pub struct Simulation {
+    settings: Settings,
+    cloth: Mesh,
+    sphere: Mesh,
+    springs: Vec<Spring>,
+    points: Vec<Point>,
+    before: Vec<Point>,
+    velocities: Vec<Point>,
+    scene: Scene,
+    detected: Contacts,
+}
+
+/// The contacts of one detection, as pairs of vertex numbers.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Contacts {
+    /// Of the cloth with itself, lower number first.
+    pub within: Vec<(u32, u32)>,
+    /// Of a cloth vertex and a vertex of the sphere.
+    pub sphere: Vec<(u32, u32)>,
+}
+
+/// What should not be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Crossings {
+    /// Pairs of triangles of the cloth that intersect and share no vertex.
+    pub triangles: usize,
+    /// Particles inside the sphere.
+    pub inside: usize,
+}
+
+impl Simulation {
+    /// A flat cloth at rest above the sphere. Its mesh is [`generate::cloth`], the sphere's an icosphere fine enough that no
+    /// particle comes near the sphere unnoticed.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for settings out of range.
+    pub fn new(settings: &Settings) -> Result<Self, Error> {
+        settings.check()?;
+        let columns = settings.columns as usize;
+        let flat = generate::cloth(settings.width, settings.width, columns, columns)?;
+        let height = settings.start_height();
+        // A ripple of a thousandth of a spacing: a cloth that is exactly flat cannot buckle.
+        let ripple = |v: usize| 1e-3 * settings.spacing() * (v as f64 * 12.9898).sin();
+        let placed = flat.vertices().iter().enumerate();
+        let placed = placed
+            .map(|(v, &[x, y, _])| [x + settings.beside, y, height + ripple(v)])
+            .collect();
+        let cloth = flat.with_vertices(placed)?;
+        let sphere = sphere(settings)?;
+        let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(settings.delta())?);
+        scene.add(Body::deforming(cloth.clone()).beyond_ring(1));
+        scene.add(Body::fixed(sphere.clone()));
+        let points = cloth.vertices().to_vec();
+        Ok(Self {
+            settings: *settings,
+            springs: springs(settings.columns, settings.spacing()),
+            before: points.clone(),
+            velocities: vec![[0.0; 3]; points.len()],
+            points,
+            cloth,
+            sphere,
+            scene,
+            detected: Contacts::default(),
+        })
+    }
+
+    /// What is simulated.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Positions of the particles.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The cloth as it is now.
+    ///
+    /// # Errors
+    /// [`Error::NonFiniteVertex`] if the simulation had blown up, which its integrator excludes.
+    pub fn mesh(&self) -> Result<Mesh, Error> {
+        self.cloth.with_vertices(self.points.clone())
+    }
+
+    /// The sphere.
+    #[must_use]
+    pub fn sphere(&self) -> &Mesh {
+        &self.sphere
+    }
+
+    /// The contacts detected last.
+    #[must_use]
+    pub fn contacts(&self) -> &Contacts {
+        &self.detected
+    }
+
+    /// Steps in a frame.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        self.settings.steps()
+    }
+
+    /// Mean of the particles.
+    #[must_use]
+    pub fn centre(&self) -> Point {
+        let n = self.points.len() as f64;
+        [0, 1, 2].map(|k| self.points.iter().map(|p| p[k]).sum::<f64>() / n)
+    }
+
+    /// A sixtieth of a second: [`Simulation::detect`] and [`Simulation::advance`] as often as it takes.
+    ///
+    /// # Errors
+    /// As [`Simulation::detect`].
+    pub fn frame(&mut self) -> Result<(), Error> {
+        for _ in 0..self.steps() {
+            self.detect()?;
+            self.advance();
+        }
+        Ok(())
+    }
+
+    /// Detects all contacts, exactly.
+    ///
+    /// # Errors
+    /// [`Error::NonFiniteVertex`] if the simulation had blown up, which its integrator excludes.
+    pub fn detect(&mut self) -> Result<(), Error> {
+        self.scene.deform(0, &self.points)?;
+        let Frame { contacts, .. } = self.scene.contacts()?;
+        self.detected.within.clear();
+        self.detected.sphere.clear();
+        for contact in contacts {
+            let pair = (contact.a, contact.b);
+            if contact.body_b == 0 {
+                self.detected.within.push(pair);
+            } else {
+                self.detected.sphere.push(pair);
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the particles on by a step, with the contacts detected last.
+    pub fn advance(&mut self) {
+        let dt = 1.0 / (FRAMES * f64::from(self.steps() * SUBSTEPS));
+        let slower = (-self.settings.drag * dt).exp();
+        for _ in 0..SUBSTEPS {
+            for ((x, v), before) in self
+                .points
+                .iter_mut()
+                .zip(&mut self.velocities)
+                .zip(&mut self.before)
+            {
+                *before = *x;
+                v[2] -= GRAVITY * dt;
+                for k in 0..3 {
+                    v[k] *= slower;
+                    x[k] += v[k] * dt;
+                }
+            }
+            relax(&self.springs, &mut self.points, dt);
+            self.push_off_sphere();
+            if self.settings.response == Response::All {
+                self.push_apart();
+            }
+            for ((x, v), before) in self.points.iter().zip(&mut self.velocities).zip(&self.before) {
+                for k in 0..3 {
+                    v[k] = (x[k] - before[k]) / dt;
+                }
+            }
+        }
+    }
+
+    /// A particle stays half a thickness above the tangent plane of every sphere vertex that it is in contact with.
+    fn push_off_sphere(&mut self) {
+        let gap = 0.5 * THICKNESS * self.settings.spacing();
+        for &(i, j) in &self.detected.sphere {
+            let (x, before) = (&mut self.points[i as usize], &self.before[i as usize]);
+            let foot = self.sphere.vertex(j);
+            let normal = foot.map(|c| c / self.settings.radius);
+            let depth = gap - (0..3).map(|k| (x[k] - foot[k]) * normal[k]).sum::<f64>();
+            if depth > 0.0 {
+                (0..3).for_each(|k| x[k] += depth * normal[k]);
+                let moved = [x[0] - before[0], x[1] - before[1], x[2] - before[2]];
+                let back = slip(moved, normal, self.settings.friction * depth);
+                (0..3).for_each(|k| x[k] -= back[k]);
+            }
+        }
+    }
+
+    /// Two particles stay a thickness apart.
+    fn push_apart(&mut self) {
+        let gap = THICKNESS * self.settings.spacing();
+        for &(i, j) in &self.detected.within {
+            let (i, j) = (i as usize, j as usize);
+            let (p, q) = (self.points[i], self.points[j]);
+            let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+            let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            if square >= gap * gap || square <= 0.0 {
+                continue;
+            }
+            let length = square.sqrt();
+            let (depth, normal) = (gap - length, d.map(|c| c / length));
+            let moved = [0, 1, 2].map(|k| (p[k] - self.before[i][k]) - (q[k] - self.before[j][k]));
+            let back = slip(moved, normal, self.settings.friction * depth);
+            for k in 0..3 {
+                let change = 0.5 * (depth * normal[k] - back[k]);
+                self.points[i][k] += change;
+                self.points[j][k] -= change;
+            }
+        }
+    }
+
+    /// What should not be: triangles of the cloth that pass through each other, decided exactly, and particles in the sphere.
+    /// Cost: a traversal of all triangle pairs.
+    ///
+    /// # Errors
+    /// As [`Simulation::mesh`].
+    pub fn crossings(&self) -> Result<Crossings, Error> {
+        // A thousand-millionth of a spacing: nearer than that is touching.
+        let mut scene = Scene::new(
+            PairKind::TriangleTriangle,
+            Threshold::new(1e-9 * self.settings.spacing())?,
+        );
+        scene.add(Body::deforming(self.mesh()?));
+        let square = |p: &Point| p.iter().map(|c| c * c).sum::<f64>();
+        Ok(Crossings {
+            triangles: scene.contacts()?.contacts.len(),
+            inside: self
+                .points
+                .iter()
+                .filter(|p| square(p) < self.settings.radius.powi(2))
+                .count(),
+        })
+    }
+}
+
+fn refused(parameter: &'static str, value: impl std::fmt::Display, allowed: &'static str) -> Error {
+    Error::Parameter {
+        parameter,
+        value: value.to_string(),
+        allowed,
+    }
+}
+
+/// What friction takes back of a motion: its part along the surface, at most `most` long.
+fn slip(moved: Point, normal: Point, most: f64) -> Point {
+    let along: f64 = (0..3).map(|k| moved[k] * normal[k]).sum();
+    let tangent = [0, 1, 2].map(|k| moved[k] - along * normal[k]);
+    let length = tangent.iter().map(|c| c * c).sum::<f64>().sqrt();
+    if length <= most {
+        tangent
+    } else {
+        tangent.map(|c| c * most / length)
+    }
+}
+
+/// An icosphere so fine that a particle at rest on it is in contact with one of its vertices, with a tenth to spare.
+fn sphere(settings: &Settings) -> Result<Mesh, Error> {
+    let gap = 0.5 * THICKNESS * settings.spacing();
+    // An icosahedron's edge is 1.05 radii; subdivided ones are at most 1.2 times their mean; a triangle's centre is an edge
+    // over the root of 3 away.
+    let apart = |level: u32| 1.05 * 1.2 * settings.radius / f64::from(1_u32 << level) / 3.0_f64.sqrt();
+    let level = (0..8)
+        .find(|&level| apart(level).hypot(gap) <= 0.9 * settings.delta())
+        .unwrap_or(8);
+    generate::icosphere(settings.radius, level)
+}
+
+#[cfg(test)]
+mod tests {
+    use satisfice_collision::oracle;
+
+    use super::*;
+
+    fn small(response: Response) -> Simulation {
+        Simulation::new(&Settings {
+            columns: 24,
+            response,
+            ..Settings::default()
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn a_cloth_drapes_over_the_sphere_and_keeps_its_shape() {
+        let mut cloth = small(Response::All);
+        for _ in 0..45 {
+            cloth.frame().unwrap();
+        }
+        let lengths = cloth
+            .springs
+            .iter()
+            .filter(|spring| spring.compliance == 0.0)
+            .map(|spring| {
+                let (p, q) = (cloth.points[spring.a as usize], cloth.points[spring.b as usize]);
+                (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt() / spring.rest
+            });
+        let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
+        lengths.for_each(|length| (least, greatest) = (least.min(length), greatest.max(length)));
+        assert!(least > 0.5 && greatest < 1.15, "{least} {greatest}");
+        let top = cloth
+            .points
+            .iter()
+            .map(|p| p[2])
+            .fold(f64::NEG_INFINITY, f64::max);
+        let bottom = cloth.points.iter().map(|p| p[2]).fold(f64::INFINITY, f64::min);
+        assert!((0.5..0.6).contains(&top) && bottom < 0.1, "{top} {bottom}");
+        assert_eq!(cloth.crossings().unwrap().inside, 0);
+    }
+
+    /// The referee is brute force over all pairs of particles.
+    #[test]
+    fn no_contact_is_missed() {
+        let mut cloth = small(Response::All);
+        let mut seen = 0;
+        for _ in 0..12 {
+            (0..3).for_each(|_| cloth.frame().unwrap());
+            cloth.detect().unwrap();
+            let threshold = Threshold::new(cloth.settings.delta()).unwrap();
+            let excluded = cloth.cloth.adjacency().rings(1);
+            let within: Vec<(u32, u32)> = oracle::pairs_within(&cloth.points, &excluded, threshold)
+                .into_iter()
+                .map(|[i, j]| (i, j))
+                .collect();
+            let sphere: Vec<(u32, u32)> =
+                oracle::pairs_between(&cloth.points, cloth.sphere.vertices(), threshold)
+                    .into_iter()
+                    .map(|[i, j]| (i, j))
+                    .collect();
+            seen += within.len() + sphere.len();
+            assert_eq!(
+                (&cloth.detected.within, &cloth.detected.sphere),
+                (&within, &sphere)
+            );
+        }
+        assert!(seen > 1000, "{seen}");
+    }
+
+    /// Gravity alone: half g t^2, but for the drag and the order of the integrator.
+    #[test]
+    fn a_cloth_beside_the_sphere_falls_as_everything_does() {
+        let settings = Settings {
+            columns: 12,
+            beside: 5.0,
+            drag: 0.0,
+            ..Settings::default()
+        };
+        let mut cloth = Simulation::new(&settings).unwrap();
+        let start = cloth.centre()[2];
+        (0..30).for_each(|_| cloth.frame().unwrap());
+        let fallen = start - cloth.centre()[2];
+        assert!((fallen / (0.5 * GRAVITY * 0.25) - 1.0).abs() < 0.02, "{fallen}");
+    }
+
+    #[test]
+    fn the_same_settings_give_the_same_cloth() {
+        let run = || {
+            let mut cloth = small(Response::All);
+            (0..10).for_each(|_| cloth.frame().unwrap());
+            cloth.points
+        };
+        assert_eq!(run(), run());
+    }
+
+    #[test]
+    fn settings_out_of_range_are_refused() {
+        let good = Settings::default();
+        for bad in [
+            Settings { columns: 3, ..good },
+            Settings {
+                columns: 1025,
+                ..good
+            },
+            Settings { width: 0.0, ..good },
+            Settings {
+                radius: f64::NAN,
+                ..good
+            },
+            Settings {
+                friction: -1.0,
+                ..good
+            },
+            Settings {
+                beside: f64::INFINITY,
+                ..good
+            },
+        ] {
+            assert!(Simulation::new(&bad).is_err(), "{bad:?}");
+        }
+    }
+}
