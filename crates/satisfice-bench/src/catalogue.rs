@@ -1,6 +1,7 @@
 //! Every problem that has a name. One line each in [`all`].
 
 use satisfice::{Catalogued, Parameter, Values};
+use satisfice_cloth::Cloth;
 use satisfice_collision::problem::{Pleats, Teapots};
 use satisfice_problems::{
     Arm, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Himmelblau, Islands, Langford,
@@ -11,6 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
+use crate::exact::Geometric;
 use crate::instance::{self, Instance};
 
 /// What makes an instance from its parameters.
@@ -46,6 +48,18 @@ where
     }
 }
 
+/// The entry of a problem of vertex pairs, on which exact methods run as well.
+#[must_use]
+pub const fn geometric<P: Geometric + Send + 'static>() -> Entry {
+    Entry {
+        name: P::NAME,
+        summary: P::SUMMARY,
+        source: P::SOURCE,
+        parameters: P::PARAMETERS,
+        build: instance::build_geometric::<P>,
+    }
+}
+
 impl Entry {
     /// The problem with parameters `(name, text)`, the others at their defaults.
     ///
@@ -60,8 +74,9 @@ impl Entry {
 }
 
 static PROBLEMS: &[Entry] = &[
-    entry::<Teapots>(),
+    geometric::<Teapots>(),
     entry::<Pleats>(),
+    geometric::<Cloth>(),
     entry::<Rastrigin>(),
     entry::<Shell>(),
     entry::<Islands>(),

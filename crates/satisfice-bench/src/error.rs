@@ -34,6 +34,14 @@ pub enum Error {
     /// A chart that could not be encoded.
     #[error("cannot encode the chart: {0}")]
     Chart(String),
+    /// An exact method on a problem that is not one of vertex pairs.
+    #[error("`{method}` finds pairs of vertices, and `{problem}` has none: take an engine")]
+    Exact {
+        /// The method.
+        method: String,
+        /// The problem.
+        problem: &'static str,
+    },
     /// A suite that cannot be run as it is written.
     #[error("{place}: {what}")]
     Suite {

@@ -1,10 +1,12 @@
 //! A problem with its parameters set, behind one virtual call a run.
 
 use satisfice::{Catalogued, Values};
+use satisfice_collision::VertexPairs;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
+use crate::exact::{self, Geometric};
 use crate::record::Record;
 use crate::resume::{Keeping, Saved};
 use crate::run::{Progress, Request, search, search_keeping};
@@ -32,6 +34,20 @@ pub trait Instance: Send + Sync {
         watch: &mut dyn FnMut(&Progress),
         keeping: Keeping<'_>,
     ) -> Result<Record, Error>;
+    /// Whether [`Instance::exact`] works.
+    fn is_geometric(&self) -> bool {
+        false
+    }
+    /// Runs one of [`crate::exact::METHODS`] on it, for problems of vertex pairs.
+    ///
+    /// # Errors
+    /// [`Error::Exact`] for a problem that is none.
+    fn exact(&self, request: &Request) -> Result<Record, Error> {
+        Err(Error::Exact {
+            method: request.engine.clone(),
+            problem: self.name(),
+        })
+    }
     /// How many distinct hits there are, where that is known. May take long: call it outside any clock.
     fn reference_hits(&self) -> Option<u64>;
     /// Evaluates every solution of a record anew and checks its books; what does not fit, in the order of the record.
@@ -43,6 +59,7 @@ pub trait Instance: Send + Sync {
 struct Built<P> {
     problem: P,
     parameters: Settings,
+    pairs: Option<fn(&P) -> &VertexPairs>,
 }
 
 /// Builds the instance with these values.
@@ -51,9 +68,25 @@ where
     P: Catalogued + Send + 'static,
     P::Solution: Serialize + DeserializeOwned,
 {
+    build_with::<P>(values, None)
+}
+
+/// The same for a problem of vertex pairs.
+pub(crate) fn build_geometric<P: Geometric + Send + 'static>(
+    values: &Values,
+) -> Result<Box<dyn Instance>, Error> {
+    build_with::<P>(values, Some(P::vertex_pairs))
+}
+
+fn build_with<P>(values: &Values, pairs: Option<fn(&P) -> &VertexPairs>) -> Result<Box<dyn Instance>, Error>
+where
+    P: Catalogued + Send + 'static,
+    P::Solution: Serialize + DeserializeOwned,
+{
     Ok(Box::new(Built {
         problem: P::from_values(values)?,
         parameters: Settings::typed(&values.texts(), P::PARAMETERS),
+        pairs,
     }))
 }
 
@@ -89,6 +122,24 @@ where
             problem: P::NAME.to_owned(),
             problem_parameters: self.parameters.clone(),
             ..search_keeping(&self.problem, request, watch, asked, keeping)?
+        })
+    }
+
+    fn is_geometric(&self) -> bool {
+        self.pairs.is_some()
+    }
+
+    fn exact(&self, request: &Request) -> Result<Record, Error> {
+        let Some(pairs) = self.pairs else {
+            return Err(Error::Exact {
+                method: request.engine.clone(),
+                problem: self.name(),
+            });
+        };
+        Ok(Record {
+            problem: P::NAME.to_owned(),
+            problem_parameters: self.parameters.clone(),
+            ..exact::run(pairs(&self.problem), request)?
         })
     }
 

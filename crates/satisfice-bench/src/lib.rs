@@ -17,16 +17,19 @@
 
 pub mod catalogue;
 mod error;
+pub mod exact;
 mod instance;
 pub mod json;
 pub mod listing;
 pub mod picture;
+pub mod plain_grid;
 pub mod plot;
 pub mod quantity;
 pub mod record;
 pub mod resume;
 pub mod run;
 pub mod settings;
+pub mod studies;
 pub mod sweep;
 pub mod verify;
 

@@ -215,8 +215,9 @@ impl SearchArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  satisfice bench smoke --out results
-      The suite `smoke`, in the folder results: results.jsonl, a line a run, summary.json, and ioh, which IOHanalyzer reads.
+  satisfice bench experiment-one-smoke --out results
+      The suite of this name, in the folder results: report.html and its figures, results.jsonl (a line a run), summary.json, and
+      ioh, which IOHanalyzer reads.
   satisfice bench mine.toml --seeds 0..16 --engines portfolio,random
       Two engines and 16 seeds in the place of those of the file.
 

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use satisfice_bench::quantity::shown;
+use satisfice_bench::studies;
 use satisfice_bench::sweep::{self, Event, Plan, Suite};
 
 use crate::arguments::BenchArguments;
-use crate::progress::Runs;
+use crate::progress::{Counting, Runs};
 use crate::{interrupt, output};
 
 pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
@@ -51,8 +52,28 @@ pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
     };
     let finished = sweep::execute(&plan, &folder, arguments.jobs, &cancel, &mut watch)?;
     drop(runs);
-    let groups = sweep::publish(&folder, &plan, &finished.rows, &command())?;
-    output::print(sweep::table(&groups).as_bytes())?;
+    let mut findings = Vec::new();
+    for name in &plan.suite.studies {
+        if cancel.is_cancelled() {
+            break;
+        }
+        let seeds = plan
+            .suite
+            .parts
+            .iter()
+            .map(|part| part.seeds.end - part.seeds.start)
+            .max()
+            .unwrap_or(1);
+        let doing = Counting::new();
+        let mut tell = |what: &str| doing.say(format!("study {name}: {what}"));
+        findings.extend((studies::find(name)?.run)(seeds, &cancel, &mut tell)?);
+    }
+    let groups = sweep::publish(&folder, &plan, &finished.rows, &findings, &command())?;
+    let mut text = sweep::table(&groups);
+    findings
+        .iter()
+        .for_each(|finding| text.push_str(&finding.table()));
+    output::print(text.as_bytes())?;
     if finished.foreign > 0 {
         eprintln!(
             "{} runs in the folder are not of this suite and seeds; they are left out of its tables",
@@ -65,6 +86,9 @@ pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
             "interrupted: {missing} of {} runs are missing; the same command goes on from here",
             finished.runs
         );
+    }
+    if findings.len() < plan.suite.studies.len() {
+        eprintln!("interrupted: a study is missing; the same command runs it");
     }
     eprintln!("look at {}", folder.join("report.html").display());
     Ok(ExitCode::SUCCESS)

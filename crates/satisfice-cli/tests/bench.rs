@@ -206,7 +206,10 @@ fn mistakes_are_told_before_anything_runs() {
         assert!(line.contains(says), "{from} -> {to}: {line}");
         assert!(!place.path().join("out").exists());
     }
-    assert!(error("bench smok").contains("unknown suite (or file.toml) `smok`, did you mean `smoke`?"));
+    assert!(
+        error("bench experiment-on")
+            .contains("unknown suite (or file.toml) `experiment-on`, did you mean `experiment-one`?")
+    );
     assert!(error("bench none.toml").contains("none.toml: cannot read this suite"));
     fs::write(place.path().join("mine.toml"), SUITE).unwrap();
     fs::write(place.path().join("file"), "").unwrap();

@@ -16,10 +16,12 @@
 mod camera;
 mod marks;
 mod raster;
+mod strip;
 
 use std::collections::BTreeSet;
 
 use satisfice_collision::Mesh;
+pub use strip::strip;
 
 use crate::error::Error;
 use camera::Camera;

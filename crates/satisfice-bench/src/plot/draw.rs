@@ -16,6 +16,12 @@ use crate::error::Error;
 /// Size of a panel in units; a PNG has two pixels a unit.
 const PANEL: (f64, f64) = (480.0, 360.0);
 
+/// Width of a panel that is alone.
+const ALONE: f64 = 640.0;
+
+/// Height of a legend without lines, and of a line, in the same units.
+const LEGEND: (f64, f64) = (56.0, 18.5);
+
 /// Okabe and Ito's colours, told apart by the colour-blind, without their yellow, which is faint on white
 /// (<https://jfly.uni-koeln.de/color/>).
 const COLOURS: [&str; 7] = [
@@ -48,12 +54,17 @@ pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
             .panels
             .iter()
             .all(|panel| labels(panel) == labels(&chart.panels[0]));
+    // Every curve has its line in the legend.
+    let entries = chart.panels.iter().map(|panel| panel.curves.len()).max();
+    let height = PANEL.1.max(LEGEND.0 + LEGEND.1 * entries.unwrap_or(0) as f64);
+    // Alone, a panel shares its width with its legend.
+    let width = if chart.panels.len() == 1 { ALONE } else { PANEL.0 };
     let figure = Figure::new(1, chart.panels.len().max(1))
         .with_title(chart.title.clone())
-        .with_title_size(16)
+        .with_title_size(title_size(&chart.title, width * chart.panels.len().max(1) as f64))
         .with_plots(plots)
         .with_layouts(layouts)
-        .with_cell_size(PANEL.0, PANEL.1);
+        .with_cell_size(width, height);
     let figure = if one_legend {
         figure.with_shared_legend()
     } else {
@@ -61,9 +72,33 @@ pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
     };
     let scene = figure.render();
     match format {
-        Format::Svg => Ok(own_ids(&SvgBackend::new().render_scene(&scene)).into_bytes()),
+        Format::Svg => Ok(scalable(own_ids(&SvgBackend::new().render_scene(&scene))).into_bytes()),
         Format::Png => PngBackend::new().render_scene(&scene).map_err(Error::Chart),
     }
+}
+
+/// The library gives a size alone; with a view box a page can show the picture in another one, whole.
+fn scalable(svg: String) -> String {
+    let head = svg.split_once('>').map_or("", |(head, _)| head);
+    let field = |name: &str| head.split_once(name)?.1.split_once('"').map(|(value, _)| value);
+    match (field(" width=\""), field(" height=\"")) {
+        (Some(width), Some(height)) if !head.contains("viewBox") => {
+            let view = format!("<svg viewBox=\"0 0 {width} {height}\"");
+            svg.replacen("<svg", &view, 1)
+        }
+        _ => svg,
+    }
+}
+
+/// So small that a title fits, at 0.62 of its size a letter.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "from 7 to 16"
+)]
+fn title_size(title: &str, width: f64) -> u32 {
+    let letters = title.chars().count().max(1) as f64;
+    (width / (0.62 * letters)).clamp(7.0, 16.0) as u32
 }
 
 /// The library numbers clip paths over all pictures of a process. Numbered within the picture, under a name made from its

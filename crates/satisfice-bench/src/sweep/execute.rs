@@ -14,6 +14,7 @@ use super::plan::{Plan, Planned};
 use super::results::{Known, Results};
 use super::row::Row;
 use crate::error::Error;
+use crate::exact;
 use crate::instance::Instance;
 
 /// How often a count that takes long looks whether it is still wanted.
@@ -198,7 +199,10 @@ impl Side<'_> {
         let instance: &dyn Instance = &*self.plan.instances[run.instance];
         let mut request = run.request.clone();
         request.budget = request.budget.and_until(self.cancel);
-        let mut record = instance.run(&request, &mut |_| {})?;
+        let mut record = match exact::find(&request.engine) {
+            Some(_) => instance.exact(&request)?,
+            None => instance.run(&request, &mut |_| {})?,
+        };
         if record.stop_reason == StopReason::Cancelled {
             return Ok(None);
         }

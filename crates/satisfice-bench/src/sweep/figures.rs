@@ -8,6 +8,8 @@ use crate::plot::{Chart, Curve, Panel};
 
 /// Points of a curve.
 const POINTS: usize = 64;
+/// With more curves than this bands hide each other.
+const BANDS: usize = 8;
 /// Recalls whose costs make a run-length distribution.
 const TARGETS: usize = 50;
 
@@ -54,6 +56,17 @@ pub fn figures(group: &Group, rows: &[Row]) -> Vec<Figure> {
     }
     if group.timed {
         figures.push(shares(group, &all));
+    }
+    if all.len() > BANDS {
+        for figure in &mut figures {
+            let curves = figure.chart.panels.iter_mut().flat_map(|panel| &mut panel.curves);
+            let bands = curves.filter(|curve| !curve.band.is_empty());
+            if bands.map(|curve| curve.band.clear()).count() > 0 {
+                figure
+                    .caption
+                    .push_str(" With so many curves, their bands are left out.");
+            }
+        }
     }
     figures
 }
@@ -179,7 +192,7 @@ fn curves(group: &Group, all: &[Runs<'_>]) -> Figure {
     }
     Figure {
         name: "recall",
-        caption: format!("{what}: median over seeds, band from the lower to the upper quartile."),
+        caption: format!("{what}: median over seeds; bands go from the lower to the upper quartile."),
         chart: Chart {
             title: title(group),
             panels,
@@ -208,7 +221,7 @@ fn error(group: &Group, all: &[Runs<'_>], by: By, reference: u64) -> Figure {
     });
     Figure {
         name: "error",
-        caption: "Run time against error: the median share of the hits that are missing. Dots are the Pareto front: no \
+        caption: "Run time against error: the median share of the hits that are missing. Dots are the Pareto front from a recall of 5 % on: no \
                   method has less error in as little. What is complete is drawn at half a missing hit."
             .to_owned(),
         chart: Chart {
@@ -232,7 +245,8 @@ fn front(curves: &[Curve]) -> Vec<(f64, f64)> {
         .flat_map(|curve| curve.points.iter().copied())
         .collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut least = 1.0;
+    // What has next to nothing is no choice.
+    let mut least = 0.95;
     points.retain(|&(_, y)| {
         let better = y < least;
         if better {
@@ -288,7 +302,9 @@ fn run_lengths(group: &Group, all: &[Runs<'_>], by: By, reference: u64) -> Figur
 #[expect(clippy::cast_precision_loss, reason = "a pixel is coarser than 53 bits")]
 fn shares(group: &Group, all: &[Runs<'_>]) -> Figure {
     let by = By::Seconds;
-    let end = by.grid(all).last().copied().unwrap_or(0.0);
+    let rows = || all.iter().flat_map(|runs| &runs.rows);
+    let slice = rows().find_map(|row| Some(row.key.budget.time_seconds? * row.key.budget.slices as f64));
+    let end = slice.unwrap_or(0.0);
     let grid: Vec<f64> = (0..=40).map(|k| end * f64::from(k) / 40.0).collect();
     let panel = |what: &str, value: &dyn Fn(&Row, f64) -> f64| Panel {
         x_label: by.label(),
@@ -308,7 +324,7 @@ fn shares(group: &Group, all: &[Runs<'_>]) -> Figure {
     Figure {
         name: "shares",
         caption: "The paper's r(t) beside what it hides: an engine that finds little and stops early has r(t) = 1 early. \
-                  Median and quartiles over seeds."
+                  Median over seeds; bands go from the lower to the upper quartile."
             .to_owned(),
         chart: Chart { title: title(group), panels },
     }

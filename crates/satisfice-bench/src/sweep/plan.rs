@@ -8,10 +8,12 @@ use super::row::Key;
 use super::suite::{Choice, Part, Suite};
 use crate::catalogue;
 use crate::error::Error;
+use crate::exact;
 use crate::instance::Instance;
 use crate::record::Limits;
 use crate::run::Request;
 use crate::settings::Settings;
+use crate::studies;
 
 /// All runs of a suite.
 pub struct Plan {
@@ -60,6 +62,9 @@ impl Plan {
             instances: Vec::new(),
             runs: Vec::new(),
         };
+        for study in &plan.suite.studies {
+            studies::find(study)?;
+        }
         for at in 0..plan.suite.parts.len() {
             plan.add_part(at).map_err(|error| Error::Suite {
                 place: format!("{}, part `{}`", plan.suite.name, plan.suite.parts[at].name),
@@ -81,6 +86,18 @@ impl Plan {
             }
         }
         let problems = self.problems(&part.problems)?;
+        for method in engines
+            .iter()
+            .filter(|engine| exact::find(&engine.name).is_some())
+        {
+            let plain = |(place, _): &&(usize, String)| !self.instances[*place].is_geometric();
+            if let Some((place, _)) = problems.iter().find(plain) {
+                return Err(Error::Exact {
+                    method: method.name.clone(),
+                    problem: self.instances[*place].name(),
+                });
+            }
+        }
         let limits = Limits {
             time_seconds: part.time.map(|time| time.as_secs_f64()),
             evaluations: part.evaluations,
@@ -154,7 +171,22 @@ struct Chosen {
 fn engines(choices: &[Choice]) -> Result<Vec<Chosen>, Error> {
     let mut found: Vec<Chosen> = Vec::new();
     for (settings, label, name) in grids(choices) {
-        let entry = engine::find(&name)?;
+        if exact::find(&name).is_some() {
+            // It has no parameters: whatever is set is unknown.
+            satisfice::Values::with(&[], &name, pairs(&settings))?;
+            found.push(Chosen {
+                name,
+                label,
+                settings,
+                parameters: Settings::default(),
+            });
+            continue;
+        }
+        let known = engine::all()
+            .iter()
+            .map(|entry| entry.name)
+            .chain(exact::METHODS.iter().map(|method| method.name));
+        let entry = engine::find(&name).map_err(|_| satisfice::Error::unknown("engine", &name, known))?;
         let built = entry.build::<f64>(pairs(&settings))?;
         let parameters = Settings::typed(&built.parameters, entry.parameters);
         if found

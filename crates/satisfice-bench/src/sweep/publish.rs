@@ -2,43 +2,66 @@
 
 use std::path::Path;
 
-use super::figures::figures;
+use super::figures::{Figure, figures};
 use super::plan::Plan;
 use super::row::Row;
 use super::summary::{Group, groups};
 use super::{files, ioh, report};
 use crate::error::Error;
 use crate::plot::{Format, draw};
+use crate::studies::Finding;
 
 /// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, and `report.html`, which holds all of
-/// it and says that `command` made it; returns the groups of the summary.
+/// it with the findings of studies and says that `command` made it; returns the groups of the summary.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::Chart`] where a figure cannot be encoded.
-pub fn publish(folder: &Path, plan: &Plan, rows: &[Row], command: &str) -> Result<Vec<Group>, Error> {
+pub fn publish(
+    folder: &Path,
+    plan: &Plan,
+    rows: &[Row],
+    findings: &[Finding],
+    command: &str,
+) -> Result<Vec<Group>, Error> {
     let groups = groups(plan, rows);
     files::write(&folder.join("suite.toml"), plan.suite.text.as_bytes())?;
     files::write(&folder.join("summary.json"), &crate::json::to_vec(&groups)?)?;
     ioh::export(&folder.join("ioh"), &groups, rows)?;
+    let place = folder.join("figures");
     let mut shown = Vec::new();
     for (number, group) in (1..).zip(&groups) {
-        let mut drawn = Vec::new();
-        for figure in figures(group, rows) {
+        let drawn = figures(group, rows).into_iter().map(|figure| {
             let stem = format!("{number:02}-{}", figure.name);
-            let svg = draw(&figure.chart, Format::Svg)?;
-            files::write(&folder.join("figures").join(format!("{stem}.svg")), &svg)?;
-            files::write(
-                &folder.join("figures").join(format!("{stem}.png")),
-                &draw(&figure.chart, Format::Png)?,
-            )?;
-            drawn.push((figure, String::from_utf8_lossy(&svg).into_owned()));
-        }
+            draw_into(&place, &stem, figure)
+        });
         shown.push(report::Shown {
             group,
-            figures: drawn,
+            figures: drawn.collect::<Result<_, _>>()?,
         });
     }
-    let page = report::page(plan, &shown, command, plan.runs.len() - rows.len());
+    let mut found = Vec::new();
+    for finding in findings {
+        let drawn = finding
+            .figures
+            .iter()
+            .map(|figure| draw_into(&place, figure.name, figure.clone()));
+        found.push((finding, drawn.collect::<Result<Vec<_>, _>>()?));
+        for (_, name, png) in &finding.pictures {
+            files::write(&place.join(format!("{name}.png")), png)?;
+        }
+    }
+    let page = report::page(plan, &shown, &found, command, plan.runs.len() - rows.len());
     files::write(&folder.join("report.html"), page.as_bytes())?;
     Ok(groups)
+}
+
+/// Draws a figure as SVG and PNG; returns it with its SVG.
+fn draw_into(folder: &Path, stem: &str, figure: Figure) -> Result<(Figure, String), Error> {
+    let svg = draw(&figure.chart, Format::Svg)?;
+    files::write(&folder.join(format!("{stem}.svg")), &svg)?;
+    files::write(
+        &folder.join(format!("{stem}.png")),
+        &draw(&figure.chart, Format::Png)?,
+    )?;
+    Ok((figure, String::from_utf8_lossy(&svg).into_owned()))
 }

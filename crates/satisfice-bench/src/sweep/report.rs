@@ -2,11 +2,15 @@
 
 use std::fmt::Write;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
 use super::figures::Figure;
 use super::machine;
 use super::plan::Plan;
 use super::summary::{Group, cells, heading};
 use crate::quantity::shown;
+use crate::studies::Finding;
 
 const PAGE: &str = include_str!("report.html");
 /// Groups of a part that are shown unfolded.
@@ -19,7 +23,13 @@ pub(super) struct Shown<'a> {
 }
 
 /// The page. `missing` runs have not ended; `command` made it.
-pub(super) fn page(plan: &Plan, groups: &[Shown<'_>], command: &str, missing: usize) -> String {
+pub(super) fn page(
+    plan: &Plan,
+    groups: &[Shown<'_>],
+    findings: &[(&Finding, Vec<(Figure, String)>)],
+    command: &str,
+    missing: usize,
+) -> String {
     let suite = &plan.suite;
     let mut body = String::new();
     let mut line = |text: String| {
@@ -70,6 +80,9 @@ pub(super) fn page(plan: &Plan, groups: &[Shown<'_>], command: &str, missing: us
             line("</details>".to_owned());
         }
     }
+    findings
+        .iter()
+        .for_each(|(finding, figures)| line(study(finding, figures)));
     line("<h2>The machine</h2><table>".to_owned());
     for (what, value) in machine::facts() {
         line(format!(
@@ -187,6 +200,38 @@ fn waste(group: &Group) -> String {
         text.push_str(&row("td", cells));
     }
     text + "</table></div>"
+}
+
+/// A study: text, tables, figures, pictures.
+fn study(finding: &Finding, figures: &[(Figure, String)]) -> String {
+    let mut text = format!("<h2>{}</h2>\n", escape(&finding.title));
+    finding
+        .text
+        .iter()
+        .for_each(|paragraph| text.push_str(&format!("<p>{}</p>\n", escape(paragraph))));
+    for (caption, rows) in &finding.tables {
+        let mut tag = "th";
+        text.push_str(&format!("<p>{}</p><div class=\"wide\"><table>", escape(caption)));
+        for cells in rows {
+            text.push_str(&row(tag, cells.clone()));
+            tag = "td";
+        }
+        text.push_str("</table></div>\n");
+    }
+    for (figure, svg) in figures {
+        text.push_str(&format!(
+            "<figure>{svg}<figcaption>{}</figcaption></figure>\n",
+            escape(&figure.caption)
+        ));
+    }
+    for (caption, name, png) in &finding.pictures {
+        let data = STANDARD.encode(png);
+        let (name, caption) = (escape(name), escape(caption));
+        text.push_str(&format!(
+            "<figure><img alt=\"{name}\" src=\"data:image/png;base64,{data}\"><figcaption>{caption}</figcaption></figure>\n"
+        ));
+    }
+    text
 }
 
 /// As text within a page.

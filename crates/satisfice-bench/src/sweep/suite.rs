@@ -36,6 +36,8 @@ pub struct Suite {
     pub text: String,
     /// Its parts, at least one.
     pub parts: Vec<Part>,
+    /// Names of [studies](crate::studies) that follow its parts.
+    pub studies: Vec<String>,
 }
 
 /// One grid.
@@ -123,7 +125,7 @@ impl Suite {
         let whole = at(name.to_owned());
         let suite = Fields { table: &table };
         suite
-            .know("key of a suite", &["title", "about", "seeds", "part"])
+            .know("key of a suite", &["title", "about", "seeds", "studies", "part"])
             .map_err(&whole)?;
         let seeds = suite
             .text("seeds")
@@ -138,6 +140,12 @@ impl Suite {
             .map_err(&whole)?
             .unwrap_or_default()
             .to_owned();
+        let studies = table
+            .get("studies")
+            .map(values)
+            .transpose()
+            .map_err(&whole)?
+            .unwrap_or_default();
         let tables = match table.get("part") {
             Some(Value::Array(tables)) if !tables.is_empty() => tables.as_slice(),
             _ => {
@@ -167,6 +175,7 @@ impl Suite {
             about,
             text: text.to_owned(),
             parts,
+            studies,
         })
     }
 

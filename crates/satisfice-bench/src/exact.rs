@@ -1,0 +1,339 @@
+//! Exact methods for pairs of vertices, entered on the same ledger as the engines: hits, evaluations, seconds.
+
+use std::time::Instant;
+
+use satisfice::{Catalogued, Completeness, Counts, SatisficingProblem, StopReason, TracePoint};
+use satisfice_cloth::Cloth;
+use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
+use satisfice_collision::distance::Threshold;
+use satisfice_collision::problem::Teapots;
+use satisfice_collision::{Mesh, Placement, VertexPairs};
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::record::{Limits, Record, Solution};
+use crate::run::Request;
+use crate::settings::Settings;
+
+/// A method that finds all hits of a problem of vertex pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Method {
+    /// Its name, where an engine's would stand.
+    pub name: &'static str,
+    /// One line.
+    pub summary: &'static str,
+    /// Where it was published.
+    pub reference: &'static str,
+}
+
+/// All of them.
+pub static METHODS: &[Method] = &[
+    Method {
+        name: "aabb",
+        summary: "exact: trees of axis-aligned boxes, built and traversed in pairs; an evaluation is a pair of leaves whose boxes are near",
+        reference: "van den Bergen 1997, doi 10.1080/10867651.1997.10487480",
+    },
+    Method {
+        name: "grid",
+        summary: "exact: a uniform grid clipped to the overlap; an evaluation is a squared distance computed",
+        reference: "none needed",
+    },
+    Method {
+        name: "brute-force",
+        summary: "exact: the distance of every pair",
+        reference: "none needed",
+    },
+];
+
+/// The method with this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.name == name)
+}
+
+/// A problem that is one of vertex pairs at its heart.
+pub trait Geometric: Catalogued<Solution = (u32, u32)> {
+    /// The vertex pairs.
+    fn vertex_pairs(&self) -> &VertexPairs;
+}
+
+impl Geometric for Cloth {
+    fn vertex_pairs(&self) -> &VertexPairs {
+        self.pairs()
+    }
+}
+
+impl Geometric for Teapots {
+    fn vertex_pairs(&self) -> &VertexPairs {
+        self.pairs()
+    }
+}
+
+/// Runs an exact method. All pairs are there when it ends, so every hit is stamped with all evaluations and the whole time,
+/// which includes the building of whatever structure it needs. The budget of the request is not looked at.
+///
+/// # Errors
+/// [`Error::Search`] for an unknown method; [`Error::Json`] for a solution that is not representable.
+pub(crate) fn run(pairs: &VertexPairs, request: &Request) -> Result<Record, Error> {
+    let scene = Scene::new(pairs)?;
+    let ((found, evaluations), seconds) = match request.engine.as_str() {
+        "aabb" => scene.timed(Scene::by_trees)?,
+        "grid" => scene.timed(Scene::by_grid)?,
+        "brute-force" => scene.timed(Scene::by_brute_force)?,
+        other => {
+            let known = METHODS.iter().map(|method| method.name);
+            return Err(satisfice::Error::unknown("exact method", other, known).into());
+        }
+    };
+    write_up(pairs, request, &found, evaluations, seconds)
+}
+
+/// The chosen vertices of the two bodies, laid out for the methods before the clock starts.
+struct Scene<'a> {
+    problem: &'a VertexPairs,
+    numbers: [Vec<u32>; 2],
+    points: [Vec<[f64; 3]>; 2],
+    clouds: [Mesh; 2],
+    one_body: bool,
+    threshold: Threshold,
+}
+
+type Found = (Vec<(u32, u32)>, u64);
+
+impl<'a> Scene<'a> {
+    fn new(problem: &'a VertexPairs) -> Result<Self, Error> {
+        let axes = problem.space().axes();
+        let (a, b) = (problem.a(), problem.b());
+        // Whoever pairs a body with itself hands out the same mesh twice.
+        let one_body = std::ptr::eq(a, b);
+        let vertex = |axis: usize, place: f64| {
+            let mut values = [axes[0].upper(), axes[1].upper()];
+            if one_body {
+                // Decoded in ascending order: a place with itself is no pair, but names its vertex twice.
+                values = [place; 2];
+            } else {
+                values[axis] = place;
+            }
+            let pair = problem.decode(&values);
+            if axis == 0 { pair.0 } else { pair.1 }
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole, below 2^32"
+        )]
+        let numbers = [0, 1].map(|axis| {
+            (0..=axes[axis].upper() as u32)
+                .map(|place| vertex(axis, f64::from(place)))
+                .collect::<Vec<u32>>()
+        });
+        let of = |mesh: &Mesh, numbers: &[u32]| numbers.iter().map(|&v| mesh.vertex(v)).collect::<Vec<_>>();
+        let points = [of(a, &numbers[0]), of(b, &numbers[1])];
+        let cloud = |points: &[[f64; 3]]| {
+            Mesh::new(points.to_vec(), vec![], vec![]).map_err(|error| Error::Suite {
+                place: "vertex pairs".to_owned(),
+                what: error.to_string(),
+            })
+        };
+        let clouds = [cloud(&points[0])?, cloud(&points[1])?];
+        let threshold = Threshold::new(problem.threshold()).map_err(|error| Error::Suite {
+            place: "vertex pairs".to_owned(),
+            what: error.to_string(),
+        })?;
+        Ok(Self {
+            problem,
+            numbers,
+            points,
+            clouds,
+            one_body,
+            threshold,
+        })
+    }
+
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "an exact method has no budget; its time is only told"
+    )]
+    fn timed(
+        &self,
+        method: impl Fn(&Self) -> Result<Found, satisfice_collision::Error>,
+    ) -> Result<(Found, f64), Error> {
+        let start = Instant::now();
+        let found = method(self);
+        let seconds = start.elapsed().as_secs_f64();
+        let found = found.map_err(|error| Error::Suite {
+            place: "vertex pairs".to_owned(),
+            what: error.to_string(),
+        })?;
+        Ok((found, seconds))
+    }
+
+    /// Places to solutions; within one body without the pairs that are excluded.
+    fn solutions(&self, places: &[Pair]) -> Vec<(u32, u32)> {
+        let pairs = places
+            .iter()
+            .map(|pair| (self.numbers[0][pair.a as usize], self.numbers[1][pair.b as usize]));
+        if self.one_body {
+            let ordered = pairs.map(|(i, j)| self.problem.canonical((i, j)));
+            ordered
+                .filter(|pair| self.problem.fitness(pair) < self.problem.threshold())
+                .collect()
+        } else {
+            pairs.collect()
+        }
+    }
+
+    fn by_trees(&self) -> Result<Found, satisfice_collision::Error> {
+        let a = FeatureTree::new(&self.clouds[0], FeatureKind::Vertex);
+        let mut join = TreeJoin::new();
+        let pairs = if self.one_body {
+            self.solutions(join.within(&a, self.threshold, None))
+        } else {
+            let b = FeatureTree::new(&self.clouds[1], FeatureKind::Vertex);
+            let rest = &Placement::IDENTITY;
+            self.solutions(join.between((&a, rest), (&b, rest), self.threshold, None)?)
+        };
+        Ok((pairs, join.work().candidates))
+    }
+
+    fn by_grid(&self) -> Result<Found, satisfice_collision::Error> {
+        let mut grid = PointGrid::new();
+        let pairs = if self.one_body {
+            self.solutions(grid.within(&self.points[0], self.threshold)?)
+        } else {
+            self.solutions(grid.between(&self.points[0], &self.points[1], self.threshold)?)
+        };
+        Ok((pairs, grid.work().tests))
+    }
+
+    fn by_brute_force(&self) -> Result<Found, satisfice_collision::Error> {
+        let [a, b] = [self.points[0].len() as u64, self.points[1].len() as u64];
+        Ok((
+            self.problem.reference_pairs(),
+            if self.one_body { a * (a - 1) / 2 } else { a * b },
+        ))
+    }
+}
+
+fn write_up(
+    problem: &VertexPairs,
+    request: &Request,
+    found: &[(u32, u32)],
+    evaluations: u64,
+    seconds: f64,
+) -> Result<Record, Error> {
+    let hits = found.len() as u64;
+    Ok(Record {
+        problem: problem.description().name,
+        problem_parameters: Settings::default(),
+        engine: request.engine.clone(),
+        engine_parameters: Settings::default(),
+        scalar: "f64".to_owned(),
+        threshold: Some(problem.threshold()),
+        seed: request.seed,
+        budget: Limits {
+            time_seconds: request.budget.time.map(|time| time.as_secs_f64()),
+            evaluations: request.budget.evaluations,
+            hits: request.budget.hits,
+            slices: 1,
+        },
+        probe_share: 0.0,
+        counts: Counts {
+            evaluations,
+            fitness_calls: evaluations,
+            ..Counts::default()
+        },
+        elapsed_seconds: seconds,
+        overshoot_seconds: 0.0,
+        stop_reason: StopReason::Covered,
+        hits,
+        reference_hits: None,
+        recall: None,
+        completeness: Completeness::Proved,
+        unseen_estimate: None,
+        unseen_interval: None,
+        unseen_confidence: None,
+        unseen_method: None,
+        trace: vec![TracePoint {
+            evaluations,
+            elapsed_seconds: seconds,
+            hits,
+        }],
+        slices: Vec::new(),
+        solutions: found
+            .iter()
+            .map(|pair| {
+                Ok(Solution {
+                    solution: value(pair)?,
+                    fitness: problem.fitness(pair),
+                    evaluation: evaluations,
+                    seconds,
+                })
+            })
+            .collect::<Result<_, Error>>()?,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    })
+}
+
+fn value(solution: &impl Serialize) -> Result<serde_json::Value, Error> {
+    Ok(serde_json::to_value(solution)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use satisfice::Budget;
+    use satisfice_collision::generate;
+
+    use super::*;
+
+    /// Brute force is the referee of the other two.
+    #[test]
+    fn exact_methods_find_the_same_pairs() {
+        let ball = generate::icosphere(1.0, 3).unwrap();
+        let other = Placement::from_translation([1.9, 0.1, 0.0])
+            .unwrap()
+            .place(&ball)
+            .unwrap();
+        let sheet = generate::cloth(1.0, 0.2, 30, 10).unwrap();
+        let folded = sheet
+            .vertices()
+            .iter()
+            .map(|&[x, y, _]| [x.abs(), y, 0.05 * (x + 0.5)])
+            .collect();
+        let folded = sheet.with_vertices(folded).unwrap();
+        for (problem, least) in [
+            (VertexPairs::between(&ball, &other, 0.2).unwrap(), 100),
+            (
+                VertexPairs::between(&ball, &other, 0.2)
+                    .unwrap()
+                    .with_vertices(&[3, 99, 641, 7], &(0..600).collect::<Vec<_>>())
+                    .unwrap(),
+                0,
+            ),
+            (VertexPairs::within(&folded, 0.06, 1).unwrap(), 100),
+        ] {
+            let found = METHODS.iter().map(|method| {
+                let record = run(&problem, &Request::new(method.name, Budget::evaluations(1))).unwrap();
+                assert_eq!(record.hits as usize, record.solutions.len());
+                let mut pairs: Vec<_> = record
+                    .solutions
+                    .iter()
+                    .map(|hit| hit.solution.to_string())
+                    .collect();
+                pairs.sort_unstable();
+                (pairs, record.counts.evaluations)
+            });
+            let found: Vec<_> = found.collect();
+            assert!(found[2].0.len() >= least, "{}", found[2].0.len());
+            assert!(found[0].0 == found[2].0 && found[1].0 == found[2].0);
+            assert!(found[0].1 < found[2].1 && found[1].1 < found[2].1);
+        }
+        assert!(
+            run(
+                &VertexPairs::within(&folded, 0.06, 1).unwrap(),
+                &Request::new("aab", Budget::evaluations(1))
+            )
+            .is_err()
+        );
+    }
+}
