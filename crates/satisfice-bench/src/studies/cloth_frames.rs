@@ -16,7 +16,7 @@ use crate::plain_grid;
 use crate::plot::{Chart, Curve, Panel};
 use crate::quantity::shown;
 use crate::sweep::figures::Figure;
-use crate::sweep::statistics::Estimate;
+use crate::sweep::statistics::{Estimate, median};
 
 /// Engines whose recall is followed from frame to frame.
 const ENGINES: [&str; 6] = [
@@ -67,7 +67,13 @@ pub(super) fn smoke(_: u64, cancel: &Cancel, tell: &mut dyn FnMut(&str)) -> Resu
     )
 }
 
-/// Seconds of one frame, summed over its steps, and what was found in its last step.
+/// The median of the times of a frame's steps: other work on the machine disturbs some of them.
+fn typical(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    median(&times).unwrap_or(0.0)
+}
+
+/// Seconds of one frame, the median step as often as there are steps, and what was found in its last step.
 struct Measured {
     frame: usize,
     detection: f64,
@@ -139,10 +145,11 @@ fn study(
             within: 0,
             sphere: 0,
         };
+        let mut times = [Vec::new(), Vec::new(), Vec::new()];
         for _ in 0..cloth.steps() {
             let (detected, seconds) = timed(|| cloth.detect());
             detected.map_err(told)?;
-            of_frame.detection += seconds;
+            times[0].push(seconds);
             // The baseline gets its single precision for nothing, and need not leave out what an edge joins.
             let points = single(cloth.points());
             #[expect(
@@ -150,17 +157,21 @@ fn study(
                 reason = "the baseline works in single precision"
             )]
             let r = settings.delta() as f32;
-            of_frame.plain += timed(|| {
-                black_box((
-                    plain_grid::within(&points, r),
-                    plain_grid::between(&points, &sphere, r),
-                ))
-            })
-            .1;
+            times[1].push(
+                timed(|| {
+                    black_box((
+                        plain_grid::within(&points, r),
+                        plain_grid::between(&points, &sphere, r),
+                    ))
+                })
+                .1,
+            );
             (of_frame.within, of_frame.sphere) =
                 (cloth.contacts().within.len(), cloth.contacts().sphere.len());
-            of_frame.simulation += timed(|| cloth.advance()).1;
+            times[2].push(timed(|| cloth.advance()).1);
         }
+        [of_frame.detection, of_frame.plain, of_frame.simulation] =
+            times.map(|times| f64::from(cloth.steps()) * typical(times));
         measured.push(of_frame);
         loose.frame().map_err(told)?;
         if frame + size.searched > size.frames {
@@ -326,7 +337,7 @@ fn report(settings: &Settings, measured: &[Measured], sampled: &[Sampled]) -> Fi
         title: "The cloth, frame by frame".to_owned(),
         text,
         tables: vec![
-            ("Contacts at the end of a frame, and the mean times of its steps.".to_owned(), times),
+            ("Contacts at the end of a frame, and the median times of its steps.".to_owned(), times),
             (
                 "Against brute force, and pairs of the cloth's triangles that pass through each other: with its contacts with \
                  itself pushing back, and without."
@@ -336,7 +347,7 @@ fn report(settings: &Settings, measured: &[Measured], sampled: &[Sampled]) -> Fi
         ],
         figures: vec![Figure {
             name: "cloth-times",
-            caption: "Mean time of a step: detecting all contacts, the same by the plain grid, and the simulation.".to_owned(),
+            caption: "Median time of a step: detecting all contacts, the same by the plain grid, and the simulation.".to_owned(),
             chart: Chart {
                 title: "Detection and simulation of the cloth".to_owned(),
                 panels: vec![Panel {
