@@ -90,7 +90,6 @@ impl Saved {
             threads,
             probes: self.probes,
             budget: self.budget.and_until(cancel),
-            prune: false,
             slices: self.slices,
         }
     }

@@ -30,8 +30,6 @@ pub struct Request {
     pub probes: Option<f64>,
     /// What each slice may spend; its cancellation ends the whole run.
     pub budget: Budget,
-    /// Whether the engine is kept out of regions that the problem's lower bounds exclude.
-    pub prune: bool,
     /// How many slices, each warm from the one before. Fewer are run once the space is covered, enough hits are found, or
     /// somebody cancels.
     pub slices: u64,
@@ -48,7 +46,6 @@ impl Request {
             threads: 1,
             probes: None,
             budget,
-            prune: false,
             slices: 1,
         }
     }
@@ -97,7 +94,6 @@ where
         .iter()
         .map(|(name, text)| (name.as_str(), text.as_str()));
     let engine = entry.build(settings)?;
-    let engine = if request.prune { engine.pruned() } else { engine };
     let mut search = Search::new(engine).seed(request.seed).threads(request.threads);
     if let Some(share) = request.probes {
         search = search.probes(share);

@@ -64,7 +64,11 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         (found.record, found.skips, Vec::new(), files)
     } else {
         let mut request = arguments.search.request(&arguments.method, &cancel)?;
-        request.prune = arguments.prune;
+        if arguments.prune {
+            request
+                .engine_settings
+                .push(("prune".to_owned(), "yes".to_owned()));
+        }
         let files = Files::open(arguments)?;
         warn(&world);
         let mut record = search::find(&world, &request)?;
