@@ -6,8 +6,9 @@
 //! | design windows | [`SallenKey`] |
 //! | inverse kinematics | [`Arm`], [`SevenJoints`], [`Puma`] |
 //! | falsification | [`Falsification`], [`Transmission`], specifications in signal temporal logic: [`Specification`] |
-//! | constraint satisfaction | [`Queens`] |
+//! | constraint satisfaction | [`Queens`], [`GraphColouring`], [`Costas`], [`MagicSquare`], [`LatinSquare`], [`Langford`], [`Sat`] |
 //! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name) |
+//! | niching | [`Cec2013`] (20 functions) |
 //!
 //! What counts as distinct: a cell on a lattice, a root where the space is continuous (hits are polished by Newton's
 //! method). Long enumerations are kept as constants; `cargo run --release -p satisfice-problems --example enumerate`
