@@ -115,7 +115,10 @@ impl<S: Real> Engine<S> for QuantumSwarm<S> {
 
 /// Moves a particle on all axes. All rows are cut to one length, so that no coordinate's place is checked.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "a call a step would cost a tenth of the whole")]
+#[expect(
+    clippy::inline_always,
+    reason = "a call a step would cost a tenth of the whole"
+)]
 fn displace<S: Real>(rng: &mut SearchRng, alpha: S, x: &mut [S], best: &[S], attractor: &[S], mean: &[S]) {
     let d = x.len();
     let (best, attractor, mean) = (&best[..d], &attractor[..d], &mean[..d]);

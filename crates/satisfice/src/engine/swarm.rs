@@ -250,7 +250,10 @@ impl<S: Real> Swarm<S> {
 
     /// Moves the particle whose turn it is: `displace` changes X in view of P and G. Returns whether there may be another.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a call a step would cost a tenth of the whole")]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call a step would cost a tenth of the whole"
+    )]
     pub(super) fn step(
         &mut self,
         steps: &mut dyn Steps<S>,
@@ -271,7 +274,10 @@ impl<S: Real> Swarm<S> {
 
     /// Enters what became of the particle whose turn it was, at its new position.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a call a step would cost a tenth of the whole")]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call a step would cost a tenth of the whole"
+    )]
     fn settle(&mut self, outcome: Outcome<S>) {
         let i = self.turn;
         let row = self.row(i);

@@ -186,7 +186,10 @@ impl<S: Real> Coefficients<S> {
     /// Moves a particle on all axes, given its best, the attractor and the limits of its velocity. All rows are cut to one
     /// length, so that no coordinate's place is checked.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a call a step would cost a tenth of the whole")]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call a step would cost a tenth of the whole"
+    )]
     fn displace(
         &self,
         rng: &mut SearchRng,
