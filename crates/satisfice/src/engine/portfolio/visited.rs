@@ -3,19 +3,23 @@
 use crate::scalar::Real;
 use crate::space::Space;
 
-/// At most this many points are remembered exactly: 32 MiB.
-const MOST: usize = 1 << 22;
+/// Tables that the points are spread over. Each grows by itself, and moves few points when it does: one table for all would
+/// stand still for tens of milliseconds at a million points, in the middle of a slice.
+const SHARDS: usize = 64;
+/// Slots of a table at first, and at most: half of them are used, so 2^21 points are remembered exactly, in 32 MiB.
+const FIRST: usize = 1 << 4;
+const MOST: usize = 1 << 16;
 /// An empty slot; no point has this key.
 const EMPTY: u64 = u64::MAX;
 
-/// A set of lattice points, exact up to half of `MOST` points. Beyond, a new point takes the place of an old one, so that a point
-/// may be proposed again but none is ever held for visited that was not (but for 64-bit collisions in spaces of 2^63
-/// points and more).
+/// A set of lattice points, exact up to 2^21 points. Beyond, a new point takes the place of an old one, so that a point may be
+/// proposed again but none is ever held for visited that was not (but for 64-bit collisions in spaces of 2^63 points and
+/// more).
 ///
-/// Cost: a multiplication an axis and one cache line. Memory: 8 to 32 bytes a point.
+/// Cost: a multiplication an axis and a cache line or two. Memory: about 16 to 32 bytes a point, 8 KiB at least.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Visited {
-    slots: Vec<u64>,
+    shards: Vec<Shard>,
     points: usize,
     forgot: bool,
     /// Number of points of the space, if it is below 2^63.
@@ -23,22 +27,92 @@ pub(super) struct Visited {
 }
 
 crate::saved_struct!(Visited {
-    slots,
+    shards,
     points,
     forgot,
     cardinality
 });
 
+/// A table with open addressing and linear probing, at most half full.
+#[derive(Debug, Clone)]
+struct Shard {
+    slots: Vec<u64>,
+    points: usize,
+}
+
+crate::saved_struct!(Shard { slots, points });
+
+/// What became of a key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Entered {
+    New,
+    Known,
+    /// It is in the place of another one, or forgotten already.
+    Replacing,
+}
+
+impl Shard {
+    /// The slot of a key, or the empty one where it would be.
+    #[inline]
+    fn slot(&self, hash: u64, key: u64) -> usize {
+        let last = self.slots.len() - 1;
+        #[expect(clippy::cast_possible_truncation, reason = "the lowest bits are wanted")]
+        let mut slot = hash as usize & last;
+        while self.slots[slot] != key && self.slots[slot] != EMPTY {
+            slot = (slot + 1) & last;
+        }
+        slot
+    }
+
+    fn insert(&mut self, hash: u64, key: u64) -> Entered {
+        let slot = self.slot(hash, key);
+        if self.slots[slot] == key {
+            return Entered::Known;
+        }
+        if 2 * self.points < self.slots.len() {
+            self.slots[slot] = key;
+            self.points += 1;
+            return Entered::New;
+        }
+        if self.slots.len() < MOST {
+            self.grow();
+            return self.insert(hash, key);
+        }
+        // In the key's first slot: whoever passed it on his way still finds his way past it. An empty one stays empty, so that
+        // every search ends; then the point is forgotten at once.
+        #[expect(clippy::cast_possible_truncation, reason = "the lowest bits are wanted")]
+        let first = hash as usize & (MOST - 1);
+        if self.slots[first] != EMPTY {
+            self.slots[first] = key;
+        }
+        Entered::Replacing
+    }
+
+    fn grow(&mut self) {
+        let twice = vec![EMPTY; 2 * self.slots.len()];
+        for key in core::mem::replace(&mut self.slots, twice) {
+            if key != EMPTY {
+                let slot = self.slot(spread(key), key);
+                self.slots[slot] = key;
+            }
+        }
+    }
+}
+
 impl Visited {
     pub(super) fn new<S: Real>(space: &Space<S>) -> Self {
         let count = space.cardinality().filter(|&count| count < 9.2e18);
+        let shard = Shard {
+            slots: vec![EMPTY; FIRST],
+            points: 0,
+        };
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "checked; exact below 2^53"
         )]
         Self {
-            slots: vec![EMPTY; 1 << 10],
+            shards: vec![shard; SHARDS],
             points: 0,
             forgot: false,
             cardinality: count.map(|count| count as u64),
@@ -49,40 +123,20 @@ impl Visited {
     #[inline]
     pub(super) fn insert<S: Real>(&mut self, space: &Space<S>, position: &[S]) -> bool {
         let key = self.key(space, position);
-        self.insert_key(key)
+        let hash = spread(key);
+        let entered = self.shards[shard_of(hash)].insert(hash, key);
+        self.points += usize::from(entered == Entered::New);
+        self.forgot |= entered == Entered::Replacing;
+        entered != Entered::Known
     }
 
     /// Whether the point at a position that is inside is remembered.
     #[inline]
     pub(super) fn contains<S: Real>(&self, space: &Space<S>, position: &[S]) -> bool {
         let key = self.key(space, position);
-        let start = spread(key) as usize & (self.slots.len() - 1) & !3;
-        self.slots[start..start + 4].contains(&key)
-    }
-
-    fn insert_key(&mut self, key: u64) -> bool {
-        if 2 * self.points >= self.slots.len() && self.slots.len() < MOST {
-            self.grow();
-        }
-        // Four neighbouring slots stay in one cache line.
-        let start = spread(key) as usize & (self.slots.len() - 1) & !3;
-        for slot in &mut self.slots[start..start + 4] {
-            if *slot == key {
-                return false;
-            }
-            if *slot == EMPTY {
-                *slot = key;
-                self.points += 1;
-                return true;
-            }
-        }
-        if self.slots.len() < MOST {
-            self.grow();
-            return self.insert_key(key);
-        }
-        self.forgot = true;
-        self.slots[start + (key & 3) as usize] = key;
-        true
+        let hash = spread(key);
+        let shard = &self.shards[shard_of(hash)];
+        shard.slots[shard.slot(hash, key)] == key
     }
 
     /// Whether every point of the space has been proposed.
@@ -130,21 +184,18 @@ impl Visited {
             index /= count;
         }
     }
-
-    fn grow(&mut self) {
-        let old = core::mem::take(&mut self.slots);
-        self.slots = vec![EMPTY; 2 * old.len()];
-        self.points = 0;
-        for key in old.into_iter().filter(|&key| key != EMPTY) {
-            self.insert_key(key);
-        }
-    }
 }
 
 #[inline]
 fn spread(key: u64) -> u64 {
     let key = (key ^ (key >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     key ^ (key >> 29)
+}
+
+/// The table of a hash: by its highest bits, which choose no slot.
+#[inline]
+fn shard_of(hash: u64) -> usize {
+    (hash >> 58) as usize
 }
 
 #[cfg(test)]
@@ -181,5 +232,48 @@ mod tests {
             assert_eq!(visited.key(&space, &position), index);
         }
         assert!(visited.is_all());
+    }
+
+    #[test]
+    fn beyond_its_memory_it_forgets_but_invents_nothing() {
+        let space = Space::<f64>::lattice(2, 4096).unwrap();
+        let mut visited = Visited::new(&space);
+        let mut position = [0.0; 2];
+        let held = |visited: &Visited| {
+            visited
+                .shards
+                .iter()
+                .map(|shard| shard.slots.len())
+                .sum::<usize>()
+        };
+        for index in (0..6_000_000).step_by(2) {
+            Visited::point(&space, index, &mut position);
+            assert!(visited.insert(&space, &position));
+        }
+        assert!(visited.forgot && !visited.is_all());
+        assert!(held(&visited) <= SHARDS * MOST);
+        let mut remembered = 0_u32;
+        for index in 0..6_000_000 {
+            Visited::point(&space, index, &mut position);
+            let known = visited.contains(&space, &position);
+            assert!(!known || index % 2 == 0, "{index} was never there");
+            remembered += u32::from(known);
+        }
+        assert!(remembered > 2_000_000, "{remembered}");
+    }
+
+    #[test]
+    fn it_takes_few_bytes_a_point() {
+        let space = Space::<f64>::lattice(2, 4096).unwrap();
+        let (mut visited, mut rng) = (Visited::new(&space), SearchRng::new(2));
+        let mut position = [0.0; 2];
+        for n in 1..300_000_usize {
+            rng.position(&space, &mut position);
+            visited.insert(&space, &position);
+            if n.is_multiple_of(10_000) {
+                let slots: usize = visited.shards.iter().map(|shard| shard.slots.len()).sum();
+                assert!(slots * 8 <= 36 * visited.points, "{slots} slots for {n}");
+            }
+        }
     }
 }
