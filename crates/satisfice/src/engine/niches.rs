@@ -3,7 +3,7 @@
 /// No niche: an outlier.
 pub(super) const OUTLIER: u32 = 0;
 
-/// The niche of each of some points, numbered from 1 in the order of their first members; [`OUTLIER`] for points in none.
+/// The niche of each of some points, numbered from 1 in the order of their first cores; [`OUTLIER`] for points in none.
 ///
 /// A point with at least `min_points` points within `eps`, itself included, is a core; cores within `eps` of each other are
 /// of one niche, and points within `eps` of a core are of the first such niche. O(n^2) distances.
@@ -59,9 +59,10 @@ mod tests {
 
     #[test]
     fn dense_points_are_niches_and_lonely_ones_are_none() {
+        // All of 9, 9.5 and 10 are cores; of 0, 1 and 2 only the one in the middle is, which comes later.
         assert_eq!(
             on_a_line(&[0.0, 9.0, 1.0, 50.0, 9.5, 2.0, 10.0]),
-            [1, 2, 1, OUTLIER, 2, 1, 2]
+            [2, 1, 2, OUTLIER, 1, 2, 1]
         );
         // An end of a chain is reached from a core, though it is none.
         assert_eq!(on_a_line(&[0.0, 1.0, 2.0, 3.0]), [1, 1, 1, 1]);
