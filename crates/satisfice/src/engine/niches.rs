@@ -7,27 +7,33 @@ pub(super) const OUTLIER: u32 = 0;
 ///
 /// A point with at least `min_points` points within `eps`, itself included, is a core; cores within `eps` of each other are
 /// of one niche, and points within `eps` of a core are of the first such niche. O(n^2) distances.
+///
+/// They are written into `niches`; `memory` is used again from call to call.
 pub(super) fn dbscan(
     points: usize,
     eps: f64,
     min_points: usize,
     distance: impl Fn(usize, usize) -> f64,
-) -> Vec<u32> {
+    memory: &mut Memory,
+    niches: &mut Vec<u32>,
+) {
+    let Memory { seen, open, reached } = memory;
     // NaN is near nothing.
-    let near = |i: usize| {
-        (0..points)
-            .filter(|&j| i == j || distance(i, j) <= eps)
-            .collect::<Vec<_>>()
+    let near = |i: usize, out: &mut Vec<usize>| {
+        out.clear();
+        out.extend((0..points).filter(|&j| i == j || distance(i, j) <= eps));
     };
-    let mut niches = vec![OUTLIER; points];
-    let mut seen = vec![false; points];
+    niches.clear();
+    niches.resize(points, OUTLIER);
+    seen.clear();
+    seen.resize(points, false);
     let mut found = 0;
     for first in 0..points {
         if seen[first] {
             continue;
         }
         seen[first] = true;
-        let mut open = near(first);
+        near(first, open);
         if open.len() < min_points {
             continue;
         }
@@ -39,14 +45,21 @@ pub(super) fn dbscan(
             }
             if !seen[point] {
                 seen[point] = true;
-                let reached = near(point);
+                near(point, reached);
                 if reached.len() >= min_points {
-                    open.extend(reached);
+                    open.extend_from_slice(reached);
                 }
             }
         }
     }
-    niches
+}
+
+/// What [`dbscan`] works with.
+#[derive(Debug, Default)]
+pub(super) struct Memory {
+    seen: Vec<bool>,
+    open: Vec<usize>,
+    reached: Vec<usize>,
 }
 
 #[cfg(test)]
@@ -54,7 +67,17 @@ mod tests {
     use super::*;
 
     fn on_a_line(points: &[f64]) -> Vec<u32> {
-        dbscan(points.len(), 1.0, 3, |i, j| (points[i] - points[j]).abs())
+        let mut niches = vec![7; 3];
+        let distance = |i: usize, j: usize| (points[i] - points[j]).abs();
+        dbscan(
+            points.len(),
+            1.0,
+            3,
+            distance,
+            &mut Memory::default(),
+            &mut niches,
+        );
+        niches
     }
 
     #[test]

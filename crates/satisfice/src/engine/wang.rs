@@ -1,6 +1,6 @@
 //! The paper's rival: a particle swarm whose niches are found by clustering. A reconstruction.
 
-use super::niches::{OUTLIER, dbscan};
+use super::niches::{Memory, OUTLIER, dbscan};
 use super::pso::{PHI, constriction};
 use super::swarm::{self, Attractor, Swarm};
 use super::velocity_swarm::{Coefficients, v_max};
@@ -75,6 +75,7 @@ pub(super) struct Wang<S> {
     still: f64,
     velocities: Vec<S>,
     niches: Vec<u32>,
+    memory: Memory,
     /// Whether a particle is to be drawn anew in this sweep.
     scattered: Vec<bool>,
     sweeps: u64,
@@ -90,6 +91,7 @@ pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Erro
         still: values.real("still"),
         velocities: Vec::new(),
         niches: Vec::new(),
+        memory: Memory::default(),
         scattered: Vec::new(),
         sweeps: 0,
     }))
@@ -104,20 +106,22 @@ fn cell<S: Real>(axis: &Axis<S>) -> S {
     }
 }
 
-impl<S: Real> Wang<S> {
-    fn draw_velocity(&self, context: &dyn Context<S>, rng: &mut SearchRng, velocity: &mut [S]) {
-        for (axis, v) in context.space().axes().iter().zip(velocity) {
-            *v = self.coefficients.v_max * axis.width() * S::of(2.0 * rng.uniform() - 1.0);
-        }
+/// A velocity uniform in ±Vmax, a share of each axis.
+fn draw_velocity<S: Real>(v_max: S, context: &dyn Context<S>, rng: &mut SearchRng, velocity: &mut [S]) {
+    for (axis, v) in context.space().axes().iter().zip(velocity) {
+        *v = v_max * axis.width() * S::of(2.0 * rng.uniform() - 1.0);
     }
+}
 
+impl<S: Real> Wang<S> {
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         self.swarm.propose_start(context, rng, out);
-        let mut velocities = vec![S::zero(); self.swarm.particles() * context.space().dimension()];
-        for velocity in velocities.chunks_mut(context.space().dimension()) {
-            self.draw_velocity(context, rng, velocity);
+        let dimension = context.space().dimension();
+        self.velocities
+            .resize(self.swarm.particles() * dimension, S::zero());
+        for velocity in self.velocities.chunks_mut(dimension) {
+            draw_velocity(self.coefficients.v_max, context, rng, velocity);
         }
-        self.velocities = velocities;
     }
 
     /// What happens between two sweeps.
@@ -136,24 +140,31 @@ impl<S: Real> Wang<S> {
                 });
                 square.sqrt()
             };
-            self.niches = dbscan(particles, self.eps, self.min_points, distance);
+            dbscan(
+                particles,
+                self.eps,
+                self.min_points,
+                distance,
+                &mut self.memory,
+                &mut self.niches,
+            );
         }
         self.sweeps += 1;
         self.scattered.clear();
         self.scattered.resize(particles, false);
         for niche in 1..=self.niches.iter().copied().max().unwrap_or(OUTLIER) {
-            let members: Vec<usize> = (0..particles).filter(|&i| self.niches[i] == niche).collect();
+            let members = || (0..particles).filter(|&i| self.niches[i] == niche);
             let together = axes.iter().enumerate().all(|(j, axis)| {
-                let ends = members
-                    .iter()
-                    .map(|&i| self.swarm.position(i)[j])
+                let ends = members()
+                    .map(|i| self.swarm.position(i)[j])
                     .fold((S::infinity(), S::neg_infinity()), |(least, greatest), x| {
                         (least.min(x), greatest.max(x))
                     });
                 ends.1 - ends.0 <= cell(axis)
             });
             if together {
-                members.iter().for_each(|&i| self.scattered[i] = true);
+                let scattered = &mut self.scattered;
+                members().for_each(|i| scattered[i] = true);
             }
         }
     }
@@ -219,9 +230,8 @@ impl<S: Real> Engine<S> for Wang<S> {
                 self.niches[i] = OUTLIER;
                 self.swarm.forget(i);
                 out.push_with(|position| rng.position(context.space(), position));
-                let mut velocity = vec![S::zero(); row.len()];
-                self.draw_velocity(context, rng, &mut velocity);
-                self.velocities[row].copy_from_slice(&velocity);
+                let velocity = &mut self.velocities[row];
+                draw_velocity(self.coefficients.v_max, context, rng, velocity);
                 continue;
             }
             let leader = self.leader(i);

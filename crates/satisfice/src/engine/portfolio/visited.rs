@@ -5,10 +5,10 @@ use crate::space::Space;
 
 /// Tables that the points are spread over. Each grows by itself, and moves few points when it does: one table for all would
 /// stand still for tens of milliseconds at a million points, in the middle of a slice.
-const SHARDS: usize = 64;
+const SHARDS: usize = 16;
 /// Slots of a table at first, and at most: half of them are used, so 2^21 points are remembered exactly, in 32 MiB.
-const FIRST: usize = 1 << 4;
-const MOST: usize = 1 << 16;
+const FIRST: usize = 1 << 6;
+const MOST: usize = 1 << 18;
 /// An empty slot; no point has this key.
 const EMPTY: u64 = u64::MAX;
 
@@ -195,7 +195,7 @@ fn spread(key: u64) -> u64 {
 /// The table of a hash: by its highest bits, which choose no slot.
 #[inline]
 fn shard_of(hash: u64) -> usize {
-    (hash >> 58) as usize
+    (hash >> 60) as usize
 }
 
 #[cfg(test)]
