@@ -178,8 +178,13 @@ impl<S: Real> Population<S> {
         let members = ((least * times as f64) as usize).min(LARGEST);
         self.mean.resize(n, S::zero());
         let (smallest, largest) = FIRST_STEP;
-        // In many dimensions small steps lead into local minima only, in few they are cheap and find narrow basins.
-        let preference = (n as f64 / 4.0).clamp(0.5, 3.0);
+        // In many dimensions small steps lead into local minima only, on a line or in a plane they are cheap and find narrow
+        // basins.
+        let preference = if n <= 2 {
+            0.5
+        } else {
+            (n as f64 / 4.0).clamp(2.0, 3.0)
+        };
         self.sigma = largest * (smallest / largest).powf(rng.uniform().powf(preference));
         self.matrix.clear();
         self.matrix.resize(n * n, 0.0);
