@@ -22,9 +22,11 @@ step "docs without warnings"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --all-features --quiet
 
 step "feature matrix: none, each alone; the tests are the same, so the results are"
-for features in "" rayon serde interval; do
-  echo "-- satisfice with features: ${features:-none}"
-  cargo test -p satisfice --quiet --no-default-features --features "$features" --lib --tests
+# The conformance suite, the longest, runs with all features in the workspace's tests and here with none.
+cargo test -p satisfice --quiet --no-default-features --lib --tests
+for features in rayon serde interval; do
+  echo "-- satisfice with features: $features"
+  cargo test -p satisfice --quiet --no-default-features --features "$features" --lib --test allocation --test checkpoint
 done
 
 step "every example, in release, as a user runs it"
