@@ -1,6 +1,7 @@
 //! The loop: engine, ledger, archive, slice after slice.
 
 mod checkpoint;
+mod steps;
 
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use crate::archive::Archive;
 use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::candidates::Candidates;
-use crate::engine::{Ask, Engine, Named, Origin, Steps, WarmStart};
+use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
 use crate::error::Error;
 use crate::evaluate::{Ledger, Threads};
 use crate::identity::Identity;
@@ -23,6 +24,7 @@ use crate::view::{Calls, Scratches, View};
 
 use checkpoint::Pending;
 pub use checkpoint::{Checkpoint, Saving, Unfinished};
+use steps::SingleSteps;
 
 /// An engine that asks for more this often without proposing anything has nothing to propose.
 const EMPTY_ASKS: usize = 1000;
@@ -603,45 +605,5 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.verified += next.len();
         self.candidates
             .prepare_solutions(next.iter(), &self.archive, limit);
-    }
-}
-
-/// The search as an engine sees it that advances by itself.
-struct SingleSteps<'a, P: SatisficingProblem> {
-    problem: &'a P,
-    ledger: &'a mut Ledger,
-    candidates: &'a mut Candidates<P::Scalar, P::Solution>,
-    archive: &'a mut Archive<P::Solution>,
-    probes: &'a Probes,
-    observer: &'a mut dyn Observer<P::Solution>,
-    deletes: bool,
-    /// Whether the engine has been told that it was the last step.
-    over: bool,
-}
-
-impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
-    fn take(&mut self, position: &mut [P::Scalar]) -> (Outcome<P::Scalar>, bool) {
-        if self.over {
-            return (Outcome::NotEvaluated, false); // no budget is overrun by an engine that does not listen
-        }
-        assert_eq!(
-            position.len(),
-            self.problem.space().dimension(),
-            "one number an axis"
-        );
-        let outcome = self.ledger.evaluate_one(
-            self.problem,
-            self.candidates,
-            position,
-            self.deletes,
-            self.archive,
-            self.observer,
-        );
-        self.over = self.ledger.has_stopped() || self.probes.is_due(self.ledger.counts.evaluations);
-        (outcome, !self.over)
-    }
-
-    fn elapsed_share(&self) -> f64 {
-        self.ledger.share()
     }
 }

@@ -1,0 +1,50 @@
+//! The search as seen by an engine that advances by itself, a point at a time.
+
+use crate::archive::Archive;
+use crate::batch::Outcome;
+use crate::candidates::Candidates;
+use crate::engine::Steps;
+use crate::evaluate::Ledger;
+use crate::observer::Observer;
+use crate::probes::Probes;
+use crate::problem::SatisficingProblem;
+
+/// What a step needs of the slice.
+pub(super) struct SingleSteps<'a, P: SatisficingProblem> {
+    pub(super) problem: &'a P,
+    pub(super) ledger: &'a mut Ledger,
+    pub(super) candidates: &'a mut Candidates<P::Scalar, P::Solution>,
+    pub(super) archive: &'a mut Archive<P::Solution>,
+    pub(super) probes: &'a Probes,
+    pub(super) observer: &'a mut dyn Observer<P::Solution>,
+    pub(super) deletes: bool,
+    /// Whether the engine has been told that it was the last step.
+    pub(super) over: bool,
+}
+
+impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
+    fn take(&mut self, position: &mut [P::Scalar]) -> (Outcome<P::Scalar>, bool) {
+        if self.over {
+            return (Outcome::NotEvaluated, false); // no budget is overrun by an engine that does not listen
+        }
+        assert_eq!(
+            position.len(),
+            self.problem.space().dimension(),
+            "one number an axis"
+        );
+        let outcome = self.ledger.evaluate_one(
+            self.problem,
+            self.candidates,
+            position,
+            self.deletes,
+            self.archive,
+            self.observer,
+        );
+        self.over = self.ledger.has_stopped() || self.probes.is_due(self.ledger.counts.evaluations);
+        (outcome, !self.over)
+    }
+
+    fn elapsed_share(&self) -> f64 {
+        self.ledger.share()
+    }
+}
