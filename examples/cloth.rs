@@ -79,6 +79,7 @@ fn picture(cloth: &Simulation) -> Result<Vec<u8>, Box<dyn Error>> {
     let view = View {
         azimuth: -50.0,
         elevation: 18.0,
+        ..View::default()
     };
     let mut picture = Picture::new(520, 420, view);
     picture.body(&mesh);

@@ -183,6 +183,7 @@ impl Film {
         let view = View {
             azimuth: -62.0,
             elevation: 22.0,
+            ..View::default()
         };
         let mut picture = Picture::new(1200, 760, view);
         for body in [&self.table, &ball, &cloth] {

@@ -1,6 +1,7 @@
 //! How far a search or an enumeration is, on stderr where that is a terminal.
 
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -112,7 +113,11 @@ impl Drop for Bar {
 }
 
 /// What goes on, of which nobody knows the end: a line on a terminal, nothing elsewhere.
-pub(crate) struct Counting(Option<ProgressBar>);
+pub(crate) struct Counting {
+    bar: Option<ProgressBar>,
+    /// Milliseconds from the start to the number shown last.
+    shown: AtomicU64,
+}
 
 impl Counting {
     /// So often the line is drawn anew.
@@ -120,29 +125,42 @@ impl Counting {
 
     pub(crate) fn new() -> Self {
         if !std::io::stderr().is_terminal() {
-            return Self(None);
+            return Self {
+                bar: None,
+                shown: AtomicU64::new(0),
+            };
         }
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Self::EVERY);
-        Self(Some(bar))
+        Self {
+            bar: Some(bar),
+            shown: AtomicU64::new(0),
+        }
     }
 
     /// Says what goes on now.
     pub(crate) fn say(&self, what: String) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.set_message(what);
         }
     }
 
     /// Says how many pairs there are so far; often called, seldom drawn.
     pub(crate) fn show(&self, found: usize, start: Instant) {
-        if let Some(bar) = &self.0
-            && found.is_multiple_of(64)
+        let Some(bar) = &self.bar else { return };
+        let seconds = start.elapsed().as_secs_f64();
+        let now = (1e3 * seconds) as u64;
+        let last = self.shown.load(Ordering::Relaxed);
+        if now > last + 50
+            && self
+                .shown
+                .compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed)
+                .is_ok()
         {
-            let rate = found as f64 / start.elapsed().as_secs_f64().max(1e-9);
+            let rate = found as f64 / seconds;
             bar.set_message(format!("{found} pairs, {rate:.1e} a second; Ctrl-C keeps them"));
         }
     }
@@ -150,7 +168,7 @@ impl Counting {
 
 impl Drop for Counting {
     fn drop(&mut self) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }

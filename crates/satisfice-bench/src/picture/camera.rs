@@ -26,9 +26,9 @@ impl Camera {
         let (sin_a, cos_a) = view.azimuth.to_radians().sin_cos();
         let (sin_e, cos_e) = view.elevation.to_radians().sin_cos();
         let mut camera = Self {
-            right: [-sin_a, cos_a, 0.0],
-            up: [-sin_e * cos_a, -sin_e * sin_a, cos_e],
-            towards: [cos_e * cos_a, cos_e * sin_a, sin_e],
+            right: view.up.turn([-sin_a, cos_a, 0.0]),
+            up: view.up.turn([-sin_e * cos_a, -sin_e * sin_a, cos_e]),
+            towards: view.up.turn([cos_e * cos_a, cos_e * sin_a, sin_e]),
             unit,
             scale: 1.0,
             centre: [0.0; 2],

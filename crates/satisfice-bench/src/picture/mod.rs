@@ -44,13 +44,38 @@ const BODIES: [[f64; 3]; 6] = [
 /// Okabe and Ito's orange: triangles that are highlighted.
 const HIGHLIGHT: [f64; 3] = [0.96, 0.66, 0.12];
 
-/// From where a scene is seen. Parallel projection; z points upwards.
+/// Which axis points upwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Up {
+    /// x; then y points where x does by default, and z where y does.
+    X,
+    /// y, as in most files made for rendering; z then points to the front.
+    Y,
+    /// z, as in most files made for construction.
+    #[default]
+    Z,
+}
+
+impl Up {
+    /// Where a direction of a world in which z points upwards lies in one in which this axis does.
+    fn turn(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::X => [z, x, y],
+            Self::Y => [x, z, -y],
+            Self::Z => [x, y, z],
+        }
+    }
+}
+
+/// From where a scene is seen. Parallel projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Direction of the eye about the z axis, in degrees from the x axis.
+    /// Direction of the eye about the axis that points upwards, in degrees from the axis that is x where that is z.
     pub azimuth: f64,
     /// Height of the eye above the horizon, in degrees.
     pub elevation: f64,
+    /// Which axis points upwards.
+    pub up: Up,
 }
 
 impl Default for View {
@@ -59,6 +84,7 @@ impl Default for View {
         Self {
             azimuth: -76.0,
             elevation: 24.0,
+            up: Up::Z,
         }
     }
 }
@@ -205,6 +231,7 @@ mod tests {
             View {
                 azimuth: 0.0,
                 elevation: 0.0,
+                up: Up::Z,
             },
         );
         picture.body(&ball);
@@ -223,6 +250,7 @@ mod tests {
         let view = View {
             azimuth: 0.0,
             elevation: 0.0,
+            up: Up::Z,
         };
         let marked = |x: f64| {
             let mut picture = Picture::new(200, 200, view);
@@ -242,6 +270,34 @@ mod tests {
         // Blue where the first body is in front, sand where the second one is.
         assert!(first([&front, &ball]).blue() > first([&front, &ball]).red());
         assert!(first([&ball, &front]).blue() < first([&ball, &front]).red());
+    }
+
+    /// A scene whose axes are exchanged, seen with another axis upwards, is the same picture.
+    #[test]
+    fn each_axis_can_point_upwards() {
+        let torus = generate::torus(1.0, 0.3, 24, 12).unwrap();
+        let tilt = satisfice_collision::Placement::from_axis_angle([1.0, 0.5, 0.0], 0.4).unwrap();
+        let upright = tilt.place(&torus).unwrap();
+        let png = |mesh: &Mesh, up: Up| {
+            let mut picture = Picture::new(
+                90,
+                70,
+                View {
+                    up,
+                    ..View::default()
+                },
+            );
+            picture.body(mesh);
+            picture.png().unwrap()
+        };
+        let turned = |how: fn([f64; 3]) -> [f64; 3]| {
+            let vertices = upright.vertices().iter().map(|&v| how(v)).collect();
+            upright.with_vertices(vertices).unwrap()
+        };
+        let expected = png(&upright, Up::Z);
+        assert_eq!(png(&turned(|[x, y, z]| [x, z, -y]), Up::Y), expected);
+        assert_eq!(png(&turned(|[x, y, z]| [z, x, y]), Up::X), expected);
+        assert_ne!(png(&upright, Up::Y), expected);
     }
 
     #[test]

@@ -249,6 +249,7 @@ fn picture(cloth: &Simulation) -> Result<Vec<u8>, Error> {
         View {
             azimuth: -50.0,
             elevation: 18.0,
+            ..View::default()
         },
     );
     picture.body(&mesh);

@@ -72,6 +72,21 @@ pub(crate) struct CollideArguments {
     /// Draw the bodies with the pairs marked where they are closest, and their triangles highlighted.
     #[arg(long, value_name = "FILE.png", value_hint = ValueHint::FilePath)]
     pub(crate) picture: Option<PathBuf>,
+
+    /// Which axis points upwards in the picture [default: y, or z if the first mesh is an STL file].
+    #[arg(long, value_name = "AXIS", requires = "picture")]
+    pub(crate) up: Option<Axis>,
+}
+
+/// An axis of the world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Axis {
+    /// The first coordinate.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
 }
 
 /// What is asked for instead of all pairs.

@@ -123,13 +123,21 @@ impl Exact<'_> {
                 self.pass(scene, start, counting)?
             }
             Find::All => {
-                counting.say("deciding pairs; Ctrl-C twice gives up".to_owned());
-                let Frame { contacts, skips, .. } = scene.contacts()?;
+                let out_of_time = || self.time.is_some_and(|time| start.elapsed() >= time);
+                let frame = scene.contacts_until(&|found| {
+                    counting.show(found, start);
+                    self.cancel.is_cancelled() || out_of_time()
+                })?;
+                let complete = frame.completeness == scene::Completeness::Proved;
                 Answer {
-                    contacts,
-                    skips,
-                    stop: StopReason::Covered,
-                    complete: true,
+                    contacts: frame.contacts,
+                    skips: frame.skips,
+                    stop: match (complete, self.cancel.is_cancelled()) {
+                        (true, _) => StopReason::Covered,
+                        (false, true) => StopReason::Cancelled,
+                        (false, false) => StopReason::Time,
+                    },
+                    complete,
                 }
             }
         })

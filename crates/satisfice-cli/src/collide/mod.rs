@@ -86,7 +86,7 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
     if let Some(file) = &mut files.picture {
         let contacts = contacts(&record)?;
         let missed = picture::missed(&reference, &contacts);
-        file.write(&picture::draw(&world, &contacts, &missed)?)?;
+        file.write(&picture::draw(&world, arguments.up, &contacts, &missed)?)?;
     }
     files.finish(&Report::new(record, &skips, &world)?, &world)
 }
@@ -107,10 +107,8 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
             find.name()
         );
     }
-    if (time.is_some() || hits.is_some()) && ["grid", "brute-force"].contains(&method.as_str()) {
-        bail!(
-            "--method {method} works through to its end: for --time or --hits choose exact, tree or an engine"
-        );
+    if hits.is_some() && ["grid", "brute-force"].contains(&method.as_str()) {
+        bail!("--method {method} does not count its hits: for --hits choose exact, tree or an engine");
     }
     if method == "grid" && arguments.pairs != arguments::PairKind::VertexVertex {
         bail!("--method grid is for --pairs vertex-vertex: choose exact or tree");

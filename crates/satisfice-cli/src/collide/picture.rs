@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use anyhow::bail;
-use satisfice_bench::picture::{Picture, View};
+use satisfice_bench::picture::{Picture, Up, View};
 use satisfice_collision::broad::{FeatureKind, Method};
 use satisfice_collision::scene::Contact;
 
+use super::arguments::Axis;
 use super::scene::World;
 
 const WIDTH: u32 = 1400;
@@ -28,9 +29,32 @@ pub(super) fn check(path: Option<&Path>) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Which axis points upwards where nobody says so: y in OBJ and PLY, as most viewers take it, z in STL, as printers do.
+fn usual_up(mesh: &Path) -> Axis {
+    let is_stl = mesh
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("stl"));
+    if is_stl { Axis::Z } else { Axis::Y }
+}
+
 /// The scene with the pairs that were found, and, where they are known, those that were not.
-pub(super) fn draw(world: &World, found: &[Contact], missed: &[Contact]) -> anyhow::Result<Vec<u8>> {
-    let mut picture = Picture::new(WIDTH, HEIGHT, View::default());
+pub(super) fn draw(
+    world: &World,
+    up: Option<Axis>,
+    found: &[Contact],
+    missed: &[Contact],
+) -> anyhow::Result<Vec<u8>> {
+    let first = world.request.paths.first();
+    let up = up.or(first.map(|path| usual_up(path))).unwrap_or(Axis::Z);
+    let view = View {
+        up: match up {
+            Axis::X => Up::X,
+            Axis::Y => Up::Y,
+            Axis::Z => Up::Z,
+        },
+        ..View::default()
+    };
+    let mut picture = Picture::new(WIDTH, HEIGHT, view);
     world.bodies.iter().for_each(|mesh| picture.body(mesh));
     let (kind_a, kind_b) = world.kinds();
     for contact in found {

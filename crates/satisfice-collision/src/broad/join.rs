@@ -8,7 +8,10 @@ use super::exact::Decide;
 use super::frame::Filter;
 use super::lanes::{Eight, Lanes, Work};
 use super::order::Packing;
+use super::watch::Watch;
 
+/// Tests between two looks at the watch: some 20 us, or 0.2 ms where most are pairs.
+const LOOK: u64 = 1 << 16;
 /// From so many tests in one cell on a finer look is worth its overhead.
 const CLUMP: usize = 1 << 17;
 
@@ -32,6 +35,9 @@ pub(crate) struct Scratch {
     pub(crate) tests: u64,
     /// Pairs decided exactly because the filter could not.
     pub(crate) in_band: u64,
+    /// When to look at the watch next, in tests, and how many pairs it was told of.
+    next_look: u64,
+    told: usize,
 }
 
 impl Scratch {
@@ -40,6 +46,15 @@ impl Scratch {
         self.clumps.clear();
         self.tests = 0;
         self.in_band = 0;
+        self.next_look = LOOK;
+        self.told = 0;
+    }
+
+    /// Whether to stop, as the watch says.
+    fn is_enough(&mut self, watch: &Watch<'_>) -> bool {
+        self.next_look = self.tests + LOOK;
+        let new = self.found.len() - std::mem::replace(&mut self.told, self.found.len());
+        watch.ask(new)
     }
 
     fn room(&mut self, len: usize) {
@@ -64,6 +79,7 @@ pub(crate) struct Join<'a, const ONE_BODY: bool> {
     pub(crate) layers: Range<usize>,
     /// Whether clumps may be handed back.
     pub(crate) split: bool,
+    pub(crate) watch: &'a Watch<'a>,
     pub(crate) scratch: &'a mut Scratch,
 }
 
@@ -77,16 +93,17 @@ impl<const ONE_BODY: bool> Work for Join<'_, ONE_BODY> {
         let last = self.layers.end * cells.layer();
         for cell in first..last {
             let own = self.a.start[cell] as usize..self.a.start[cell + 1] as usize;
-            if !own.is_empty() {
-                self.cell(lanes, cell, own);
+            if !own.is_empty() && self.cell(lanes, cell, own) {
+                return;
             }
         }
     }
 }
 
 impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
+    /// Whether the watch says that it is enough.
     #[inline(always)]
-    fn cell<L: Lanes>(&mut self, lanes: L, cell: usize, own: Range<usize>) {
+    fn cell<L: Lanes>(&mut self, lanes: L, cell: usize, own: Range<usize>) -> bool {
         let reach = self.filter.reach;
         let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for k in 0..3 {
@@ -99,7 +116,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
         }
         let near = self.gather(lanes, cell, &own, min, max);
         if near == 0 {
-            return;
+            return false;
         }
         if self.split && own.len() * near > CLUMP {
             let others = usize::from(ONE_BODY) * own.len();
@@ -108,14 +125,18 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
                 b: self.scratch.near_id[others..near].to_vec(),
             };
             self.scratch.clumps.push(clump);
-            return;
+            return false;
         }
-        self.scratch.tests += (own.len() * near) as u64;
         for (i, at) in own.enumerate() {
             let q = [self.a.c[0][at], self.a.c[1][at], self.a.c[2][at]];
             let skip = if ONE_BODY { i + 1 } else { 0 };
             self.scan(lanes, q, self.a.id[at], skip, near);
+            self.scratch.tests += near as u64;
+            if self.scratch.tests >= self.scratch.next_look && self.scratch.is_enough(self.watch) {
+                return true;
+            }
         }
+        false
     }
 
     /// Copies the candidates of a cell side by side: in one body its own points first, then those of cells that follow it.

@@ -17,6 +17,7 @@ mod separate;
 mod sieve;
 mod traverse;
 mod trees;
+mod watch;
 
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ pub use order::Pair;
 pub use points::{PointGrid, PointWork};
 pub(crate) use traverse::Visit;
 pub use trees::{TreeJoin, TreeWork};
+pub(crate) use watch::Watch;
 
 /// How pairs are enumerated. No method changes an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

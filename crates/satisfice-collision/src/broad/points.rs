@@ -9,6 +9,7 @@ use super::lanes::dispatch;
 use super::order::{Packing, Pair};
 use super::overlap;
 use super::sieve::sieve;
+use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Aabb, Error};
 
@@ -79,8 +80,7 @@ impl PointGrid {
         b: &[[f64; 3]],
         threshold: Threshold,
     ) -> Result<&[Pair], Error> {
-        self.run::<false>(a, b, threshold, 0)?;
-        Ok(&self.pairs)
+        self.between_until(a, b, threshold, &Watch::none())
     }
 
     /// All pairs `i < j` with `|points[i] - points[j]| < threshold`, sorted by `i`, then `j`.
@@ -88,7 +88,29 @@ impl PointGrid {
     /// # Errors
     /// As [`PointGrid::between`].
     pub fn within(&mut self, points: &[[f64; 3]], threshold: Threshold) -> Result<&[Pair], Error> {
-        self.run::<true>(points, points, threshold, 0)?;
+        self.within_until(points, threshold, &Watch::none())
+    }
+
+    /// [`PointGrid::between`] for as long as the watch lets it.
+    pub(crate) fn between_until(
+        &mut self,
+        a: &[[f64; 3]],
+        b: &[[f64; 3]],
+        threshold: Threshold,
+        watch: &Watch<'_>,
+    ) -> Result<&[Pair], Error> {
+        self.run::<false>(a, b, threshold, watch, 0)?;
+        Ok(&self.pairs)
+    }
+
+    /// [`PointGrid::within`] for as long as the watch lets it.
+    pub(crate) fn within_until(
+        &mut self,
+        points: &[[f64; 3]],
+        threshold: Threshold,
+        watch: &Watch<'_>,
+    ) -> Result<&[Pair], Error> {
+        self.run::<true>(points, points, threshold, watch, 0)?;
         Ok(&self.pairs)
     }
 
@@ -97,6 +119,7 @@ impl PointGrid {
         a: &[[f64; 3]],
         b: &[[f64; 3]],
         threshold: Threshold,
+        watch: &Watch<'_>,
         depth: u32,
     ) -> Result<(), Error> {
         self.pairs.clear();
@@ -136,10 +159,13 @@ impl PointGrid {
         }
         let packing = Packing::new(a.len(), b.len());
         let decide = Decide { a, b, threshold };
-        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, packing, depth < DEEPEST);
+        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, packing, depth < DEEPEST, watch);
         for task in 0..tasks {
-            for Clump { a: own, b: others } in std::mem::take(&mut self.tasks[task].clumps) {
-                self.clump::<ONE_BODY>(&decide, packing, task, &own, &others, depth)?;
+            for clump in std::mem::take(&mut self.tasks[task].clumps) {
+                if watch.stopped() {
+                    break;
+                }
+                self.clump::<ONE_BODY>(&decide, packing, task, &clump, watch, depth)?;
             }
             self.work.tests += self.tasks[task].tests;
             self.work.in_band += self.tasks[task].in_band;
@@ -201,6 +227,7 @@ impl PointGrid {
         decide: &Decide<'_>,
         packing: Packing,
         split: bool,
+        watch: &Watch<'_>,
     ) -> usize {
         let a = &self.sorted[0];
         let b = if ONE_BODY { a } else { &self.sorted[1] };
@@ -226,6 +253,7 @@ impl PointGrid {
                 packing,
                 layers,
                 split,
+                watch,
                 scratch,
             });
         };
@@ -247,8 +275,8 @@ impl PointGrid {
         decide: &Decide<'_>,
         packing: Packing,
         task: usize,
-        own: &[u32],
-        others: &[u32],
+        Clump { a: own, b: others }: &Clump,
+        watch: &Watch<'_>,
         depth: u32,
     ) -> Result<(), Error> {
         let pick = |of: &[[f64; 3]], ids: &[u32]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
@@ -273,10 +301,10 @@ impl PointGrid {
             }));
         };
         if ONE_BODY {
-            inner.run::<true>(&a, &a, decide.threshold, depth)?;
+            inner.run::<true>(&a, &a, decide.threshold, watch, depth)?;
             take(&inner, own);
         }
-        inner.run::<false>(&a, &b, decide.threshold, depth)?;
+        inner.run::<false>(&a, &b, decide.threshold, watch, depth)?;
         take(&inner, others);
         Ok(())
     }

@@ -6,8 +6,12 @@ use super::features::FeatureTree;
 use super::lanes::dispatch;
 use super::order::Pair;
 use super::traverse::{Descend, Trees, Visit};
+use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Error, Placement};
+
+/// Visits, and decisions of a row of brute force, between two looks at the watch: 0.1 to 10 ms.
+const LOOK: usize = 1 << 12;
 
 /// What a traversal had to do.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -83,7 +87,7 @@ impl TreeJoin {
             moved: [Moved::All; 2],
         };
         couple.check()?;
-        self.all(&couple);
+        self.all(&couple, &Watch::none());
         Ok(&self.pairs)
     }
 
@@ -98,43 +102,79 @@ impl TreeJoin {
             keep,
             moved: [Moved::All; 2],
         };
-        self.all(&couple);
+        self.all(&couple, &Watch::none());
         &self.pairs
     }
 
     /// The same without a tree, for a comparison or for a handful of features: every pair is decided. A couple of one body
     /// gives each pair once.
-    pub(crate) fn brute_force(&mut self, couple: &Couple<'_>) -> &[Pair] {
+    pub(crate) fn brute_force(&mut self, couple: &Couple<'_>, watch: &Watch<'_>) -> &[Pair] {
         self.pairs.clear();
         self.work = TreeWork::default();
-        for a in 0..couple.a.0.len() as u32 {
+        let (rows, others) = (couple.a.0.len() as u32, couple.b.0.len() as u32);
+        let decide_row = |a: u32, found: &mut Vec<Pair>| {
+            let mut decisions = 0_u64;
             let first = if couple.one_body { a + 1 } else { 0 };
-            for b in first..couple.b.0.len() as u32 {
-                if couple.keeps(a, b) {
-                    self.work.decisions += 1;
-                    if couple.within(a, b) {
-                        self.pairs.push(Pair { a, b });
+            for block in (first..others).step_by(LOOK) {
+                let told = found.len();
+                for b in block..others.min(block.saturating_add(LOOK as u32)) {
+                    if couple.keeps(a, b) {
+                        decisions += 1;
+                        if couple.within(a, b) {
+                            found.push(Pair { a, b });
+                        }
                     }
                 }
+                if watch.ask(found.len() - told) {
+                    break;
+                }
             }
+            decisions
+        };
+        if self.threads < 2 || u64::from(rows) * u64::from(others) < 1 << 16 {
+            for a in (0..rows).take_while(|_| !watch.stopped()) {
+                self.work.decisions += decide_row(a, &mut self.pairs);
+            }
+            return &self.pairs;
+        }
+        use rayon::prelude::*;
+        let rows = (0..rows).into_par_iter().map(|a| {
+            let mut found = Vec::new();
+            let decisions = if watch.stopped() {
+                0
+            } else {
+                decide_row(a, &mut found)
+            };
+            (found, decisions)
+        });
+        // in their order, however many threads there are
+        for (found, decisions) in rows.collect::<Vec<_>>() {
+            self.pairs.extend(found);
+            self.work.decisions += decisions;
         }
         &self.pairs
     }
 
-    /// All pairs of a couple.
-    pub(crate) fn all(&mut self, couple: &Couple<'_>) -> &[Pair] {
+    /// All pairs of a couple, or as many as the watch has time for.
+    pub(crate) fn all(&mut self, couple: &Couple<'_>, watch: &Watch<'_>) -> &[Pair] {
         if couple.apart() {
             self.work = TreeWork::default();
             self.pairs.clear();
         } else if couple.points() {
-            couple.lay(|trees, flip| self.descend::<true>(trees, couple, flip));
+            couple.lay(|trees, flip| self.descend::<true>(trees, couple, flip, watch));
         } else {
-            couple.lay(|trees, flip| self.descend::<false>(trees, couple, flip));
+            couple.lay(|trees, flip| self.descend::<false>(trees, couple, flip, watch));
         }
         &self.pairs
     }
 
-    fn descend<const POINTS: bool>(&mut self, trees: Trees<'_>, couple: &Couple<'_>, flip: bool) {
+    fn descend<const POINTS: bool>(
+        &mut self,
+        trees: Trees<'_>,
+        couple: &Couple<'_>,
+        flip: bool,
+        watch: &Watch<'_>,
+    ) {
         let packing = couple.packing();
         let glance = couple.glance(&trees, flip);
         let go = |task: &mut Task, most: usize| {
@@ -156,6 +196,14 @@ impl TreeJoin {
             });
             *work = visit.work;
             work.visits += visits;
+        };
+        let go_on = |task: &mut Task| {
+            let mut told = task.found.len();
+            while !task.stack.is_empty() && !watch.stopped() {
+                go(task, LOOK);
+                watch.ask(task.found.len() - told);
+                told = task.found.len();
+            }
         };
         if self.tasks.is_empty() {
             self.tasks.push(Task::default());
@@ -186,9 +234,9 @@ impl TreeJoin {
                 self.tasks[at % count].stack.push(visit);
             }
             use rayon::prelude::*;
-            self.tasks.par_iter_mut().for_each(|task| go(task, usize::MAX));
+            self.tasks.par_iter_mut().for_each(go_on);
         } else {
-            go(&mut self.tasks[0], usize::MAX);
+            go_on(&mut self.tasks[0]);
         }
         self.work = TreeWork::default();
         for Task { work, .. } in &self.tasks {

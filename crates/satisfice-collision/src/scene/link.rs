@@ -6,7 +6,7 @@ use super::body::Motion;
 use super::state::State;
 use super::{Contact, Scene, Skips};
 use crate::Error;
-use crate::broad::{Couple, FeatureKind, Method, Moved, Pair, inflate, intersection};
+use crate::broad::{Couple, FeatureKind, Method, Moved, Pair, Watch, inflate, intersection};
 use crate::distance::{
     PairKind, Point, Proximity, Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
     vertex_triangle, vertex_vertex,
@@ -159,8 +159,8 @@ impl Scene {
             || (last.is_some() && link.seen == last && unmoved(link.a) && unmoved(link.b))
     }
 
-    /// Brings the pairs of a link up to the present frame.
-    pub(super) fn enumerate(&mut self, at: usize, skips: &mut Skips) -> Result<(), Error> {
+    /// Brings the pairs of a link up to the present frame; some of them, if the watch stops it.
+    pub(super) fn enumerate(&mut self, at: usize, skips: &mut Skips, watch: &Watch<'_>) -> Result<(), Error> {
         let frame = self.frame;
         let at_rest = self.is_at_rest(&self.links[at]);
         let link = &mut self.links[at];
@@ -210,7 +210,7 @@ impl Scene {
             && margin <= delta / 2.0
             && let Ok(wide) = Threshold::new((delta + margin) * (1.0 + 1e-9))
         {
-            let pairs = self.all_pairs(at, wide, false, skips)?;
+            let pairs = self.all_pairs(at, wide, false, skips, watch)?;
             let link = &self.links[at];
             let near: Vec<Pair> = pairs
                 .iter()
@@ -226,10 +226,13 @@ impl Scene {
             });
         } else {
             self.links[at].skin = None;
-            let pairs = self.all_pairs(at, self.threshold, last, skips)?;
+            let pairs = self.all_pairs(at, self.threshold, last, skips, watch)?;
             self.links[at].pairs = pairs;
         }
         self.links[at].seen = Some(frame);
+        if watch.stopped() {
+            self.links[at].forget(None);
+        }
         Ok(())
     }
 
@@ -241,6 +244,7 @@ impl Scene {
         threshold: Threshold,
         last: bool,
         skips: &mut Skips,
+        watch: &Watch<'_>,
     ) -> Result<Vec<Pair>, Error> {
         let (a, b) = (self.links[at].a, self.links[at].b);
         let method = self.choose(at);
@@ -250,9 +254,10 @@ impl Scene {
             self.states[b].pose();
             let (one, two) = (&self.states[a], &self.states[b]);
             let pairs = if a == b {
-                self.grid.within(one.posed(), threshold)?
+                self.grid.within_until(one.posed(), threshold, watch)?
             } else {
-                self.grid.between(one.posed(), two.posed(), threshold)?
+                self.grid
+                    .between_until(one.posed(), two.posed(), threshold, watch)?
             };
             let pairs = if filters(one, two, a == b) {
                 let keeps = |pair: &Pair| keeps(self.kind, one, two, a == b, *pair, &near);
@@ -278,9 +283,9 @@ impl Scene {
             couple.moved = [one.moved, two.moved];
         }
         let mut pairs = if method == Method::BruteForce {
-            self.join.brute_force(&couple).to_vec()
+            self.join.brute_force(&couple, watch).to_vec()
         } else {
-            self.join.all(&couple).to_vec()
+            self.join.all(&couple, watch).to_vec()
         };
         if partial {
             let found = pairs.len();

@@ -33,7 +33,7 @@ pub use skips::Skips;
 
 use std::collections::BTreeSet;
 
-use crate::broad::{FeatureKind, Method, PointGrid, TreeJoin};
+use crate::broad::{FeatureKind, Method, PointGrid, TreeJoin, Watch};
 use crate::distance::{PairKind, Point, Proximity, Threshold};
 use crate::{Error, Placement};
 use link::Link;
@@ -200,17 +200,37 @@ impl Scene {
     /// # Errors
     /// Only what `place` and `deform` would have refused; never for a scene that was built through them.
     pub fn contacts(&mut self) -> Result<Frame, Error> {
+        self.watched(&Watch::none())
+    }
+
+    /// The same until `stop` says so, which is asked every 20 us to 10 ms from every thread that works, and told how many pairs
+    /// there are by now (those that a filter will leave out included). What was found until then is the answer; which pairs
+    /// these are depends on the time, on the method and on the threads, unlike those of a [`Pass`]. The next call starts anew.
+    ///
+    /// # Errors
+    /// As [`Scene::contacts`].
+    pub fn contacts_until(&mut self, stop: &(dyn Fn(usize) -> bool + Sync)) -> Result<Frame, Error> {
+        self.watched(&Watch::until(stop))
+    }
+
+    fn watched(&mut self, watch: &Watch<'_>) -> Result<Frame, Error> {
         self.settle();
         let mut skips = self.start_skips();
         let mut contacts = Vec::new();
         for at in 0..self.links.len() {
-            self.enumerate(at, &mut skips)?;
+            if watch.stopped() {
+                break;
+            }
+            self.enumerate(at, &mut skips, watch)?;
             let link = &self.links[at];
             contacts.extend(link.pairs.iter().map(|pair| link.contact(*pair)));
         }
         Ok(Frame {
             contacts,
-            completeness: Completeness::Proved,
+            completeness: match watch.stopped() {
+                true => Completeness::Unknown,
+                false => Completeness::Proved,
+            },
             skips,
         })
     }

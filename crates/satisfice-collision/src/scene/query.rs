@@ -3,7 +3,7 @@
 use super::link::{Near, couple, keeps};
 use super::{Contact, Scene};
 use crate::Error;
-use crate::broad::{FeatureKind, Pair, inflate, intersection};
+use crate::broad::{FeatureKind, Pair, Watch, inflate, intersection};
 use crate::distance::{Proximity, Threshold};
 
 impl Scene {
@@ -126,7 +126,7 @@ impl Scene {
         let (one, two, near) = (&self.states[a], &self.states[b], Near::default());
         let keep = |i: u32, j: u32| keeps(self.kind, one, two, a == b, Pair { a: i, b: j }, &near);
         Ok(match couple(self.kind, one, two, a == b, threshold, &keep) {
-            Some(couple) => self.join.all(&couple).to_vec(),
+            Some(couple) => self.join.all(&couple, &Watch::none()).to_vec(),
             None => Vec::new(),
         })
     }

@@ -1,7 +1,7 @@
 //! Scenes over several frames against brute force over all pairs of features, by every method and query.
 #![allow(clippy::unwrap_used)]
 
-use super::{Body, Completeness, Contact, Scene};
+use super::{Body, Completeness, Contact, Frame, Scene};
 use crate::broad::Method;
 use crate::distance::{
     PairKind, Point, Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex,
@@ -292,6 +292,59 @@ fn an_interrupted_pass_resumes_exactly() {
             );
             assert_eq!(answer.completeness, Completeness::Proved);
         });
+    }
+}
+
+/// Points so crowded that the grid looks at clumps in frames of their own, and points of which it need not.
+#[test]
+fn a_stopped_enumeration_keeps_what_it_found() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let ball = generate::icosphere(1.0, 3).unwrap();
+    for (delta, least) in [(0.9, 0), (2.5, 3)] {
+        for method in [Method::BruteForce, Method::Grid, Method::Tree] {
+            for scene in [Scene::new, |kind, threshold| {
+                Scene::new(kind, threshold).parallel()
+            }] {
+                let mut scene =
+                    scene(PairKind::VertexVertex, Threshold::new(delta).unwrap()).with_method(method);
+                scene.add(Body::deforming(ball.clone()));
+                scene.add(Body::deforming(turn(0.3, [0.1, 0.0, 0.0]).place(&ball).unwrap()));
+                let asked = AtomicUsize::new(0);
+                let all = scene
+                    .contacts_until(&|_| {
+                        asked.fetch_add(1, Ordering::Relaxed);
+                        false
+                    })
+                    .unwrap();
+                assert_eq!(all.completeness, Completeness::Proved);
+                assert!(asked.into_inner() >= least, "{method:?} {delta}");
+                for at in [0, 2] {
+                    // as if the bodies had just moved
+                    let to = scene.states[0].vertices.iter().map(|&[x, y, z]| [x, y, -z]);
+                    let to: Vec<Point> = to.collect();
+                    scene.deform(0, &to).unwrap();
+                    let asked = AtomicUsize::new(0);
+                    let some = scene
+                        .contacts_until(&|_| asked.fetch_add(1, Ordering::Relaxed) >= at)
+                        .unwrap();
+                    let whole = scene.contacts().unwrap();
+                    assert_eq!(whole.completeness, Completeness::Proved);
+                    let known = |contact: &Contact| whole.contacts.binary_search(contact).is_ok();
+                    assert!(some.contacts.is_sorted() && some.contacts.iter().all(known));
+                    if some.completeness == Completeness::Proved {
+                        assert_eq!(
+                            some,
+                            Frame {
+                                skips: some.skips,
+                                ..whole
+                            }
+                        );
+                    } else {
+                        assert!(some.contacts.len() < whole.contacts.len());
+                    }
+                }
+            }
+        }
     }
 }
 
