@@ -3,10 +3,9 @@
 use std::time::Instant;
 
 use satisfice::{Catalogued, Completeness, Counts, SatisficingProblem, StopReason, TracePoint};
-use satisfice_cloth::Cloth;
 use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
-use satisfice_collision::problem::Teapots;
+use satisfice_collision::problem::{Prepared, Recipe};
 use satisfice_collision::{Mesh, Placement, VertexPairs};
 use serde::Serialize;
 
@@ -57,13 +56,7 @@ pub trait Geometric: Catalogued<Solution = (u32, u32)> {
     fn vertex_pairs(&self) -> &VertexPairs;
 }
 
-impl Geometric for Cloth {
-    fn vertex_pairs(&self) -> &VertexPairs {
-        self.pairs()
-    }
-}
-
-impl Geometric for Teapots {
+impl<R: Recipe<Pairs = VertexPairs>> Geometric for Prepared<R> {
     fn vertex_pairs(&self) -> &VertexPairs {
         self.pairs()
     }

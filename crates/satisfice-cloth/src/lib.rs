@@ -19,5 +19,5 @@ mod problem;
 mod simulation;
 mod springs;
 
-pub use problem::Cloth;
+pub use problem::{Cloth, FallenCloth};
 pub use simulation::{Contacts, Crossings, Response, Settings, Simulation};

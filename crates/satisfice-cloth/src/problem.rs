@@ -1,7 +1,8 @@
 //! The cloth as a satisficing problem: one frame of its fall.
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Space, Values};
-use satisfice_collision::{VertexOrder, VertexPairs};
+use satisfice::{Parameter, Values};
+use satisfice_collision::problem::{Prepared, Recipe};
+use satisfice_collision::{Error, VertexOrder, VertexPairs};
 
 use crate::simulation::{Settings, Simulation};
 
@@ -9,44 +10,13 @@ use crate::simulation::{Settings, Simulation};
 ///
 /// The cloth has fallen for `frame` sixtieths of a second by [`Simulation`], with all its contacts. delta is in spacings of
 /// the cloth at rest. Particles that an edge of the mesh joins are no pair.
-#[derive(Debug, Clone)]
-pub struct Cloth {
-    pairs: VertexPairs,
-    parameters: Vec<(String, String)>,
-}
+pub type Cloth = Prepared<FallenCloth>;
 
-impl Cloth {
-    /// The problem itself, with its meshes.
-    #[must_use]
-    pub fn pairs(&self) -> &VertexPairs {
-        &self.pairs
-    }
+/// How to make [`Cloth`].
+#[derive(Debug, Clone, Copy)]
+pub struct FallenCloth;
 
-    fn build(values: &Values) -> Result<VertexPairs, satisfice_collision::Error> {
-        let columns = u32::try_from(values.count("columns")).unwrap_or(u32::MAX);
-        let settings = Settings {
-            columns,
-            ..Settings::default()
-        };
-        let mut cloth = Simulation::new(&settings)?;
-        for _ in 0..values.count("frame") {
-            cloth.frame()?;
-        }
-        let delta = values.real("delta") * settings.spacing();
-        let pairs = if values.text("pairs") == "sphere" {
-            VertexPairs::between(&cloth.mesh()?, cloth.sphere(), delta)?
-        } else {
-            VertexPairs::within(&cloth.mesh()?, delta, 1)?
-        };
-        let order = values
-            .text("order")
-            .parse::<VertexOrder>()?
-            .with_seed(values.integer("order-seed").unsigned_abs());
-        Ok(pairs.with_orders(order, order))
-    }
-}
-
-impl Catalogued for Cloth {
+impl Recipe for FallenCloth {
     const NAME: &'static str = "cloth";
     const SUMMARY: &'static str =
         "vertex pairs closer than delta of a cloth that falls on a sphere, with itself or the sphere";
@@ -82,54 +52,32 @@ impl Catalogued for Cloth {
         Parameter::integer("order-seed", "seed of the random order", 1, 0, i64::MAX),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let pairs = Self::build(values)
-            .map_err(|error| Error::parameter("cloth", error, "values that give finite coordinates"))?;
-        Ok(Self {
-            pairs,
-            parameters: values.texts(),
-        })
-    }
+    type Pairs = VertexPairs;
 
-    fn reference_hits(&self) -> Option<u64> {
-        Some(self.pairs.reference_pairs().len() as u64)
-    }
-}
-
-impl SatisficingProblem for Cloth {
-    type Scalar = f64;
-    type Solution = (u32, u32);
-
-    fn space(&self) -> &Space<f64> {
-        self.pairs.space()
-    }
-    #[inline]
-    fn decode(&self, values: &[f64]) -> (u32, u32) {
-        self.pairs.decode(values)
-    }
-    #[inline]
-    fn fitness(&self, solution: &(u32, u32)) -> f64 {
-        self.pairs.fitness(solution)
-    }
-    fn threshold(&self) -> f64 {
-        self.pairs.threshold()
-    }
-    fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
-        self.pairs.encode(solution, values)
-    }
-    fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        self.pairs.neighbours(of, visit)
-    }
-    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-        self.pairs.lower_bound(region)
-    }
-    fn canonical(&self, hit: (u32, u32)) -> (u32, u32) {
-        self.pairs.canonical(hit)
-    }
-    fn description(&self) -> Description {
-        Description {
-            name: Self::NAME.to_owned(),
-            parameters: self.parameters.clone(),
+    fn build(values: &Values) -> Result<VertexPairs, Error> {
+        let columns = u32::try_from(values.count("columns")).unwrap_or(u32::MAX);
+        let settings = Settings {
+            columns,
+            ..Settings::default()
+        };
+        let mut cloth = Simulation::new(&settings)?;
+        for _ in 0..values.count("frame") {
+            cloth.frame()?;
         }
+        let delta = values.real("delta") * settings.spacing();
+        let pairs = if values.text("pairs") == "sphere" {
+            VertexPairs::between(&cloth.mesh()?, cloth.sphere(), delta)?
+        } else {
+            VertexPairs::within(&cloth.mesh()?, delta, 1)?
+        };
+        let order = values
+            .text("order")
+            .parse::<VertexOrder>()?
+            .with_seed(values.integer("order-seed").unsigned_abs());
+        Ok(pairs.with_orders(order, order))
+    }
+
+    fn count(pairs: &VertexPairs) -> u64 {
+        pairs.reference_pairs().len() as u64
     }
 }

@@ -2,9 +2,9 @@
 
 use satisfice::{Axis, Description, Region, SatisficingProblem, Space};
 
-use super::feature_side::FeatureSide;
 use super::metric::{PointMetric, far};
 use super::ranges;
+use super::side::Side;
 use crate::broad::{FeatureKind, FeatureTree, TreeJoin};
 use crate::distance::measure::{self, Shape};
 use crate::distance::{
@@ -47,21 +47,21 @@ use crate::placement::Placement;
 #[derive(Debug, Clone)]
 pub struct FeaturePairs {
     kind: PairKind,
-    a: FeatureSide,
+    pub(super) a: Side,
     /// `None` where both features are of one body and of one kind.
-    b: Option<FeatureSide>,
-    own: Option<Own>,
-    threshold: Threshold,
-    points: PointMetric,
+    pub(super) b: Option<Side>,
+    pub(super) own: Option<Own>,
+    pub(super) threshold: Threshold,
+    pub(super) points: PointMetric,
     joint_moves: bool,
     space: Space<f64>,
 }
 
 /// What is no pair of one body with itself, and F there.
 #[derive(Debug, Clone)]
-struct Own {
-    rings: Adjacency,
-    far: f64,
+pub(super) struct Own {
+    pub(super) rings: Adjacency,
+    pub(super) far: f64,
 }
 
 impl FeaturePairs {
@@ -72,10 +72,7 @@ impl FeaturePairs {
     pub fn between(kind: PairKind, a: &Mesh, b: &Mesh, delta: f64) -> Result<Self, Error> {
         let (kind_a, kind_b) = FeatureKind::of_pair(kind);
         let order = VertexOrder::default();
-        let sides = (
-            FeatureSide::new(a, kind_a, order)?,
-            Some(FeatureSide::new(b, kind_b, order)?),
-        );
+        let sides = (Side::new(a, kind_a, order)?, Some(Side::new(b, kind_b, order)?));
         Self::new(kind, sides, None, Threshold::new(delta)?)
     }
 
@@ -88,8 +85,8 @@ impl FeaturePairs {
         let threshold = Threshold::new(delta)?;
         let (kind_a, kind_b) = FeatureKind::of_pair(kind);
         let order = VertexOrder::default();
-        let second = (kind_a != kind_b).then(|| FeatureSide::new(mesh, kind_b, order));
-        let sides = (FeatureSide::new(mesh, kind_a, order)?, second.transpose()?);
+        let second = (kind_a != kind_b).then(|| Side::new(mesh, kind_b, order));
+        let sides = (Side::new(mesh, kind_a, order)?, second.transpose()?);
         let own = Own {
             rings: mesh.adjacency().rings(ring_width),
             far: far(mesh, delta),
@@ -99,24 +96,33 @@ impl FeaturePairs {
 
     fn new(
         kind: PairKind,
-        (a, b): (FeatureSide, Option<FeatureSide>),
+        (a, b): (Side, Option<Side>),
         own: Option<Own>,
         threshold: Threshold,
     ) -> Result<Self, Error> {
         let second = b.as_ref().unwrap_or(&a);
-        let axes = [&a, second].map(|side| Axis::integer(0, side.len() as i64 - 1));
-        let space = Space::new(axes)
-            .map_err(|error| Error::parameter("number of features", error, "at least one a body"))?;
         Ok(Self {
             joint_moves: threshold.get() < a.spacing().max(second.spacing()),
+            space: space(&a, second)?,
             kind,
             own,
             threshold,
             points: PointMetric::new(threshold),
-            space,
             a,
             b,
         })
+    }
+
+    /// Other features, or others of them, stand on the axes now.
+    pub(super) fn rearrange(
+        &mut self,
+        a: impl FnOnce(&mut Side) -> Result<(), Error>,
+        b: impl FnOnce(&mut Side) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        a(&mut self.a)?;
+        self.b.as_mut().map_or(Ok(()), b)?;
+        self.space = space(&self.a, self.second())?;
+        Ok(())
     }
 
     /// What the features are.
@@ -220,7 +226,7 @@ impl FeaturePairs {
     }
 
     #[inline]
-    fn second(&self) -> &FeatureSide {
+    pub(super) fn second(&self) -> &Side {
         self.b.as_ref().unwrap_or(&self.a)
     }
 
@@ -249,8 +255,11 @@ impl FeaturePairs {
     }
 
     #[inline]
-    fn no_pair(&self, i: u32, j: u32) -> bool {
+    pub(super) fn no_pair(&self, i: u32, j: u32) -> bool {
         let Some(own) = &self.own else { return false };
+        if self.kind == PairKind::VertexVertex {
+            return i == j || own.rings.contains(i, j);
+        }
         let (corners, others) = (self.a.corners(i), self.second().corners(j));
         corners
             .iter()
@@ -265,6 +274,11 @@ impl FeaturePairs {
             (i, j)
         }
     }
+}
+
+fn space(a: &Side, b: &Side) -> Result<Space<f64>, Error> {
+    let axes = [a, b].map(|side| Axis::integer(0, side.len() as i64 - 1));
+    Space::new(axes).map_err(|error| Error::parameter("number of features", error, "at least one a body"))
 }
 
 impl SatisficingProblem for FeaturePairs {
@@ -341,8 +355,8 @@ impl SatisficingProblem for FeaturePairs {
             go(i, l);
         }
         if self.joint_moves {
-            for &k in self.a.close.neighbours(i) {
-                for &l in self.second().close.neighbours(j) {
+            for &k in self.a.close().neighbours(i) {
+                for &l in self.second().close().neighbours(j) {
                     go(k, l);
                 }
             }
@@ -353,8 +367,12 @@ impl SatisficingProblem for FeaturePairs {
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let a = self.a.around(region.lower[0], region.upper[0]);
         let b = self.second().around(region.lower[1], region.upper[1]);
-        // F is only within its accuracy.
-        Some(ranges::bound(&a, &b) * (1.0 - measure::ACCURACY))
+        let bound = ranges::bound(&a, &b);
+        // But for vertices F is only within its accuracy.
+        Some(match self.kind {
+            PairKind::VertexVertex => bound,
+            _ => bound * (1.0 - measure::ACCURACY),
+        })
     }
 
     fn canonical(&self, (i, j): (u32, u32)) -> (u32, u32) {

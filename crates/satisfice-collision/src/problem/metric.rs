@@ -1,6 +1,5 @@
 //! The distance of two points, on the right side of delta.
 
-use super::side::square;
 use crate::distance::{Threshold, vertex_vertex};
 use crate::mesh::Mesh;
 
@@ -57,6 +56,12 @@ impl PointMetric {
             distance.max(delta)
         }
     }
+}
+
+#[inline]
+pub(super) fn square(p: &[f64; 3], q: &[f64; 3]) -> f64 {
+    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    x * x + y * y + z * z
 }
 
 /// F of what is no pair: finite, not below delta, not below any distance of the body.

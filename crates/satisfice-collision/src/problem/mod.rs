@@ -1,17 +1,18 @@
 //! Collision as a satisficing problem; the only part of this crate that knows the search framework.
 
 mod feature_pairs;
-mod feature_side;
 mod metric;
 mod pleats;
 mod ranges;
+mod recipe;
 mod side;
 mod teapots;
 mod vertex_pairs;
 
 pub use feature_pairs::FeaturePairs;
-pub use pleats::Pleats;
-pub use teapots::Teapots;
+pub use pleats::{PleatedCloth, Pleats};
+pub use recipe::{Prepared, Recipe};
+pub use teapots::{Teapots, TwoTeapots};
 pub use vertex_pairs::VertexPairs;
 
 #[cfg(test)]

@@ -1,150 +1,277 @@
-//! One body of a vertex-pair problem: its mesh, and which of its vertices stands at which position.
+//! One body of a pair problem: its features, and which of them stands at which position.
 
+use super::metric::square;
 use super::ranges::Ranges;
+use crate::broad::FeatureKind;
+use crate::distance::measure::Shape;
 use crate::error::Error;
 use crate::mesh::{Aabb, Adjacency, Mesh};
 use crate::order::VertexOrder;
 
-/// A body and the order of its chosen vertices.
+/// A feature that was not chosen has no position.
+const ABSENT: u32 = u32::MAX;
+
+/// The features of one kind of a body, all of them or some vertices, in an order in which near features are near.
 #[derive(Debug, Clone)]
 pub(super) struct Side {
     pub(super) mesh: Mesh,
+    pub(super) kind: FeatureKind,
     pub(super) order: VertexOrder,
-    /// Position to vertex.
-    pub(super) vertex_at: Vec<u32>,
-    /// Vertex to position, [`ABSENT`] for a vertex that was not chosen.
+    /// Position to feature.
+    feature_at: Vec<u32>,
+    /// Feature to position, [`ABSENT`] for one that was not chosen.
     position_of: Vec<u32>,
-    /// Chosen vertices next to each other, across the gaps that others leave.
+    /// Features that share a vertex; of vertices, those that share an edge, across the gaps that vertices leave which were not
+    /// chosen.
     pub(super) neighbours: Adjacency,
+    /// The nearest of them, where these are not all: triangles that share an edge, edges of one triangle.
+    close: Option<Adjacency>,
     ranges: Ranges,
 }
 
-const ABSENT: u32 = u32::MAX;
-
 impl Side {
-    pub(super) fn new(mesh: &Mesh, order: VertexOrder, chosen: &[u32]) -> Self {
-        let points: Vec<[f64; 3]> = chosen.iter().map(|&v| mesh.vertex(v)).collect();
-        let vertex_at: Vec<u32> = order
-            .permutation(&points)
-            .into_iter()
-            .map(|k| chosen[k as usize])
-            .collect();
-        let mut position_of = vec![ABSENT; mesh.vertices().len()];
-        for (position, &v) in vertex_at.iter().enumerate() {
-            position_of[v as usize] = position as u32;
+    pub(super) fn new(mesh: &Mesh, kind: FeatureKind, order: VertexOrder) -> Result<Self, Error> {
+        let vertices = mesh.vertices().len();
+        let neighbours = match kind {
+            FeatureKind::Vertex => mesh.adjacency().clone(),
+            FeatureKind::Edge => Adjacency::sharing(vertices, mesh.edges()),
+            FeatureKind::Triangle => Adjacency::sharing(vertices, mesh.triangles()),
+        };
+        let close = match kind {
+            FeatureKind::Vertex => None,
+            FeatureKind::Edge => Some(neighbours.filtered(|e, f| {
+                let [e, f] = [e, f].map(|edge| mesh.edges()[edge as usize]);
+                e.iter().any(|&v| {
+                    f.iter().any(|&w| {
+                        mesh.adjacency().contains(v, w)
+                            && ![v, w].iter().any(|u| e.contains(u) && f.contains(u))
+                    })
+                })
+            })),
+            FeatureKind::Triangle => Some(neighbours.filtered(|t, s| {
+                let [t, s] = [t, s].map(|triangle| mesh.triangles()[triangle as usize]);
+                t.iter().filter(|v| s.contains(v)).count() > 1
+            })),
+        };
+        let allowed = match kind {
+            FeatureKind::Vertex => "at least one in a body",
+            FeatureKind::Edge => "at least one in a body that is asked for edges",
+            FeatureKind::Triangle => "at least one in a body that is asked for triangles",
+        };
+        let count = count(mesh, kind);
+        if count == 0 {
+            return Err(Error::parameter(number(kind), 0, allowed));
         }
-        let neighbours = mesh.adjacency().bridged(|v| position_of[v as usize] != ABSENT);
-        Self {
-            ranges: ranges_of(mesh, &vertex_at),
+        let mut side = Self {
             mesh: mesh.clone(),
+            kind,
             order,
-            vertex_at,
-            position_of,
+            feature_at: Vec::new(),
+            position_of: vec![ABSENT; count],
             neighbours,
+            close,
+            ranges: Ranges::new(1, |_| Aabb::point([0.0; 3])),
+        };
+        side.arrange(order, &(0..count as u32).collect::<Vec<_>>());
+        Ok(side)
+    }
+
+    /// Puts some features, given in the order of their numbers, into an order.
+    fn arrange(&mut self, order: VertexOrder, chosen: &[u32]) {
+        let middles: Vec<[f64; 3]> = chosen.iter().map(|&feature| self.middle(feature)).collect();
+        let places = order.permutation(&middles);
+        self.order = order;
+        self.feature_at = places.into_iter().map(|k| chosen[k as usize]).collect();
+        self.position_of.fill(ABSENT);
+        for (position, &feature) in (0..).zip(&self.feature_at) {
+            self.position_of[feature as usize] = position;
         }
+        self.measure();
     }
 
-    pub(super) fn all(mesh: &Mesh) -> Self {
-        Self::new(
-            mesh,
-            VertexOrder::default(),
-            &(0..mesh.vertices().len() as u32).collect::<Vec<_>>(),
-        )
+    /// The same features in another order.
+    pub(super) fn reorder(&mut self, order: VertexOrder) {
+        self.arrange(order, &self.chosen());
     }
 
-    /// The chosen vertices by number.
+    /// The features that stand somewhere, by number.
     pub(super) fn chosen(&self) -> Vec<u32> {
-        let mut chosen = self.vertex_at.clone();
+        let mut chosen = self.feature_at.clone();
         chosen.sort_unstable();
         chosen
     }
 
-    pub(super) fn choose(&self, vertices: &[u32]) -> Result<Self, Error> {
+    /// Of vertices: only these from now on, whichever stood somewhere before.
+    pub(super) fn choose(&mut self, vertices: &[u32]) -> Result<(), Error> {
         let mut chosen = vertices.to_vec();
         chosen.sort_unstable();
         chosen.dedup();
-        let total = self.mesh.vertices().len();
+        let refused = |value, allowed| Err(Error::parameter("chosen vertices", value, allowed));
         match chosen.last() {
-            None => Err(Error::parameter(
-                "chosen vertices",
-                0,
-                "at least one vertex of each body",
-            )),
-            Some(&last) if last as usize >= total => Err(Error::parameter(
-                "chosen vertices",
-                last,
-                "vertex numbers below the number of vertices",
-            )),
-            Some(_) => Ok(Self::new(&self.mesh, self.order, &chosen)),
+            None => return refused(0, "at least one vertex of each body"),
+            Some(&last) if last as usize >= self.position_of.len() => {
+                return refused(last, "vertex numbers below the number of vertices");
+            }
+            Some(_) => {}
+        }
+        self.arrange(self.order, &chosen);
+        let position_of = &self.position_of;
+        let stands = |v: u32| position_of[v as usize] != ABSENT;
+        self.neighbours = self.mesh.adjacency().bridged(stands);
+        Ok(())
+    }
+
+    /// The nearest neighbours.
+    pub(super) fn close(&self) -> &Adjacency {
+        self.close.as_ref().unwrap_or(&self.neighbours)
+    }
+
+    /// The body has moved or changed its shape.
+    pub(super) fn go_to(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        if mesh.vertices().len() != self.mesh.vertices().len() {
+            return Err(Error::parameter(
+                "number of vertices",
+                mesh.vertices().len(),
+                "as many as in the frame before",
+            ));
+        }
+        let alike = self.kind == FeatureKind::Vertex
+            || (mesh.same_body(&self.mesh)
+                || (mesh.edges() == self.mesh.edges() && mesh.triangles() == self.mesh.triangles()));
+        if !alike {
+            return Err(Error::parameter(
+                "mesh",
+                format!(
+                    "{} vertices, {} triangles",
+                    mesh.vertices().len(),
+                    mesh.triangles().len()
+                ),
+                "the same edges and triangles as in the frame before",
+            ));
+        }
+        self.mesh = mesh.clone();
+        self.measure();
+        Ok(())
+    }
+
+    fn measure(&mut self) {
+        self.ranges = Ranges::new(self.len(), |position| self.bounds(position));
+    }
+
+    /// How many features stand somewhere.
+    pub(super) fn len(&self) -> usize {
+        self.feature_at.len()
+    }
+
+    /// The vertices of a feature, the last repeated to make three; the feature exists.
+    #[inline]
+    pub(super) fn corners(&self, feature: u32) -> [u32; 3] {
+        match self.kind {
+            FeatureKind::Vertex => [feature; 3],
+            FeatureKind::Edge => {
+                let [a, b] = self.mesh.edges()[feature as usize];
+                [a, b, b]
+            }
+            FeatureKind::Triangle => self.mesh.triangles()[feature as usize],
         }
     }
 
+    /// Where a feature is; it exists.
     #[inline]
-    pub(super) fn vertex(&self, value: f64) -> u32 {
-        // A float beyond the range saturates; the last position takes what is too large.
-        self.vertex_at[(value as usize).min(self.vertex_at.len() - 1)]
+    pub(super) fn shape(&self, feature: u32) -> Shape {
+        let at = |v: u32| self.mesh.vertices()[v as usize];
+        match self.kind {
+            FeatureKind::Vertex => Shape::Vertex(at(feature)),
+            FeatureKind::Edge => Shape::Edge(self.mesh.edges()[feature as usize].map(at)),
+            FeatureKind::Triangle => Shape::Triangle(self.mesh.triangles()[feature as usize].map(at)),
+        }
     }
 
-    pub(super) fn position(&self, vertex: u32) -> Option<f64> {
-        let position = self.position_of.get(vertex as usize)?;
+    fn middle(&self, feature: u32) -> [f64; 3] {
+        let [a, b, c] = match self.kind {
+            FeatureKind::Vertex => return self.mesh.vertex(feature),
+            // An edge repeats its end, which would pull the middle.
+            FeatureKind::Edge => {
+                let [a, b] = self.mesh.edges()[feature as usize].map(|v| self.mesh.vertex(v));
+                return std::array::from_fn(|k| a[k] / 2.0 + b[k] / 2.0);
+            }
+            FeatureKind::Triangle => self.corners(feature).map(|v| self.mesh.vertex(v)),
+        };
+        std::array::from_fn(|k| a[k] / 3.0 + b[k] / 3.0 + c[k] / 3.0)
+    }
+
+    /// The box of the feature at a position.
+    fn bounds(&self, position: usize) -> Aabb {
+        let [a, b, c] = self
+            .corners(self.feature_at[position])
+            .map(|v| self.mesh.vertex(v));
+        let mut bounds = Aabb::point(a);
+        bounds.include(b);
+        bounds.include(c);
+        bounds
+    }
+
+    /// The box around the features at the positions from `first` to `last`, as they stand on an axis.
+    pub(super) fn around(&self, first: f64, last: f64) -> Aabb {
+        let end = self.len() - 1;
+        let first = (first as usize).min(end);
+        let last = (last as usize).clamp(first, end);
+        self.ranges.around(first, last, |position| self.bounds(position))
+    }
+
+    #[inline]
+    pub(super) fn feature(&self, value: f64) -> u32 {
+        // A float beyond the range saturates; the last position takes what is too large.
+        self.feature_at[(value as usize).min(self.len() - 1)]
+    }
+
+    pub(super) fn position(&self, feature: u32) -> Option<f64> {
+        let position = self.position_of.get(feature as usize)?;
         (*position != ABSENT).then(|| f64::from(*position))
     }
 
+    /// Whether there is such a feature, chosen or not.
+    #[inline]
+    pub(super) fn has(&self, feature: u32) -> bool {
+        (feature as usize) < self.position_of.len()
+    }
+
+    /// Where a vertex is, if there is one.
     #[inline]
     pub(super) fn point(&self, vertex: u32) -> Option<&[f64; 3]> {
         self.mesh.vertices().get(vertex as usize)
     }
 
-    pub(super) fn chosen_points(&self) -> (Vec<u32>, Vec<[f64; 3]>) {
-        let chosen = self.chosen();
-        let points = chosen.iter().map(|&v| self.mesh.vertex(v)).collect();
-        (chosen, points)
-    }
-
-    /// The body has moved or changed its shape.
-    pub(super) fn go_to(&mut self, mesh: Mesh) {
-        self.mesh = mesh;
-        self.ranges = ranges_of(&self.mesh, &self.vertex_at);
-    }
-
-    /// The box around the vertices at the positions from `first` to `last`, as they stand on an axis.
-    pub(super) fn around(&self, first: f64, last: f64) -> Aabb {
-        let end = self.vertex_at.len() - 1;
-        let first = (first as usize).min(end);
-        let last = (last as usize).clamp(first, end);
-        self.ranges.around(first, last, |position| {
-            Aabb::point(self.mesh.vertex(self.vertex_at[position]))
-        })
-    }
-
     /// The median length of the edges; infinite where it overflows, 0 without edges.
     pub(super) fn spacing(&self) -> f64 {
-        spacing(&self.mesh)
+        let mut squares: Vec<f64> = self
+            .mesh
+            .edges()
+            .iter()
+            .map(|&[i, j]| square(&self.mesh.vertex(i), &self.mesh.vertex(j)))
+            .collect();
+        if squares.is_empty() {
+            return 0.0;
+        }
+        let middle = squares.len() / 2;
+        squares.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt()
     }
 }
 
-fn ranges_of(mesh: &Mesh, vertex_at: &[u32]) -> Ranges {
-    Ranges::new(vertex_at.len(), |position| {
-        Aabb::point(mesh.vertex(vertex_at[position]))
-    })
-}
-
-/// The median length of a mesh's edges; infinite where it overflows, 0 without edges.
-pub(super) fn spacing(mesh: &Mesh) -> f64 {
-    let mut squares: Vec<f64> = mesh
-        .edges()
-        .iter()
-        .map(|&[i, j]| square(&mesh.vertex(i), &mesh.vertex(j)))
-        .collect();
-    if squares.is_empty() {
-        return 0.0;
+/// What is counted.
+fn number(kind: FeatureKind) -> &'static str {
+    match kind {
+        FeatureKind::Vertex => "number of vertices",
+        FeatureKind::Edge => "number of edges",
+        FeatureKind::Triangle => "number of triangles",
     }
-    let middle = squares.len() / 2;
-    squares.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt()
 }
 
-#[inline]
-pub(super) fn square(p: &[f64; 3], q: &[f64; 3]) -> f64 {
-    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    x * x + y * y + z * z
+/// How many features of a kind a mesh has.
+fn count(mesh: &Mesh, kind: FeatureKind) -> usize {
+    match kind {
+        FeatureKind::Vertex => mesh.vertices().len(),
+        FeatureKind::Edge => mesh.edges().len(),
+        FeatureKind::Triangle => mesh.triangles().len(),
+    }
 }

@@ -1,8 +1,9 @@
 //! Experiment I: two teapots that run into each other.
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Space, Values};
+use satisfice::{Parameter, Values};
 
-use super::VertexPairs;
+use super::{Prepared, Recipe, VertexPairs};
+use crate::error::Error;
 use crate::generate;
 use crate::mesh::Mesh;
 use crate::order::VertexOrder;
@@ -21,79 +22,13 @@ use crate::sampling;
 /// assert_eq!(teapots.reference_hits(), Some(teapots.pairs().reference_pairs().len() as u64));
 /// # Ok::<(), satisfice::Error>(())
 /// ```
-#[derive(Debug, Clone)]
-pub struct Teapots {
-    pairs: VertexPairs,
-    parameters: Vec<(String, String)>,
-}
+pub type Teapots = Prepared<TwoTeapots>;
 
-impl Teapots {
-    /// The problem itself, with its meshes.
-    #[must_use]
-    pub fn pairs(&self) -> &VertexPairs {
-        &self.pairs
-    }
+/// How to make [`Teapots`].
+#[derive(Debug, Clone, Copy)]
+pub struct TwoTeapots;
 
-    /// The problem itself, to move its meshes.
-    pub fn pairs_mut(&mut self) -> &mut VertexPairs {
-        &mut self.pairs
-    }
-
-    fn build(values: &Values) -> Result<VertexPairs, crate::Error> {
-        let first = generate::teapot(values.count("segments"))?;
-        let size = first.size();
-        let mut offset = [0.0; 3];
-        offset[first.bounds().longest_axis()] = values.real("offset") * size;
-        let turn = values.real("rotation");
-        let placement = if turn == 0.0 {
-            Placement::IDENTITY
-        } else {
-            Placement::from_axis_angle([0.0, 0.0, 1.0], turn.to_radians())?
-        };
-        let second = placement.moved(offset)?.place(&first)?;
-
-        let [seed, order_seed] =
-            ["sample-seed", "order-seed"].map(|name| values.integer(name).unsigned_abs());
-        let order = |stream: u64| -> Result<VertexOrder, crate::Error> {
-            Ok(values
-                .text("order")
-                .parse::<VertexOrder>()?
-                .with_seed(stream_seed(order_seed, stream)))
-        };
-        let pairs = VertexPairs::between(&first, &second, values.real("delta") * size)?;
-        let pairs = match values.count("samples") {
-            0 => pairs,
-            count => {
-                let draw = |mesh: &Mesh, stream| {
-                    sample(mesh, count, values.text("sampling"), stream_seed(seed, stream))
-                };
-                pairs.with_vertices(&draw(&first, 0)?, &draw(&second, 1)?)?
-            }
-        };
-        Ok(pairs.with_orders(order(0)?, order(1)?))
-    }
-}
-
-/// Draws a sample with 977 hits, so that figures can be compared with earlier ones of that scene (the seeds 0 to 7 draw
-/// 875 to 1,006, all vertices have 1,140).
-const SAMPLE_SEED: i64 = 161;
-
-/// The first body goes by the seed itself, the second by one far from it.
-fn stream_seed(seed: u64, stream: u64) -> u64 {
-    seed ^ stream.wrapping_mul(0x9e37_79b9_7f4a_7c15)
-}
-
-fn sample(mesh: &Mesh, count: usize, how: &str, seed: u64) -> Result<Vec<u32>, crate::Error> {
-    let total = mesh.vertices().len() as u32;
-    let count = u32::try_from(count).unwrap_or(u32::MAX);
-    if how == "area" {
-        sampling::vertices_by_area(mesh, count, seed)
-    } else {
-        sampling::uniform_vertices(total, count, seed)
-    }
-}
-
-impl Catalogued for Teapots {
+impl Recipe for TwoTeapots {
     const NAME: &'static str = "teapots";
     const SUMMARY: &'static str = "vertex pairs of two colliding Utah teapots that are closer than delta";
     const SOURCE: &'static str =
@@ -150,71 +85,75 @@ impl Catalogued for Teapots {
         Parameter::integer("order-seed", "seed of the random order", 1, 0, i64::MAX),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let pairs = Self::build(values).map_err(|error| match error {
-            crate::Error::Parameter {
-                parameter,
-                value,
-                allowed,
-            } => {
-                // The sample is the one parameter whose range depends on another.
-                let name = if parameter == "sample size" {
-                    "samples"
-                } else {
-                    parameter
+    type Pairs = VertexPairs;
+
+    fn build(values: &Values) -> Result<VertexPairs, Error> {
+        let first = generate::teapot(values.count("segments"))?;
+        let size = first.size();
+        let mut offset = [0.0; 3];
+        offset[first.bounds().longest_axis()] = values.real("offset") * size;
+        let turn = values.real("rotation");
+        let placement = if turn == 0.0 {
+            Placement::IDENTITY
+        } else {
+            Placement::from_axis_angle([0.0, 0.0, 1.0], turn.to_radians())?
+        };
+        let second = placement.moved(offset)?.place(&first)?;
+
+        let [seed, order_seed] =
+            ["sample-seed", "order-seed"].map(|name| values.integer(name).unsigned_abs());
+        let order = |stream: u64| -> Result<VertexOrder, Error> {
+            Ok(values
+                .text("order")
+                .parse::<VertexOrder>()?
+                .with_seed(stream_seed(order_seed, stream)))
+        };
+        let pairs = VertexPairs::between(&first, &second, values.real("delta") * size)?;
+        let pairs = match values.count("samples") {
+            0 => pairs,
+            count => {
+                let draw = |mesh: &Mesh, stream| {
+                    sample(mesh, count, values.text("sampling"), stream_seed(seed, stream))
                 };
-                Error::parameter(name, value, allowed)
+                pairs.with_vertices(&draw(&first, 0)?, &draw(&second, 1)?)?
             }
-            other => Error::parameter("teapots", other, "values that give finite coordinates"),
-        })?;
-        Ok(Self {
-            pairs,
-            parameters: values.texts(),
-        })
+        };
+        Ok(pairs.with_orders(order(0)?, order(1)?))
     }
 
-    fn reference_hits(&self) -> Option<u64> {
-        Some(self.pairs.reference_pairs().len() as u64)
+    fn count(pairs: &VertexPairs) -> u64 {
+        pairs.reference_pairs().len() as u64
     }
 }
 
-impl SatisficingProblem for Teapots {
-    type Scalar = f64;
-    type Solution = (u32, u32);
+/// Draws a sample with 977 hits, so that figures can be compared with earlier ones of that scene (the seeds 0 to 7 draw
+/// 875 to 1,006, all vertices have 1,140).
+const SAMPLE_SEED: i64 = 161;
 
-    fn space(&self) -> &Space<f64> {
-        self.pairs.space()
-    }
-    #[inline]
-    fn decode(&self, values: &[f64]) -> (u32, u32) {
-        self.pairs.decode(values)
-    }
-    #[inline]
-    fn fitness(&self, solution: &(u32, u32)) -> f64 {
-        self.pairs.fitness(solution)
-    }
-    fn fitness_all(&self, solutions: &[(u32, u32)], fitness: &mut [f64]) {
-        self.pairs.fitness_all(solutions, fitness);
-    }
-    fn threshold(&self) -> f64 {
-        self.pairs.threshold()
-    }
-    fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
-        self.pairs.encode(solution, values)
-    }
-    fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        self.pairs.neighbours(of, visit)
-    }
-    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-        self.pairs.lower_bound(region)
-    }
-    fn canonical(&self, hit: (u32, u32)) -> (u32, u32) {
-        self.pairs.canonical(hit)
-    }
-    fn description(&self) -> Description {
-        Description {
-            name: Self::NAME.to_owned(),
-            parameters: self.parameters.clone(),
-        }
-    }
+/// The first body goes by the seed itself, the second by one far from it.
+fn stream_seed(seed: u64, stream: u64) -> u64 {
+    seed ^ stream.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+fn sample(mesh: &Mesh, count: usize, how: &str, seed: u64) -> Result<Vec<u32>, Error> {
+    let total = mesh.vertices().len() as u32;
+    let count = u32::try_from(count).unwrap_or(u32::MAX);
+    let chosen = if how == "area" {
+        sampling::vertices_by_area(mesh, count, seed)
+    } else {
+        sampling::uniform_vertices(total, count, seed)
+    };
+    // The sample is the one parameter whose range depends on another.
+    chosen.map_err(|error| match error {
+        Error::Parameter {
+            parameter: "sample size",
+            value,
+            allowed,
+        } => Error::Parameter {
+            parameter: "samples",
+            value,
+            allowed,
+        },
+        other => other,
+    })
 }

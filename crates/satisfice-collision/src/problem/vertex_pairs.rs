@@ -2,10 +2,9 @@
 
 use satisfice::{Region, SatisficingProblem, Space};
 
-use super::metric::{PointMetric, far};
-use super::ranges;
+use super::FeaturePairs;
 use super::side::Side;
-use crate::distance::Threshold;
+use crate::distance::PairKind;
 use crate::error::Error;
 use crate::mesh::{Adjacency, Mesh};
 use crate::oracle;
@@ -41,22 +40,8 @@ use crate::order::VertexOrder;
 /// ```
 #[derive(Debug, Clone)]
 pub struct VertexPairs {
-    a: Side,
-    bodies: Bodies,
-    threshold: Threshold,
-    points: PointMetric,
-    joint_moves: bool,
-    space: Space<f64>,
-}
-
-#[derive(Debug, Clone)]
-enum Bodies {
-    Two(Side),
-    /// One with itself: what is excluded, and F there.
-    One {
-        excluded: Adjacency,
-        far: f64,
-    },
+    /// The same question without a choice of vertices; F and what a choice changes are here.
+    pairs: FeaturePairs,
 }
 
 impl VertexPairs {
@@ -65,7 +50,8 @@ impl VertexPairs {
     /// # Errors
     /// [`Error::Parameter`] unless `delta` is finite and above 0.
     pub fn between(a: &Mesh, b: &Mesh, delta: f64) -> Result<Self, Error> {
-        Self::new(Side::all(a), Bodies::Two(Side::all(b)), Threshold::new(delta)?)
+        let pairs = FeaturePairs::between(PairKind::VertexVertex, a, b, delta)?;
+        Ok(Self { pairs })
     }
 
     /// Pairs of vertices of one body closer than `delta`, in Hilbert order, leaving out those at most `ring_width` mesh
@@ -74,31 +60,8 @@ impl VertexPairs {
     /// # Errors
     /// [`Error::Parameter`] unless `delta` is finite and above 0.
     pub fn within(mesh: &Mesh, delta: f64, ring_width: usize) -> Result<Self, Error> {
-        let threshold = Threshold::new(delta)?;
-        let excluded = mesh.adjacency().rings(ring_width);
-        Self::new(
-            Side::all(mesh),
-            Bodies::One {
-                excluded,
-                far: far(mesh, delta),
-            },
-            threshold,
-        )
-    }
-
-    fn new(a: Side, bodies: Bodies, threshold: Threshold) -> Result<Self, Error> {
-        let spacing = match &bodies {
-            Bodies::Two(b) => a.spacing().max(b.spacing()),
-            Bodies::One { .. } => a.spacing(),
-        };
-        Ok(Self {
-            space: space(&a, &bodies)?,
-            joint_moves: threshold.get() < spacing,
-            points: PointMetric::new(threshold),
-            a,
-            bodies,
-            threshold,
-        })
+        let pairs = FeaturePairs::within(PairKind::VertexVertex, mesh, delta, ring_width)?;
+        Ok(Self { pairs })
     }
 
     /// The same problem over some vertices only; the same ones twice count once. Of one body with itself, `b` is not
@@ -107,50 +70,45 @@ impl VertexPairs {
     /// # Errors
     /// [`Error::Parameter`] if none is given or a number is not a vertex.
     pub fn with_vertices(mut self, a: &[u32], b: &[u32]) -> Result<Self, Error> {
-        self.a = self.a.choose(a)?;
-        if let Bodies::Two(side) = &mut self.bodies {
-            *side = side.choose(b)?;
-        }
-        self.space = space(&self.a, &self.bodies)?;
+        self.pairs
+            .rearrange(|side| side.choose(a), |side| side.choose(b))?;
         Ok(self)
     }
 
     /// The same problem with other vertex orders. Of one body with itself, `b` is not looked at.
     #[must_use]
     pub fn with_orders(mut self, a: VertexOrder, b: VertexOrder) -> Self {
-        self.a = Side::new(&self.a.mesh, a, &self.a.chosen());
-        if let Bodies::Two(side) = &mut self.bodies {
-            *side = Side::new(&side.mesh, b, &side.chosen());
+        self.pairs.a.reorder(a);
+        if let Some(side) = &mut self.pairs.b {
+            side.reorder(b);
         }
         self
     }
 
     /// Whether the neighbours of a pair are also those with both vertices moved.
     #[must_use]
-    pub fn with_joint_moves(mut self, joint_moves: bool) -> Self {
-        self.joint_moves = joint_moves;
-        self
+    pub fn with_joint_moves(self, joint_moves: bool) -> Self {
+        Self {
+            pairs: self.pairs.with_joint_moves(joint_moves),
+        }
     }
 
     /// Whether the neighbours of a pair are also those with both vertices moved.
     #[must_use]
     pub fn joint_moves(&self) -> bool {
-        self.joint_moves
+        self.pairs.joint_moves()
     }
 
     /// The first body.
     #[must_use]
     pub fn a(&self) -> &Mesh {
-        &self.a.mesh
+        self.pairs.a()
     }
 
     /// The second body; the first one again, of one body with itself.
     #[must_use]
     pub fn b(&self) -> &Mesh {
-        match &self.bodies {
-            Bodies::Two(b) => &b.mesh,
-            Bodies::One { .. } => &self.a.mesh,
-        }
+        self.pairs.b()
     }
 
     /// The first body has moved or changed its shape: its next frame. Orders, choice and rings stay, so the solutions of
@@ -159,11 +117,7 @@ impl VertexPairs {
     /// # Errors
     /// [`Error::Parameter`] if the number of vertices differs.
     pub fn move_a(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        self.a.go_to(frame(&self.a.mesh, mesh)?);
-        if let Bodies::One { far: f, .. } = &mut self.bodies {
-            *f = far(mesh, self.threshold.get());
-        }
-        Ok(())
+        self.pairs.move_a(mesh)
     }
 
     /// The second body has moved or changed its shape; of one body with itself the same as [`VertexPairs::move_a`].
@@ -171,75 +125,34 @@ impl VertexPairs {
     /// # Errors
     /// [`Error::Parameter`] if the number of vertices differs.
     pub fn move_b(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        match &mut self.bodies {
-            Bodies::Two(b) => b.go_to(frame(&b.mesh, mesh)?),
-            Bodies::One { .. } => self.move_a(mesh)?,
-        }
-        Ok(())
+        self.pairs.move_b(mesh)
     }
 
     /// All solutions by brute force ([`oracle`]), sorted. O(|a| |b|).
     #[must_use]
     pub fn reference_pairs(&self) -> Vec<(u32, u32)> {
-        let (numbers, points) = self.a.chosen_points();
-        match &self.bodies {
-            Bodies::Two(b) => {
-                let (numbers_b, points_b) = b.chosen_points();
-                oracle::pairs_between(&points, &points_b, self.threshold)
-                    .into_iter()
-                    .map(|[i, j]| (numbers[i as usize], numbers_b[j as usize]))
-                    .collect()
-            }
-            Bodies::One { excluded, .. } => {
-                oracle::pairs_within(&points, &Adjacency::none(points.len()), self.threshold)
-                    .into_iter()
-                    .map(|[i, j]| (numbers[i as usize], numbers[j as usize]))
-                    .filter(|&(i, j)| !excluded.contains(i, j))
-                    .collect()
-            }
+        let FeaturePairs {
+            a, b, own, threshold, ..
+        } = &self.pairs;
+        let chosen = |side: &Side| {
+            let numbers = side.chosen();
+            let points: Vec<[f64; 3]> = numbers.iter().map(|&v| side.mesh.vertex(v)).collect();
+            (numbers, points)
+        };
+        let (numbers, points) = chosen(a);
+        if let Some(b) = b {
+            let (numbers_b, points_b) = chosen(b);
+            return oracle::pairs_between(&points, &points_b, *threshold)
+                .into_iter()
+                .map(|[i, j]| (numbers[i as usize], numbers_b[j as usize]))
+                .collect();
         }
-    }
-
-    #[inline]
-    fn no_pair(&self, i: u32, j: u32) -> bool {
-        match &self.bodies {
-            Bodies::Two(_) => false,
-            Bodies::One { excluded, .. } => i == j || excluded.contains(i, j),
-        }
-    }
-
-    #[inline]
-    fn ordered(&self, i: u32, j: u32) -> (u32, u32) {
-        match self.bodies {
-            Bodies::Two(_) => (i, j),
-            Bodies::One { .. } => (i.min(j), i.max(j)),
-        }
-    }
-
-    #[inline]
-    fn second(&self) -> &Side {
-        match &self.bodies {
-            Bodies::Two(b) => b,
-            Bodies::One { .. } => &self.a,
-        }
-    }
-}
-
-fn space(a: &Side, bodies: &Bodies) -> Result<Space<f64>, Error> {
-    let b = if let Bodies::Two(b) = bodies { b } else { a };
-    let axes = [a, b].map(|side| satisfice::Axis::integer(0, side.vertex_at.len() as i64 - 1));
-    Space::new(axes).map_err(|error| Error::parameter("number of vertices", error, "at least one a body"))
-}
-
-fn frame(before: &Mesh, now: &Mesh) -> Result<Mesh, Error> {
-    if before.vertices().len() == now.vertices().len() {
-        Ok(now.clone())
-    } else {
-        Err(Error::parameter(
-            "number of vertices",
-            now.vertices().len(),
-            "as many as in the frame before",
-        ))
+        let excluded = |&(i, j): &(u32, u32)| own.as_ref().is_some_and(|own| own.rings.contains(i, j));
+        oracle::pairs_within(&points, &Adjacency::none(points.len()), *threshold)
+            .into_iter()
+            .map(|[i, j]| (numbers[i as usize], numbers[j as usize]))
+            .filter(|pair| !excluded(pair))
+            .collect()
     }
 }
 
@@ -248,38 +161,38 @@ impl SatisficingProblem for VertexPairs {
     type Solution = (u32, u32);
 
     fn space(&self) -> &Space<f64> {
-        &self.space
+        self.pairs.space()
     }
 
     #[inline]
     fn decode(&self, values: &[f64]) -> (u32, u32) {
-        self.ordered(self.a.vertex(values[0]), self.second().vertex(values[1]))
+        self.pairs.decode(values)
     }
 
     /// NaN, which is never a hit, for numbers that are no vertices.
     #[inline]
     fn fitness(&self, &(i, j): &(u32, u32)) -> f64 {
-        let (Some(p), Some(q)) = (self.a.point(i), self.second().point(j)) else {
+        let pairs = &self.pairs;
+        let (Some(p), Some(q)) = (pairs.a.point(i), pairs.second().point(j)) else {
             return f64::NAN;
         };
-        if let Bodies::One { far, .. } = self.bodies
-            && self.no_pair(i, j)
-        {
-            return far;
+        match &pairs.own {
+            Some(own) if pairs.no_pair(i, j) => own.far,
+            _ => pairs.points.distance(p, q),
         }
-        self.points.distance(p, q)
     }
 
     /// Eight at a time: all are fetched, then measured together.
     fn fitness_all(&self, solutions: &[(u32, u32)], fitness: &mut [f64]) {
         const LANES: usize = 8;
-        let second = self.second();
+        let pairs = &self.pairs;
+        let second = pairs.second();
         let mut rest = (solutions, fitness);
-        while let Some((pairs, more)) = rest.0.split_first_chunk::<LANES>() {
+        while let Some((eight, more)) = rest.0.split_first_chunk::<LANES>() {
             let (mut d, mut known) = ([[0.0; LANES]; 3], true);
-            for (lane, &(i, j)) in pairs.iter().enumerate() {
-                if let (Some(p), Some(q)) = (self.a.point(i), second.point(j))
-                    && !self.no_pair(i, j)
+            for (lane, &(i, j)) in eight.iter().enumerate() {
+                if let (Some(p), Some(q)) = (pairs.a.point(i), second.point(j))
+                    && !pairs.no_pair(i, j)
                 {
                     (0..3).for_each(|k| d[k][lane] = p[k] - q[k]);
                 } else {
@@ -287,8 +200,8 @@ impl SatisficingProblem for VertexPairs {
                 }
             }
             let (now, later) = rest.1.split_at_mut(LANES);
-            if !known || !self.points.distances(&d, now) {
-                for (solution, f) in pairs.iter().zip(now) {
+            if !known || !pairs.points.distances(&d, now) {
+                for (solution, f) in eight.iter().zip(now) {
                     *f = self.fitness(solution);
                 }
             }
@@ -300,74 +213,42 @@ impl SatisficingProblem for VertexPairs {
     }
 
     fn threshold(&self) -> f64 {
-        self.threshold.get()
+        self.pairs.threshold()
     }
 
-    fn encode(&self, &(i, j): &(u32, u32), values: &mut [f64]) -> bool {
-        let (Some(p), Some(q)) = (self.a.position(i), self.second().position(j)) else {
-            return false;
-        };
-        values[0] = p;
-        values[1] = q;
-        true
+    fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
+        self.pairs.encode(solution, values)
     }
 
-    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        if self.a.neighbours.has_none() && self.second().neighbours.has_none() {
-            return false;
-        }
-        let (around_i, around_j) = (
-            self.a.neighbours.neighbours(i),
-            self.second().neighbours.neighbours(j),
-        );
-        let mut go = |i: u32, j: u32| {
-            if !self.no_pair(i, j) {
-                visit(self.ordered(i, j));
-            }
-        };
-        for &k in around_i {
-            go(k, j);
-        }
-        for &l in around_j {
-            go(i, l);
-        }
-        if self.joint_moves {
-            for &k in around_i {
-                for &l in around_j {
-                    go(k, l);
-                }
-            }
-        }
-        true
+    fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
+        self.pairs.neighbours(of, visit)
     }
 
     /// The distance of the boxes around the two ranges of vertices. O(log vertices).
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-        let a = self.a.around(region.lower[0], region.upper[0]);
-        let b = self.second().around(region.lower[1], region.upper[1]);
-        Some(ranges::bound(&a, &b))
+        self.pairs.lower_bound(region)
     }
 
-    fn canonical(&self, (i, j): (u32, u32)) -> (u32, u32) {
-        self.ordered(i, j)
+    fn canonical(&self, hit: (u32, u32)) -> (u32, u32) {
+        self.pairs.canonical(hit)
     }
 
     fn description(&self) -> satisfice::Description {
-        let name = match self.bodies {
-            Bodies::Two(_) => "vertex-pairs",
-            Bodies::One { .. } => "vertex-self-pairs",
-        };
         let side = |name: &str, side: &Side| {
             [
-                (format!("vertices-{name}"), side.vertex_at.len().to_string()),
+                (format!("vertices-{name}"), side.len().to_string()),
                 (format!("order-{name}"), side.order.to_string()),
             ]
         };
-        let mut parameters = vec![("delta".to_owned(), self.threshold.get().to_string())];
-        parameters.extend(side("a", &self.a));
-        if let Bodies::Two(b) = &self.bodies {
+        let mut parameters = vec![("delta".to_owned(), self.threshold().to_string())];
+        parameters.extend(side("a", &self.pairs.a));
+        if let Some(b) = &self.pairs.b {
             parameters.extend(side("b", b));
         }
+        let name = match self.pairs.b {
+            Some(_) => "vertex-pairs",
+            None => "vertex-self-pairs",
+        };
         satisfice::Description {
             name: name.to_owned(),
             parameters,
