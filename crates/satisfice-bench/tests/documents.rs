@@ -46,6 +46,7 @@ fn links_between_the_documents_lead_somewhere() {
         "docs/adding-a-problem.md",
         "docs/completeness.md",
         "docs/reproducibility.md",
+        "docs/results/generalisation.md",
         "docs/results/paper.md",
         "examples/README.md",
     ] {

@@ -1,4 +1,10 @@
-//! How a chart becomes a picture: the only file that knows the plotting library.
+//! How a chart becomes a picture: with its folder, the only place that knows the plotting library.
+
+mod boards;
+mod map;
+
+pub use boards::draw_boards;
+pub use map::draw_maps;
 
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
@@ -7,6 +13,7 @@ use kuva::render::annotations::ReferenceLine;
 use kuva::render::figure::Figure;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
+use kuva::render::render::Scene;
 
 use satisfice::Identity;
 
@@ -70,10 +77,13 @@ pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
     } else {
         figure
     };
-    let scene = figure.render();
+    encode(&figure.render(), format)
+}
+
+fn encode(scene: &Scene, format: Format) -> Result<Vec<u8>, Error> {
     match format {
-        Format::Svg => Ok(scalable(own_ids(&SvgBackend::new().render_scene(&scene))).into_bytes()),
-        Format::Png => PngBackend::new().render_scene(&scene).map_err(Error::Chart),
+        Format::Svg => Ok(scalable(own_ids(&SvgBackend::new().render_scene(scene))).into_bytes()),
+        Format::Png => PngBackend::new().render_scene(scene).map_err(Error::Chart),
     }
 }
 

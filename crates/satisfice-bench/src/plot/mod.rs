@@ -1,11 +1,15 @@
-//! Charts: curves over two axes, drawn as SVG or PNG.
+//! Charts, drawn as SVG or PNG: curves over two axes; maps of points, lines and contours; boards.
 
+mod boards;
 mod draw;
+mod map;
 mod record;
 
 use std::path::Path;
 
-pub use draw::draw;
+pub use boards::{Board, Boards};
+pub use draw::{draw, draw_boards, draw_maps};
+pub use map::{Colour, Layer, Map, Maps, Marker, Shape};
 pub use record::chart;
 
 use crate::error::Error;
