@@ -21,6 +21,7 @@ pub mod exact;
 mod instance;
 pub mod json;
 pub mod listing;
+mod machine;
 pub mod picture;
 pub mod plain_grid;
 pub mod plot;
@@ -35,6 +36,7 @@ pub mod verify;
 
 pub use error::Error;
 pub use instance::Instance;
+pub use machine::machine;
 pub use record::Record;
 pub use resume::{Keeping, Saved};
 pub use run::{Progress, Request, search};

@@ -26,7 +26,7 @@ mod execute;
 pub mod figures;
 mod files;
 pub mod ioh;
-mod machine;
+
 pub mod metrics;
 mod plan;
 mod publish;

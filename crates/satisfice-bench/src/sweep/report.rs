@@ -1,4 +1,4 @@
-//! One self-contained page for a sweep: figures, tables, the machine, the command.
+//! One self-contained page for a sweep: figures, tables, the the command.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use super::figures::Figure;
-use super::machine;
+
 use super::plan::Plan;
 use super::summary::{Group, cells, heading};
 use crate::quantity::shown;
@@ -84,7 +84,7 @@ pub(super) fn page(
         .iter()
         .for_each(|(finding, figures)| line(study(finding, figures)));
     line("<h2>The machine</h2><table>".to_owned());
-    for (what, value) in machine::facts() {
+    for (what, value) in crate::machine() {
         line(format!(
             "<tr><td>{}</td><td class=\"text\">{}</td></tr>",
             escape(&what),

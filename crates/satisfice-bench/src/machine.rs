@@ -1,10 +1,10 @@
-//! On what a sweep ran: what a reader needs to judge its times.
+//! On what something was measured: what a reader needs to judge its times.
 
 use std::fs;
 
 /// Facts as `(what, value)`; what the system does not tell is left out.
 #[must_use]
-pub(super) fn facts() -> Vec<(String, String)> {
+pub fn machine() -> Vec<(String, String)> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
     let field = |text: &str, name: &str| {
         let line = text.lines().find(|line| line.starts_with(name))?;
