@@ -1,13 +1,15 @@
-//! Which parts of the default engine earn their place: each left out in turn, beside the engines that it has to beat.
+//! Which parts of the default engine earn their place: each left out in turn, beside the engines that it has to beat; then the
+//! teapots in every vertex order, and teapots that move.
 //!
 //! `cargo run --release --example ablation` prints the table and writes it to `docs/results/ablation.md` (or to the folder
-//! `SATISFICE_OUT`). Sixteen seeds, paired; with `SATISFICE_QUICK=1` two seeds and a tenth of the evaluations.
+//! `SATISFICE_OUT`). Sixteen seeds, the same for every engine; with `SATISFICE_QUICK=1` two seeds and a tenth of the evaluations.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use rayon::prelude::*;
-use satisfice::Budget;
+use satisfice::{Budget, WarmStart};
+use satisfice_bench::moving_teapots::MovingTeapots;
 use satisfice_bench::{Instance, Request, catalogue};
 
 const PROBLEMS: [(&str, &[(&str, &str)]); 11] = [
@@ -26,7 +28,7 @@ const PROBLEMS: [(&str, &[(&str, &str)]); 11] = [
 /// The geometric mean is over the ten problems before the teapots.
 const MEAN_OVER: usize = 10;
 /// Engines, each with a setting of its own.
-const ENGINES: [(&str, &str); 16] = [
+const ENGINES: [(&str, &str); 18] = [
     ("latest-hit-qpso", ""),
     ("latest-hit-qpso", "exhaust=yes"),
     ("random", ""),
@@ -38,14 +40,22 @@ const ENGINES: [(&str, &str); 16] = [
     ("portfolio", ""),
     ("portfolio", "without=swarms"),
     ("portfolio", "without=climbers"),
+    ("portfolio", "without=populations"),
     ("portfolio", "without=steps"),
     ("portfolio", "without=learning"),
+    ("portfolio", "without=recombination"),
     ("portfolio", "without=neighbours"),
     ("portfolio", "prune=yes"),
     ("branch-and-bound", ""),
 ];
 /// The default engine among them.
 const WHOLE: usize = 8;
+/// Engines that it is compared with on the teapots.
+const BESIDE: [&str; 4] = ["portfolio", "descent-flood", "latest-hit-qpso", "random"];
+/// Frames of the teapots that move, sizes a frame, evaluations a frame.
+const FRAMES: usize = 40;
+const STEP: f64 = 0.004;
+const PER_FRAME: u64 = 5_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quick = std::env::var_os("SATISFICE_QUICK").is_some();
@@ -67,7 +77,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         eprintln!("{problem}{setting} done");
     }
-    let table = table(&names, &means, seeds, evaluations)?;
+    let mut table = table(&names, &means, seeds, evaluations)?;
+    table.push_str(&orders(seeds, &[evaluations / 10, evaluations])?);
+    table.push_str(&moving(seeds, if quick { 4 } else { FRAMES })?);
     println!("{table}");
     let folder =
         std::env::var_os("SATISFICE_OUT").map_or_else(|| PathBuf::from("docs/results"), PathBuf::from);
@@ -125,25 +137,71 @@ fn table(
 ) -> Result<String, std::fmt::Error> {
     let mut text = format!(
         "# What each part of the default engine earns\n\nMean distinct hits of {seeds} seeds at {evaluations} evaluations, by \
-         `cargo run --release --example ablation`; in brackets the number of all hits. The last row is the geometric mean over \
+         `cargo run --release --example ablation`; in brackets the number of all hits. The last column is the geometric mean over \
          the first {MEAN_OVER} problems of the ratio to `latest-hit-qpso`. `exhaust=yes`: the neighbourhood of every hit is \
          exhausted beside the engine. Only `prune=yes` and `branch-and-bound` use bounds, where a problem offers any; each \
-         call of one counts as an evaluation.\n\n| problem |"
+         call of one counts as an evaluation.\n\n| engine |"
     );
-    for (engine, setting) in ENGINES {
-        write!(text, " {engine} {setting} |")?;
+    for name in names {
+        write!(text, " {name} |")?;
     }
-    text.push_str("\n|---|");
-    text.push_str(&"---|".repeat(ENGINES.len()));
-    for (i, name) in names.iter().enumerate() {
-        write!(text, "\n| {name} |")?;
-        for row in means {
-            write!(text, " {:.1} |", row[i])?;
+    text.push_str(" **relative** |\n|---|---|");
+    text.push_str(&"---|".repeat(names.len()));
+    for ((engine, setting), row) in ENGINES.iter().zip(means) {
+        write!(text, "\n| `{}` |", format!("{engine} {setting}").trim_end())?;
+        for mean in row {
+            write!(text, " {mean:.1} |")?;
+        }
+        write!(text, " **{:.2}** |", relative(row, &means[0]))?;
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+/// Recall on the teapots, whichever serial numbers their vertices have.
+fn orders(seeds: u64, budgets: &[u64]) -> Result<String, Box<dyn std::error::Error>> {
+    let mut text =
+        format!("\n## Teapots in every vertex order\n\nMean recall of {seeds} seeds, in %.\n\n| order |");
+    for evaluations in budgets {
+        for engine in BESIDE {
+            write!(text, " `{engine}`, {evaluations} evaluations |")?;
         }
     }
-    text.push_str("\n| **relative** |");
-    for row in means {
-        write!(text, " **{:.2}** |", relative(row, &means[0]))?;
+    write!(text, "\n|---|{}", "---|".repeat(budgets.len() * BESIDE.len()))?;
+    for order in satisfice_collision::VertexOrder::NAMES {
+        let instance = catalogue::find("teapots")?.build([("order", order)])?;
+        let all = instance
+            .reference_hits()
+            .ok_or("the teapots have an exact count")? as f64;
+        write!(text, "\n| {order} |")?;
+        for &evaluations in budgets {
+            for engine in BESIDE {
+                let hits = mean_hits(instance.as_ref(), (engine, ""), seeds, evaluations)?;
+                write!(text, " {:.1} |", 100.0 * hits / all)?;
+            }
+        }
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+/// Recall on teapots that move, each frame searched for so long, warm from the frame before.
+fn moving(seeds: u64, frames: usize) -> Result<String, Box<dyn std::error::Error>> {
+    let scene = MovingTeapots::new(frames, STEP)?;
+    let kept = (1..frames).map(|frame| scene.kept(frame)).sum::<f64>() / (frames - 1) as f64;
+    let mut text = format!(
+        "\n## Teapots that move\n\n{frames} frames, one teapot moving by {STEP} sizes a frame (delta is 0.02 sizes), {PER_FRAME} \
+         evaluations a frame, mean of {seeds} seeds and of all frames. On average {:.0} % of a frame's hits were hits in the \
+         frame before. Verify: all of the last hits are evaluated anew before the engine goes on.\n\n\
+         | engine | recall, cold, % | recall, verify, % |\n|---|---|---|",
+        100.0 * kept
+    );
+    for engine in BESIDE {
+        write!(text, "\n| `{engine}` |")?;
+        for rule in [WarmStart::Cold, WarmStart::Verify] {
+            let recalls = scene.recalls(engine, rule, PER_FRAME, seeds)?;
+            write!(text, " {:.1} |", recalls.iter().sum::<f64>() / frames as f64)?;
+        }
     }
     text.push('\n');
     Ok(text)

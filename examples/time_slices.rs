@@ -3,13 +3,11 @@
 //!
 //! `cargo run --release --example time_slices`
 
-use std::collections::BTreeSet;
 use std::env;
 use std::error::Error;
 
-use satisfice::{Budget, Catalogued, Search, Values, WarmStart, engine};
-use satisfice_collision::problem::Teapots;
-use satisfice_collision::{Placement, generate};
+use satisfice::WarmStart;
+use satisfice_bench::moving_teapots::MovingTeapots;
 
 const EVALUATIONS: u64 = 20_000;
 const FRAMES: usize = 10;
@@ -24,7 +22,7 @@ const RULES: [(WarmStart, &str); 3] = [
 fn main() -> Result<(), Box<dyn Error>> {
     let quick = env::var_os("SATISFICE_QUICK").is_some_and(|value| value != "0");
     let seeds: u64 = if quick { 2 } else { 8 };
-    let scene = Scene::new()?;
+    let scene = MovingTeapots::new(FRAMES, STEP)?;
     println!(
         "{FRAMES} frames, {EVALUATIONS} evaluations each, recall in %, mean of {seeds} seeds; the second teapot moves by {STEP} sizes a \
          frame.\n`kept`: share of a frame's hits that were hits in the frame before.\n\
@@ -34,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for name in ["latest-hit-qpso", "descent-flood", "portfolio"] {
         let mut recalls = Vec::new();
         for (rule, _) in RULES {
-            recalls.push(scene.recalls(name, rule, seeds)?);
+            recalls.push(scene.recalls(name, rule, EVALUATIONS, seeds)?);
         }
         println!(
             "{name}\n  frame   hits   kept {:>10} {:>15} {:>10}",
@@ -43,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (frame, cold) in recalls[0].iter().enumerate() {
             println!(
                 "  {frame:>5} {:>6} {:>5.0}% {:>10.1} {:>15.1} {:>10.1}",
-                scene.hits[frame].len(),
+                scene.hits(frame),
                 100.0 * scene.kept(frame),
                 cold,
                 recalls[1][frame],
@@ -73,60 +71,4 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
-}
-
-/// A teapot, one that moves, and the hits of each frame.
-struct Scene {
-    frames: Vec<Teapots>,
-    hits: Vec<BTreeSet<(u32, u32)>>,
-}
-
-impl Scene {
-    fn new() -> Result<Self, Box<dyn Error>> {
-        let teapot = generate::teapot(13)?;
-        let size = teapot.size();
-        let along = teapot.bounds().longest_axis();
-        let mut problem = Teapots::from_values(&Values::with(Teapots::PARAMETERS, Teapots::NAME, [])?)?;
-        let (mut frames, mut hits) = (Vec::new(), Vec::new());
-        for frame in 0..FRAMES {
-            let mut offset = [0.0; 3];
-            offset[along] = (0.45 - STEP * frame as f64) * size;
-            let moved = Placement::from_translation(offset)?.place(&teapot)?;
-            // Samples and serial numbers stay: a pair keeps its place in the space.
-            problem.pairs_mut().move_b(&moved)?;
-            hits.push(problem.pairs().reference_pairs().into_iter().collect());
-            frames.push(problem.clone());
-        }
-        Ok(Self { frames, hits })
-    }
-
-    fn kept(&self, frame: usize) -> f64 {
-        let Some(before) = frame.checked_sub(1) else {
-            return 0.0;
-        };
-        let both = self.hits[frame].intersection(&self.hits[before]).count();
-        both as f64 / self.hits[frame].len().max(1) as f64
-    }
-
-    /// Mean recall of every frame, in percent: one search, one slice a frame.
-    fn recalls(&self, name: &str, rule: WarmStart, seeds: u64) -> Result<Vec<f64>, satisfice::Error> {
-        let mut recalls = vec![0.0; FRAMES];
-        for seed in 1..=seeds {
-            let mut search = Search::new(engine::build(name)?).seed(seed).warm_start(rule);
-            for (frame, problem) in self.frames.iter().enumerate() {
-                let report = search.run(problem, &Budget::evaluations(EVALUATIONS))?;
-                assert_eq!(report.slice, frame as u64);
-                for hit in report.hits() {
-                    assert!(
-                        self.hits[frame].contains(hit.solution),
-                        "{:?} was a hit, but is none",
-                        hit.solution
-                    );
-                }
-                recalls[frame] +=
-                    100.0 * report.hit_count() as f64 / self.hits[frame].len() as f64 / seeds as f64;
-            }
-        }
-        Ok(recalls)
-    }
 }

@@ -58,6 +58,17 @@ pub enum Error {
         /// What is wrong.
         what: String,
     },
+    /// A scene that cannot be built.
+    #[error(transparent)]
+    Scene(#[from] satisfice_collision::Error),
+    /// An engine has reported what exact enumeration does not know.
+    #[error("{solution} was reported as a hit of frame {frame}, and is none")]
+    NoHit {
+        /// The solution.
+        solution: String,
+        /// The frame, from 0.
+        frame: usize,
+    },
     /// A picture of a scene that could not be drawn.
     #[error("cannot draw the picture: {0}")]
     Picture(String),

@@ -22,6 +22,7 @@ mod instance;
 pub mod json;
 pub mod listing;
 mod machine;
+pub mod moving_teapots;
 pub mod picture;
 pub mod plain_grid;
 pub mod plot;

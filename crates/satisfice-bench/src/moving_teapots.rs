@@ -1,0 +1,98 @@
+//! Two teapots of which one moves: the scene by which warm starts are judged.
+
+use std::collections::BTreeSet;
+
+use satisfice::{Budget, Catalogued, Search, Values, WarmStart, engine};
+use satisfice_collision::problem::Teapots;
+use satisfice_collision::{Placement, generate};
+
+use crate::error::Error;
+
+/// A teapot, one that moves towards it along its longest extent, and the hits of each frame.
+pub struct MovingTeapots {
+    frames: Vec<Teapots>,
+    hits: Vec<BTreeSet<(u32, u32)>>,
+}
+
+impl MovingTeapots {
+    /// So many frames of the [`Teapots`] as they are by default; `step` in sizes a frame, where delta is 0.02.
+    ///
+    /// # Errors
+    /// Any that building the scene gives, such as for a `step` that is not finite.
+    pub fn new(frames: usize, step: f64) -> Result<Self, Error> {
+        let teapot = generate::teapot(13)?;
+        let size = teapot.size();
+        let along = teapot.bounds().longest_axis();
+        let mut problem = Teapots::from_values(&Values::defaults(Teapots::PARAMETERS)?)?;
+        let mut scene = Self {
+            frames: Vec::with_capacity(frames),
+            hits: Vec::with_capacity(frames),
+        };
+        for frame in 0..frames {
+            let mut offset = [0.0; 3];
+            offset[along] = (0.45 - step * frame as f64) * size;
+            let moved = Placement::from_translation(offset)?.place(&teapot)?;
+            // Samples and serial numbers stay: a pair keeps its place in the space.
+            problem.pairs_mut().move_b(&moved)?;
+            scene
+                .hits
+                .push(problem.pairs().reference_pairs().into_iter().collect());
+            scene.frames.push(problem.clone());
+        }
+        Ok(scene)
+    }
+
+    /// Number of hits of a frame, by exact enumeration.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    #[must_use]
+    pub fn hits(&self, frame: usize) -> usize {
+        self.hits[frame].len()
+    }
+
+    /// Share of a frame's hits that were hits in the frame before; 0 for the first.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    #[must_use]
+    pub fn kept(&self, frame: usize) -> f64 {
+        let Some(before) = frame.checked_sub(1) else {
+            return 0.0;
+        };
+        let both = self.hits[frame].intersection(&self.hits[before]).count();
+        both as f64 / self.hits[frame].len().max(1) as f64
+    }
+
+    /// Mean recall of every frame, in percent, over the seeds 1 to `seeds`: one search each, one slice of so many
+    /// evaluations a frame.
+    ///
+    /// # Errors
+    /// As [`Search::run`], and for an engine that finds what is no hit.
+    pub fn recalls(
+        &self,
+        engine: &str,
+        rule: WarmStart,
+        evaluations: u64,
+        seeds: u64,
+    ) -> Result<Vec<f64>, Error> {
+        let mut recalls = vec![0.0; self.frames.len()];
+        for seed in 1..=seeds {
+            let mut search = Search::new(engine::build(engine)?).seed(seed).warm_start(rule);
+            for (frame, problem) in self.frames.iter().enumerate() {
+                let report = search.run(problem, &Budget::evaluations(evaluations))?;
+                if let Some(hit) = report.hits().find(|hit| !self.hits[frame].contains(hit.solution)) {
+                    return Err(Error::NoHit {
+                        solution: format!("{:?}", hit.solution),
+                        frame,
+                    });
+                }
+                recalls[frame] += 100.0 * report.hit_count() as f64 / self.hits(frame).max(1) as f64;
+            }
+        }
+        for recall in &mut recalls {
+            *recall /= seeds.max(1) as f64;
+        }
+        Ok(recalls)
+    }
+}
