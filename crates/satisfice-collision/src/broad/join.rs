@@ -265,7 +265,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
 // Eight neighbours of a slice; `Sorted` is padded and `Scratch::room` makes room, so that the indices are in range.
 #[inline(always)]
 #[expect(clippy::unwrap_used, reason = "a slice of length eight is an array of eight")]
-fn eight(of: &[f32], at: usize) -> &Eight {
+pub(crate) fn eight(of: &[f32], at: usize) -> &Eight {
     of[at..at + 8].try_into().unwrap()
 }
 
@@ -277,7 +277,7 @@ fn eight_mut(of: &mut [f32], at: usize) -> &mut Eight {
 
 #[inline(always)]
 #[expect(clippy::unwrap_used, reason = "a slice of length eight is an array of eight")]
-fn id_eight(of: &[u32], at: usize) -> &[u32; 8] {
+pub(crate) fn id_eight(of: &[u32], at: usize) -> &[u32; 8] {
     of[at..at + 8].try_into().unwrap()
 }
 

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::body::Motion;
+use super::kept::Kept;
 use super::state::State;
 use super::{Contact, Scene, Skips};
 use crate::Error;
@@ -27,6 +28,7 @@ pub(super) struct Link {
     pub(super) pairs: Vec<Pair>,
     pub(super) seen: Option<u64>,
     skin: Option<Skin>,
+    pub(super) kept: Kept,
     measured: Measured,
 }
 
@@ -133,6 +135,7 @@ impl Scene {
                         pairs: Vec::new(),
                         seen: None,
                         skin: None,
+                        kept: Kept::default(),
                         measured: Measured::default(),
                     });
                 } else {
@@ -183,6 +186,12 @@ impl Scene {
         } else {
             a.motion + b.motion
         };
+        if let Some(pairs) = self.by_what_is_kept(at, last, skips)? {
+            let link = &mut self.links[at];
+            (link.pairs, link.skin, link.seen) = (pairs, None, Some(frame));
+            return Ok(());
+        }
+        let link = &mut self.links[at];
         let holds = link.skin.as_mut().is_some_and(|skin| {
             skin.rest -= motion;
             let next = skin.seen + 1 == frame;
@@ -300,7 +309,7 @@ impl Scene {
 
     /// The cost model. A grid costs 20 to 60 ns a vertex each time; a tree 200 ns a feature once, 15 ns a refit, and then only
     /// what is near. So: a grid for a first look and for vertices most of which moved, a tree for everything that stays.
-    fn choose(&self, at: usize) -> Method {
+    pub(super) fn choose(&self, at: usize) -> Method {
         let Link { a, b, seen, .. } = self.links[at];
         let (one, two) = (&self.states[a], &self.states[b]);
         let points = self.kind == PairKind::VertexVertex;
@@ -503,12 +512,18 @@ impl Near {
 }
 
 /// Whether any pair of features can be left out.
-fn filters(a: &State, b: &State, one_body: bool) -> bool {
+pub(super) fn filters(a: &State, b: &State, one_body: bool) -> bool {
     one_body || a.body.kept.is_some() || b.body.kept.is_some()
 }
 
 /// Whether a pair of features counts.
 pub(super) fn keeps(kind: PairKind, a: &State, b: &State, one_body: bool, pair: Pair, near: &Near) -> bool {
+    if kind == PairKind::VertexVertex && one_body && a.body.kept.is_none() {
+        let around = a.rings.as_ref().map_or(&[][..], |rings| rings.neighbours(pair.a));
+        let close = pair.a == pair.b || around.contains(&pair.b);
+        near.neighbours.fetch_add(u64::from(close), Ordering::Relaxed);
+        return !close;
+    }
     let (kind_a, kind_b) = FeatureKind::of_pair(kind);
     let (corners_a, corners_b) = (a.corners_of(kind_a, pair.a), b.corners_of(kind_b, pair.b));
     let counts = |state: &State, corners: &[u32; 3]| {

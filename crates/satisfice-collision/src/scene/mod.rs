@@ -18,7 +18,9 @@
 //! ```
 
 mod body;
+mod kept;
 mod link;
+mod near;
 mod pass;
 mod query;
 mod skips;
@@ -33,7 +35,7 @@ pub use skips::Skips;
 
 use std::collections::BTreeSet;
 
-use crate::broad::{FeatureKind, Method, PointGrid, TreeJoin, Watch};
+use crate::broad::{FeatureKind, Found, Method, PointGrid, TreeJoin, Watch};
 use crate::distance::{PairKind, Point, Proximity, Threshold};
 use crate::{Error, Placement};
 use link::Link;
@@ -97,6 +99,9 @@ pub struct Scene {
     parallel: bool,
     /// What the next pass may deliver first, in its order.
     laid_out: Vec<Contact>,
+    /// For sorting.
+    found: Found,
+    keys: [Vec<u64>; 2],
 }
 
 impl Scene {
@@ -117,6 +122,8 @@ impl Scene {
             join: TreeJoin::new(),
             parallel: false,
             laid_out: Vec::new(),
+            found: Found::default(),
+            keys: Default::default(),
         }
     }
 

@@ -24,6 +24,8 @@ pub(super) struct State {
     pub(super) share: f64,
     /// No vertex moved further than this.
     pub(super) motion: f64,
+    /// Root of the mean square motion of the vertices less their mean motion. An estimate.
+    pub(super) agitation: f64,
     /// The box of the posed vertices, roundings included.
     pub(super) bounds: Aabb,
     local: Aabb,
@@ -60,6 +62,7 @@ impl State {
             moved: Moved::All,
             share: 1.0,
             motion: f64::INFINITY,
+            agitation: f64::INFINITY,
             bounds: local,
             local,
             posed: Vec::new(),
@@ -127,7 +130,7 @@ impl State {
 
     /// Goes to the next frame.
     pub(super) fn settle(&mut self) {
-        (self.moved, self.share, self.motion) = (Moved::None, 0.0, 0.0);
+        (self.moved, self.share, self.motion, self.agitation) = (Moved::None, 0.0, 0.0, 0.0);
         if let Some(placement) = self.next_placement.take()
             && placement != self.placement
         {
@@ -139,9 +142,12 @@ impl State {
             self.bounds = self.posed_bounds(&placement);
         }
         if std::mem::take(&mut self.has_next) {
-            let (mut count, mut square) = (0, 0.0);
+            let (mut count, mut square, mut sum, mut squares) = (0, 0.0, [0.0; 3], 0.0);
             for (old, new) in self.vertices.iter().zip(&self.next_vertices) {
-                let d: f64 = (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum();
+                let step: Point = std::array::from_fn(|k| new[k] - old[k]);
+                let d: f64 = step.iter().map(|c| c * c).sum();
+                (0..3).for_each(|k| sum[k] += step[k]);
+                squares += d;
                 count += usize::from(old != new);
                 square = if d > square { d } else { square };
             }
@@ -151,6 +157,9 @@ impl State {
                 self.share = count as f64 / self.vertices.len() as f64;
                 // rounded up; squares that underflow belong to motions below 1e-153
                 self.motion = square.sqrt() * (1.0 + 1e-12) + 1e-153;
+                let n = self.vertices.len() as f64;
+                let mean: f64 = sum.iter().map(|c| (c / n) * (c / n)).sum();
+                self.agitation = (squares / n - mean).max(0.0).sqrt();
                 if let Some(bounds) = self.runs.whole() {
                     (self.local, self.bounds) = (bounds, bounds);
                 }
