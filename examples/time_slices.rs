@@ -7,7 +7,7 @@ use std::env;
 use std::error::Error;
 
 use satisfice::WarmStart;
-use satisfice_bench::moving_teapots::MovingTeapots;
+use satisfice_bench::moving_teapots::{MovingTeapots, Way};
 
 const EVALUATIONS: u64 = 20_000;
 const FRAMES: usize = 10;
@@ -22,7 +22,7 @@ const RULES: [(WarmStart, &str); 3] = [
 fn main() -> Result<(), Box<dyn Error>> {
     let quick = env::var_os("SATISFICE_QUICK").is_some_and(|value| value != "0");
     let seeds: u64 = if quick { 2 } else { 8 };
-    let scene = MovingTeapots::new(FRAMES, STEP)?;
+    let scene = MovingTeapots::new(FRAMES, STEP, Way::Towards)?;
     println!(
         "{FRAMES} frames, {EVALUATIONS} evaluations each, recall in %, mean of {seeds} seeds; the second teapot moves by {STEP} sizes a \
          frame.\n`kept`: share of a frame's hits that were hits in the frame before.\n\

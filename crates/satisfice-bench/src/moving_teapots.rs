@@ -8,7 +8,17 @@ use satisfice_collision::{Placement, generate};
 
 use crate::error::Error;
 
-/// A teapot, one that moves towards it along its longest extent, and the hits of each frame.
+/// Which way the second teapot moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Towards the first, along the longest extent: from frame to frame there are more hits.
+    Towards,
+    /// Past it, along the next axis, as far on one side in the first frame as on the other in the last: about as many hits in
+    /// every frame.
+    Past,
+}
+
+/// A teapot, one that moves, and the hits of each frame.
 pub struct MovingTeapots {
     frames: Vec<Teapots>,
     hits: Vec<BTreeSet<(u32, u32)>>,
@@ -19,7 +29,7 @@ impl MovingTeapots {
     ///
     /// # Errors
     /// Any that building the scene gives, such as for a `step` that is not finite.
-    pub fn new(frames: usize, step: f64) -> Result<Self, Error> {
+    pub fn new(frames: usize, step: f64, way: Way) -> Result<Self, Error> {
         let teapot = generate::teapot(13)?;
         let size = teapot.size();
         let along = teapot.bounds().longest_axis();
@@ -30,7 +40,15 @@ impl MovingTeapots {
         };
         for frame in 0..frames {
             let mut offset = [0.0; 3];
-            offset[along] = (0.45 - step * frame as f64) * size;
+            let moved = step * frame as f64;
+            offset[along] = 0.45 * size;
+            match way {
+                Way::Towards => offset[along] -= moved * size,
+                Way::Past => {
+                    let half = 0.5 * step * frames.saturating_sub(1) as f64;
+                    offset[(along + 1) % 3] = (moved - half) * size;
+                }
+            }
             let moved = Placement::from_translation(offset)?.place(&teapot)?;
             // Samples and serial numbers stay: a pair keeps its place in the space.
             problem.pairs_mut().move_b(&moved)?;
@@ -40,6 +58,12 @@ impl MovingTeapots {
             scene.frames.push(problem.clone());
         }
         Ok(scene)
+    }
+
+    /// Number of frames.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.frames.len()
     }
 
     /// Number of hits of a frame, by exact enumeration.

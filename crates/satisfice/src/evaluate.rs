@@ -57,6 +57,19 @@ impl Threads {
     }
 }
 
+impl Threads {
+    /// Does something with each item, on as many threads as there are: one item a thread at a time.
+    pub(crate) fn for_each<I: Send>(&self, items: &mut [I], work: impl Fn(&mut I) + Send + Sync) {
+        #[cfg(feature = "rayon")]
+        if let Some(pool) = &self.pool {
+            use rayon::prelude::*;
+            pool.install(|| items.par_iter_mut().with_max_len(1).for_each(work));
+            return;
+        }
+        items.iter_mut().for_each(work);
+    }
+}
+
 /// How a batch is judged.
 #[derive(Debug, Clone, Copy)]
 struct Rules {
@@ -445,6 +458,47 @@ impl Ledger {
             Entered::Known => return again(&mut self.counts),
         }
         Outcome::Hit(fitness)
+    }
+
+    /// Takes over what others have done so far: their counts, and time that has passed meanwhile.
+    pub(crate) fn take_over<T>(
+        &mut self,
+        counts: Counts,
+        archive: &Archive<T>,
+        observer: &mut dyn Observer<T>,
+    ) {
+        let new = counts.evaluations.saturating_sub(self.counts.evaluations);
+        self.counts = counts;
+        self.pass(usize::try_from(new).unwrap_or(usize::MAX));
+        if self.counts.evaluations >= self.next_count {
+            self.record(archive.len());
+            while self.next_count <= self.counts.evaluations {
+                self.next_count = next_count(self.next_count);
+            }
+        }
+        self.look_at_limits(archive.len(), observer);
+    }
+
+    /// Whether enough hits are found, or an observer has said so.
+    pub(crate) fn is_closed_to_hits(&self) -> bool {
+        self.stops_before_more()
+    }
+
+    /// Enters a hit that others have found, as of now.
+    pub(crate) fn enter<T: crate::Identity + Clone>(
+        &mut self,
+        solution: &T,
+        archive: &mut Archive<T>,
+        observer: &mut dyn Observer<T>,
+    ) -> bool {
+        let seconds = self.clock.elapsed().as_secs_f64();
+        let entered = archive.enter(solution.clone(), self.counts.evaluations, seconds, false);
+        if entered == Entered::New {
+            self.greet(archive, observer);
+        } else {
+            self.counts.duplicates += 1;
+        }
+        entered == Entered::New
     }
 
     #[cold]

@@ -39,7 +39,7 @@ pub use parameter::{Parameter, Values};
 pub use problem::{Catalogued, Description, SatisficingProblem, from_fn};
 pub use report::{Completeness, Counts, Report, TracePoint};
 pub use scalar::Real;
-pub use search::{Checkpoint, Saving, Search, Unfinished};
+pub use search::{Checkpoint, Islands, Saving, Search, Unfinished};
 pub use seed::SearchRng;
 pub use space::{Axis, AxisKind, Boundary, Region, Space};
 pub use unseen::{Method, Unseen};

@@ -1,17 +1,18 @@
 //! The loop: engine, ledger, archive, slice after slice.
 
 mod checkpoint;
+mod islands;
+mod slice;
 mod steps;
 
 use std::sync::Arc;
 
 use crate::archive::Archive;
-use crate::batch::{Batch, Outcome};
+use crate::batch::Outcome;
 use crate::budget::{Budget, StopReason};
-use crate::candidates::Candidates;
 use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
 use crate::error::Error;
-use crate::evaluate::{Ledger, Threads};
+use crate::evaluate::Threads;
 use crate::identity::Identity;
 use crate::observer::Observer;
 use crate::probes::Probes;
@@ -20,16 +21,15 @@ use crate::report::{Completeness, Report};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::unseen::Unseen;
-use crate::view::{Calls, Scratches, View};
+use crate::view::View;
 
-use checkpoint::Pending;
 pub use checkpoint::{Checkpoint, Saving, Unfinished};
+pub use islands::Islands;
+use slice::Slice;
 use steps::SingleSteps;
 
 /// An engine that asks for more this often without proposing anything has nothing to propose.
 const EMPTY_ASKS: usize = 1000;
-/// Hits of the slice before are verified in batches of this size.
-const VERIFY_BATCH: usize = 64;
 
 /// A search: engine, settings and the set C, for one problem or for one that moves from slice to slice.
 ///
@@ -66,27 +66,6 @@ pub struct Search<S, T> {
     slice: Option<Slice<S, T>>,
     /// The problem of the slice that has begun or ended last.
     problem: Option<Description>,
-}
-
-/// A slice that has begun.
-struct Slice<S, T> {
-    ledger: Ledger,
-    archive: Archive<T>,
-    batch: Batch<S>,
-    candidates: Candidates<S, T>,
-    probes: Probes,
-    origin: Origin,
-    /// How many hits of the slice before have been verified, or all of them where none is to be.
-    verified: usize,
-    /// What the engine's last `ask` said.
-    last: Ask,
-    calls: Calls,
-    scratches: Scratches<S, T>,
-    outstanding: bool,
-    /// Whether a batch is proposed and not settled.
-    pending: bool,
-    /// A batch that was pending when the slice was saved.
-    resumed: Option<Pending<S>>,
 }
 
 /// A search by the [default engine](crate::engine::default), which uses whatever the problem offers.
@@ -294,25 +273,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         }
         let share = self.probes.unwrap_or_else(|| self.engine.probes());
         let probes = Probes::new(share, self.seed, self.slices)?;
-        let slice = self.slice.insert(Slice {
-            ledger: Ledger::open(budget),
-            archive: Archive::default(),
-            batch: Batch::new(now),
-            candidates: Candidates::default(),
-            probes,
-            origin: Origin::Engine,
-            verified: if rule == WarmStart::Verify {
-                0
-            } else {
-                self.previous.len()
-            },
-            last: Ask::More,
-            calls: Calls::default(),
-            scratches: Scratches::default(),
-            outstanding: false,
-            pending: false,
-            resumed: None,
-        });
+        let mut begun = Slice::begin(budget, now, probes);
+        if rule != WarmStart::Verify {
+            begun.verified = self.previous.len();
+        }
+        let slice = self.slice.insert(begun);
         self.problem = Some(problem.description());
         self.engine.begin(&slice.view(problem, &self.previous));
         Ok(())
@@ -423,7 +388,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         })
     }
 
-    /// Fills the batch and prepares its candidates; `false` when the slice is over. With an observer, an engine that can
+    /// Fills the batch and prepares its candidates; `false` when the slice is over or pauses. With an observer, an engine that can
     /// advances by itself on the way.
     #[inline]
     fn propose<P>(&mut self, problem: &P, alone: Option<&mut dyn Observer<T>>) -> bool
@@ -451,10 +416,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         }
         let mut idle = 0;
         loop {
-            if slice.ledger.is_over() {
+            if slice.ledger.is_over() || slice.ledger.counts.evaluations >= slice.pause {
                 return false;
             }
-            if slice.verified < self.previous.len() {
+            if slice.is_verifying(&self.previous) {
                 let limit = slice.ledger.remaining();
                 slice.propose_previous(problem, &self.previous, limit);
                 return true;
@@ -486,6 +451,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
                     probes: &slice.probes,
                     observer: *observer,
                     deletes,
+                    pause: slice.pause,
                     over: false,
                 };
                 if self.engine.advance(&mut self.rng, &mut steps) {
@@ -537,7 +503,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             return;
         }
         if slice.origin == Origin::WarmStart {
-            slice.ledger.counts.verified = slice.verified as u64;
+            slice.ledger.counts.verified += slice.candidates.outcomes.len() as u64;
             if slice.batch.is_empty() {
                 return; // a problem that does not encode: the engine has nothing to see
             }
@@ -552,58 +518,5 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         let view = slice.view(problem, &self.previous);
         self.engine
             .tell(&view, &slice.batch, &slice.candidates.outcomes, slice.origin);
-    }
-}
-
-impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
-    #[inline]
-    fn view<'a, P>(&'a self, problem: &'a P, previous: &'a Archive<T>) -> View<'a, P>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T>,
-    {
-        View {
-            problem,
-            archive: &self.archive,
-            previous,
-            ledger: &self.ledger,
-            calls: &self.calls,
-            scratches: &self.scratches,
-        }
-    }
-
-    /// Prepares the candidates of the batch, as many as the budget has room for.
-    fn prepare<P>(&mut self, problem: &P, deletes: bool)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T>,
-    {
-        let limit = self.ledger.remaining();
-        self.candidates
-            .prepare(problem, &self.archive, &mut self.batch, limit, deletes);
-    }
-
-    /// The next hits of the slice before, to be evaluated anew.
-    fn propose_previous<P>(&mut self, problem: &P, previous: &Archive<T>, limit: usize)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T>,
-    {
-        let space = problem.space();
-        let next = &previous.solutions()[self.verified..];
-        let next = &next[..next.len().min(VERIFY_BATCH).min(limit)];
-        self.batch.clear();
-        for solution in next {
-            let mut encoded = true;
-            self.batch.push_with(|position| {
-                encoded = problem.encode(solution, position);
-                space.positions(position);
-            });
-            if !encoded {
-                self.batch.clear();
-                break;
-            }
-        }
-        self.origin = Origin::WarmStart;
-        self.verified += next.len();
-        self.candidates
-            .prepare_solutions(next.iter(), &self.archive, limit);
     }
 }

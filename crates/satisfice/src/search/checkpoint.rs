@@ -388,11 +388,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             probes,
             origin: Origin::Engine,
             verified,
+            verify_to: usize::MAX,
             last,
             calls,
             scratches: Scratches::default(),
             outstanding: false,
             pending: false,
+            pause: u64::MAX,
             resumed,
         })
     }

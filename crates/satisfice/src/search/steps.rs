@@ -18,6 +18,8 @@ pub(super) struct SingleSteps<'a, P: SatisficingProblem> {
     pub(super) probes: &'a Probes,
     pub(super) observer: &'a mut dyn Observer<P::Solution>,
     pub(super) deletes: bool,
+    /// Evaluations after which the engine is to pause.
+    pub(super) pause: u64,
     /// Whether the engine has been told that it was the last step.
     pub(super) over: bool,
 }
@@ -40,7 +42,8 @@ impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
             self.archive,
             self.observer,
         );
-        self.over = self.ledger.has_stopped() || self.probes.is_due(self.ledger.counts.evaluations);
+        let evaluations = self.ledger.counts.evaluations;
+        self.over = self.ledger.has_stopped() || self.probes.is_due(evaluations) || evaluations >= self.pause;
         (outcome, !self.over)
     }
 
