@@ -116,7 +116,7 @@ fn a_sweep_runs_goes_on_and_repeats_itself() {
         3
     );
 
-    // Runs in the format of IOHanalyzer: as many headers as runs, values that only rise.
+    // Runs in the format of IOHanalyzer: all that its readers ask for, as many headers as runs, values that only rise.
     let ioh = folder.join("out/ioh/descent-flood");
     let header: Value = fs::read_dir(&ioh)
         .unwrap()
@@ -126,6 +126,25 @@ fn a_sweep_runs_goes_on_and_repeats_itself() {
         .unwrap();
     let scenario = &header["scenarios"][0];
     assert_eq!(scenario["runs"].as_array().unwrap().len(), 3);
+    let asked = [
+        "/version",
+        "/suite",
+        "/function_id",
+        "/function_name",
+        "/maximization",
+        "/algorithm/name",
+        "/algorithm/info",
+        "/attributes/1",
+        "/scenarios/0/dimension",
+        "/scenarios/0/runs/2/instance",
+        "/scenarios/0/runs/2/evals",
+        "/scenarios/0/runs/2/best/evals",
+        "/scenarios/0/runs/2/best/y",
+        "/scenarios/0/runs/2/best/x",
+    ];
+    asked
+        .iter()
+        .for_each(|place| assert!(header.pointer(place).is_some(), "{place}"));
     let data = fs::read_to_string(ioh.join(scenario["path"].as_str().unwrap())).unwrap();
     let runs: Vec<&str> = data.split("evaluations raw_y\n").skip(1).collect();
     assert_eq!(runs.len(), 3);

@@ -1,5 +1,5 @@
 //! Export for `IOHanalyzer` (<https://iohanalyzer.liacs.nl>) and `iohinspector`: hits against evaluations as the runs of a
-//! maximisation, in the format of `IOHexperimenter` 0.3.
+//! maximisation, in the format of `IOHexperimenter` 0.3. Read back by `iohinspector` 0.0.8.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -37,7 +37,8 @@ pub fn export(folder: &Path, groups: &[Group], rows: &[Row]) -> Result<(), Error
                 runs.push(json!({
                     "instance": row.key.seed.saturating_add(1),
                     "evals": row.counts.evaluations,
-                    "best": {"evals": reached.map_or(0, |moment| moment.0), "y": row.hits as f64},
+                    // the best is a set of hits, no point; readers want a list
+                    "best": {"evals": reached.map_or(0, |moment| moment.0), "y": row.hits as f64, "x": []},
                 }));
             }
             let header = json!({
