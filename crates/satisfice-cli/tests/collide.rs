@@ -36,6 +36,28 @@ fn report(folder: &TempDir, arguments: &str) -> Value {
     serde_json::from_str(&done.stdout).unwrap()
 }
 
+/// The pairs of a report, in an order of their own.
+fn sorted(report: &Value) -> Vec<String> {
+    let mut pairs: Vec<_> = pairs(report).iter().map(Value::to_string).collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+fn pairs(report: &Value) -> &Vec<Value> {
+    report["pairs"].as_array().unwrap()
+}
+
+/// Whether every pair of one report is one of the other.
+fn assert_part(of: &Value, part: &Value) {
+    assert!(pairs(part).iter().all(|pair| pairs(of).contains(pair)));
+}
+
+fn assert_verified(folder: &TempDir, report: &Value, call: &str) {
+    fs::write(folder.path().join("report.json"), report.to_string()).unwrap();
+    let verified = satisfice_in(folder.path(), "verify report.json");
+    assert_eq!(verified.code, 0, "{call}: {}", verified.stdout);
+}
+
 #[test]
 fn single_triangles_collide() {
     let folder = meshes();
@@ -88,16 +110,6 @@ fn pairs_within_a_body_leave_out_its_edges() {
 #[test]
 fn engines_find_what_the_exact_method_finds() {
     let folder = meshes();
-    let sorted = |report: &Value| {
-        let mut pairs: Vec<_> = report["pairs"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(Value::to_string)
-            .collect();
-        pairs.sort_unstable();
-        pairs
-    };
     let scene = "collide triangle.obj above.obj points.obj --self --threshold 1.1";
     let exact = report(&folder, scene);
     let random = report(
@@ -212,16 +224,6 @@ fn every_kind_of_pair_by_every_method() {
             let exact = report(&folder, &call);
             assert!(exact["hits"].as_u64() > Some(0), "{call}");
             assert_eq!(exact["completeness"], "Proved");
-            let sorted = |report: &Value| {
-                let mut pairs: Vec<_> = report["pairs"]
-                    .as_array()
-                    .unwrap()
-                    .iter()
-                    .map(Value::to_string)
-                    .collect();
-                pairs.sort_unstable();
-                pairs
-            };
             for method in [
                 "tree",
                 "brute-force",
@@ -235,10 +237,7 @@ fn every_kind_of_pair_by_every_method() {
                     (&1.0.into(), &"Proved".into())
                 );
             }
-            let path = folder.path().join("report.json");
-            fs::write(&path, exact.to_string()).unwrap();
-            let verified = satisfice_in(folder.path(), "verify report.json");
-            assert_eq!(verified.code, 0, "{call}: {}", verified.stdout);
+            assert_verified(&folder, &exact, &call);
         }
     }
 }
@@ -249,9 +248,7 @@ fn less_than_all_pairs_may_be_asked_for() {
     let scene = "collide a.obj b.obj far.obj cloth.obj --threshold 0.12 --pairs edge-edge";
     let all = report(&folder, scene);
     let distances = |report: &Value| -> Vec<f64> {
-        report["pairs"]
-            .as_array()
-            .unwrap()
+        pairs(report)
             .iter()
             .map(|pair| pair["distance"].as_f64().unwrap())
             .collect()
@@ -275,11 +272,8 @@ fn less_than_all_pairs_may_be_asked_for() {
     let first = report(&folder, &format!("{scene} --first"));
     assert_eq!(first["hits"], 1);
     for listed in [&closest, &touching, &first] {
-        for pair in listed["pairs"].as_array().unwrap() {
-            assert!(all["pairs"].as_array().unwrap().contains(pair));
-        }
-        fs::write(folder.path().join("report.json"), listed.to_string()).unwrap();
-        assert_eq!(satisfice_in(folder.path(), "verify report.json").code, 0);
+        assert_part(&all, listed);
+        assert_verified(&folder, listed, scene);
     }
     let none = report(&folder, "collide a.obj far.obj --threshold 0.1 --touching");
     assert_eq!(
@@ -305,9 +299,7 @@ fn limits_keep_what_was_found() {
         ),
         (&7.into(), &"Hits".into(), &"Unknown".into(), &Value::Null)
     );
-    for pair in few["pairs"].as_array().unwrap() {
-        assert!(all["pairs"].as_array().unwrap().contains(pair));
-    }
+    assert_part(&all, &few);
     let enough = report(&folder, &format!("{scene} --hits 1e9 --time 1h"));
     assert_eq!(
         (&enough["pairs"], &enough["completeness"]),
@@ -362,7 +354,7 @@ fn an_interrupted_enumeration_keeps_its_pairs() {
             "{how}"
         );
         assert_eq!(code, Some(i32::from(report["hits"] == 0)));
-        assert_eq!(report["hits"], report["pairs"].as_array().unwrap().len());
+        assert_eq!(report["hits"], pairs(&report).len());
         fs::remove_file(path).unwrap();
     }
 }
