@@ -2,17 +2,18 @@
 //! the clock on Vincent's function.
 //!
 //! ```text
-//! cargo run --release -p satisfice-problems --example cec2013 -- data=DIR [runs=50] [problems=1-20] [engine=portfolio] [race=8]
+//! cargo run --release -p satisfice-problems --example cec2013 -- data=DIR [runs=50] [first=0] [problems=1-20] [engine=portfolio] [race=8]
 //! ```
 //!
 //! `DIR` is the folder `data` of <https://github.com/mikeagn/CEC2013>; without it, problems 11 to 20 are left out. Each run searches
-//! once, for delta = 1e-5, and what it found is scored at both accuracies. The race has two entrants on problems 7 and 9: the
+//! once, for delta = 1e-5, and what it found is scored at both accuracies; `first` is the first run's seed. The race has two entrants on problems 7 and 9: the
 //! engine, and a plain multistart of compass search with a hashed radius test, which stops a search as soon as it is near a known
 //! maximum. Each runs until it has all maxima, or for 30 s.
 
 #![expect(clippy::disallowed_methods, reason = "the race is against the clock")]
 
 use std::error::Error;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use hashbrown::HashMap;
@@ -25,7 +26,7 @@ const LIMIT: Duration = Duration::from_secs(30);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let known = ["data", "runs", "problems", "engine", "race"];
+    let known = ["data", "runs", "first", "problems", "engine", "race"];
     for argument in &arguments {
         let name = argument.split('=').next().unwrap_or_default();
         if !argument.contains('=') || !known.contains(&name) {
@@ -47,13 +48,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let data = value("data", "");
     let runs: u64 = value("runs", if quick { "2" } else { "50" }).parse()?;
     let races: u64 = value("race", if quick { "1" } else { "8" }).parse()?;
+    let first: u64 = value("first", "0").parse()?;
     let engine = value("engine", "portfolio");
     let problems = range(&value("problems", if data.is_empty() { "1-10" } else { "1-20" }))?;
     if runs == 0 {
         return Err("`runs=0`: at least one run".into());
     }
+    let seeds = first..first.saturating_add(runs);
 
-    println!("engine {engine}, seeds 0 to {}, delta 1e-5\n", runs - 1);
+    println!(
+        "engine {engine}, seeds {first} to {}, delta 1e-5\n",
+        seeds.end - 1
+    );
     println!(
         "| problem | optima | evaluations | peak ratio 1e-4 | 1e-5 | submitted | last new one at | seconds a run |"
     );
@@ -63,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let row = row(
             &Cec2013::new(number, ACCURACIES[1], &data)?,
             number,
-            runs,
+            &seeds,
             &engine,
         )?;
         for (sum, ratio) in sums.iter_mut().zip(row) {
@@ -82,7 +88,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("| problem | maxima | {engine} | multistart of compass search | times as fast |");
         println!("|---|---|---|---|---|");
         for number in [7, 9] {
-            race(&Cec2013::new(number, ACCURACIES[0], "")?, number, races, &engine)?;
+            race(
+                &Cec2013::new(number, ACCURACIES[0], "")?,
+                number,
+                first..first.saturating_add(races),
+                &engine,
+            )?;
         }
     }
     Ok(())
@@ -97,11 +108,17 @@ fn range(text: &str) -> Result<Vec<usize>, Box<dyn Error>> {
 }
 
 /// Runs one problem, prints its row and returns its peak ratios.
-fn row(problem: &Cec2013, number: usize, runs: u64, engine: &str) -> Result<[f64; 2], Box<dyn Error>> {
+fn row(
+    problem: &Cec2013,
+    number: usize,
+    seeds: &Range<u64>,
+    engine: &str,
+) -> Result<[f64; 2], Box<dyn Error>> {
     let start = Instant::now();
     let mut scores: [Vec<Score>; 2] = [Vec::new(), Vec::new()];
     let (mut submitted, mut last) = (0, 0);
-    for seed in 0..runs {
+    let runs = seeds.end - seeds.start;
+    for seed in seeds.clone() {
         let mut search = Search::new(engine::build(engine)?).seed(seed);
         let report = search.run(problem, &Budget::evaluations(problem.max_evaluations()))?;
         let points: Vec<_> = report
@@ -128,10 +145,10 @@ fn row(problem: &Cec2013, number: usize, runs: u64, engine: &str) -> Result<[f64
     Ok(ratios)
 }
 
-fn race(problem: &Cec2013, number: usize, races: u64, engine: &str) -> Result<(), Box<dyn Error>> {
+fn race(problem: &Cec2013, number: usize, seeds: Range<u64>, engine: &str) -> Result<(), Box<dyn Error>> {
     let maxima = problem.optima().len();
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-    for seed in 0..races {
+    for seed in seeds {
         // The reader of the clock is the same for both; who is first takes turns.
         let mut turns = [true, false];
         turns.rotate_left((seed % 2) as usize);

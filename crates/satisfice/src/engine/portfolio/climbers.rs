@@ -16,8 +16,13 @@ const PATIENCE: u64 = 8;
 const NEIGHBOUR_PATIENCE: u64 = 2;
 /// A continuous search whose steps fall below this share of the axes has converged.
 const CONVERGED: f64 = 1e-9;
-/// First step of a continuous search, as a share of the axes.
-const FIRST_STEP: f64 = 0.1;
+/// The first step of a continuous search is drawn log-uniformly between these shares of the axes: large ones leave narrow
+/// basins for wide ones, small ones are slow in wide ones.
+const FIRST_STEP: (f64, f64) = (0.01, 0.1);
+/// The first step from a near miss.
+const REFINING_STEP: f64 = 0.003;
+/// One search in so many starts at a near miss, where there is one.
+const REFINED: u64 = 4;
 
 /// A move to a point that was evaluated before, and so cannot be a new hit, is drawn again at most this often.
 const DRAWS: usize = 4;
@@ -52,6 +57,9 @@ pub(super) struct Climbers<S> {
     restarts: u64,
     next: usize,
     proposed: usize,
+    /// The best near miss offered since the last start at one, and its fitness; infinite where there is none.
+    offered: Vec<S>,
+    offered_fitness: S,
 }
 
 impl<S: Real> Climbers<S> {
@@ -75,6 +83,8 @@ impl<S: Real> Climbers<S> {
             restarts: 0,
             next: 0,
             proposed: 0,
+            offered: Vec::new(),
+            offered_fitness: S::infinity(),
         }
     }
 
@@ -84,6 +94,16 @@ impl<S: Real> Climbers<S> {
         for climber in &mut self.climbers {
             climber.running = false;
         }
+        self.offered_fitness = S::infinity();
+    }
+
+    /// Offers a near miss as the start of a search; the best one offered since the last such start is taken.
+    pub(super) fn offer(&mut self, position: &[S], fitness: S) {
+        if fitness < self.offered_fitness {
+            self.offered.clear();
+            self.offered.extend_from_slice(position);
+            self.offered_fitness = fitness;
+        }
     }
 
     pub(super) fn save(&self, state: &mut crate::state::State) {
@@ -92,6 +112,7 @@ impl<S: Real> Climbers<S> {
         self.integer_axes.save(state);
         self.restarts.save(state);
         self.next.save(state);
+        (self.offered.clone(), self.offered_fitness).save(state);
     }
 
     pub(super) fn restore(&mut self, from: &mut crate::state::Reader<'_>) -> Result<(), crate::Error> {
@@ -100,6 +121,7 @@ impl<S: Real> Climbers<S> {
         self.integer_axes = from.read()?;
         self.restarts = from.read()?;
         self.next = from.read()?;
+        (self.offered, self.offered_fitness) = from.read()?;
         Ok(())
     }
 
@@ -126,8 +148,14 @@ impl<S: Real> Climbers<S> {
         if !climber.running {
             self.restarts += 1;
             climber.start(luby(self.restarts), context, rng);
-            out.push(&climber.position);
-            return Some(index);
+            if !self.restarts.is_multiple_of(REFINED) || self.offered_fitness == S::infinity() {
+                out.push(&climber.position);
+                return Some(index);
+            }
+            climber.position.copy_from_slice(&self.offered);
+            climber.fitness = self.offered_fitness;
+            climber.mutation.reset(climber.position.len(), REFINING_STEP);
+            self.offered_fitness = S::infinity();
         }
         let space = context.space();
         out.push_with(|position| {
@@ -183,7 +211,9 @@ impl<S: Real> Climber<S> {
         self.patience = length * PATIENCE * dimension as u64;
         self.listed = false;
         self.last = None;
-        self.mutation.reset(dimension, FIRST_STEP);
+        let (smallest, largest) = FIRST_STEP;
+        let first = largest * (smallest / largest).powf(rng.uniform());
+        self.mutation.reset(dimension, first);
     }
 
     /// Lists the neighbours of the current point in random order.

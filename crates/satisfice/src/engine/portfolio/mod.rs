@@ -135,7 +135,8 @@ impl Saved for Source {
 ///   (1+1) strategy along continuous axes; a search that comes back to a known hit ends at once;
 /// - steps that have led from hit to hit, applied to every hit: neighbourhoods are exhausted by the short ones, and
 ///   repetitions and manifolds of hits followed by those that are learned from differences of hits;
-/// - recombinations of two hits, which find the rest of a product of sets of coordinates;
+/// - recombinations of two hits, which find the rest of a product of sets of coordinates; local searches start at those that
+///   just miss;
 /// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses.
 ///
 /// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
@@ -459,7 +460,13 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                     }
                 }
                 Source::Neighbour => self.neighbourhoods.book(outcome.fitness(), outcome.is_hit()),
-                Source::Uniform | Source::Trial | Source::Cross => {}
+                // Hits are inexact on continuous axes: what was put together from two of them may just miss a third one.
+                Source::Cross => {
+                    if let (None, Outcome::Miss(fitness)) = (&self.visited, outcome) {
+                        self.climbers.offer(position, fitness);
+                    }
+                }
+                Source::Uniform | Source::Trial => {}
             }
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
