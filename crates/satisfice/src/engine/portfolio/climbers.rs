@@ -212,8 +212,10 @@ impl<S: Real> Climber<S> {
         self.listed = false;
         self.last = None;
         let (smallest, largest) = FIRST_STEP;
-        let first = largest * (smallest / largest).powf(rng.uniform());
-        self.mutation.reset(dimension, first);
+        let continuous = space.axes().iter().any(|axis| !axis.is_integer());
+        let share = if continuous { rng.uniform() } else { 0.0 };
+        self.mutation
+            .reset(dimension, largest * (smallest / largest).powf(share));
     }
 
     /// Lists the neighbours of the current point in random order.
