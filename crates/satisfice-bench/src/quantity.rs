@@ -93,6 +93,17 @@ pub fn threads(text: &str) -> Result<usize, String> {
     }
 }
 
+/// A number of islands.
+///
+/// # Errors
+/// Any other text.
+pub fn islands(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(islands) if (1..=MOST_THREADS).contains(&islands) => Ok(islands),
+        _ => Err(format!("must be a whole number from 1 to {MOST_THREADS}")),
+    }
+}
+
 /// A number of edges, 0 included.
 ///
 /// # Errors

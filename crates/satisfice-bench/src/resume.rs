@@ -88,6 +88,7 @@ impl Saved {
             engine_settings: self.engine_settings,
             seed: self.seed,
             threads,
+            islands: 1, // of which no checkpoints are kept
             probes: self.probes,
             budget: self.budget.and_until(cancel),
             slices: self.slices,

@@ -3,8 +3,8 @@
 use core::ops::ControlFlow;
 
 use satisfice::{
-    Archive, Budget, Checkpoint, Completeness, Counts, Identity, Observer, Real, Report, SatisficingProblem,
-    Saving, Search, StopReason, TracePoint, engine,
+    Archive, Budget, Checkpoint, Completeness, Counts, Identity, Islands, Observer, Real, Report,
+    SatisficingProblem, Saving, Search, StopReason, TracePoint, engine,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -25,6 +25,8 @@ pub struct Request {
     pub seed: u64,
     /// Threads that evaluate, 0 for as many as there are cores.
     pub threads: usize,
+    /// Engines side by side that share their hits; 1 is a plain search.
+    pub islands: usize,
     /// Share of the evaluations spent on uniform probes, by which unseen hits are estimated, from 0 to 0.5; `None` leaves it
     /// to the engine.
     pub probes: Option<f64>,
@@ -44,6 +46,7 @@ impl Request {
             engine_settings: Vec::new(),
             seed: 0,
             threads: 1,
+            islands: 1,
             probes: None,
             budget,
             slices: 1,
@@ -93,16 +96,30 @@ where
         .engine_settings
         .iter()
         .map(|(name, text)| (name.as_str(), text.as_str()));
-    let engine = entry.build(settings)?;
-    let mut search = Search::new(engine).seed(request.seed).threads(request.threads);
-    if let Some(share) = request.probes {
-        search = search.probes(share);
-    }
+    let build = || entry.build(settings.clone());
     let mut reports = Vec::new();
-    while goes_on(&reports, request) {
-        let slice = reports.len() as u64;
-        let mut watcher = Watcher { slice, watch };
-        reports.push(search.run_observed(problem, &request.budget, &mut watcher)?);
+    if request.islands > 1 {
+        let mut islands = Islands::new(request.islands, build)?
+            .seed(request.seed)
+            .threads(request.threads);
+        if let Some(share) = request.probes {
+            islands = islands.probes(share);
+        }
+        while goes_on(&reports, request) {
+            let slice = reports.len() as u64;
+            let mut watcher = Watcher { slice, watch };
+            reports.push(islands.run_observed(problem, &request.budget, &mut watcher)?);
+        }
+    } else {
+        let mut search = Search::new(build()?).seed(request.seed).threads(request.threads);
+        if let Some(share) = request.probes {
+            search = search.probes(share);
+        }
+        while goes_on(&reports, request) {
+            let slice = reports.len() as u64;
+            let mut watcher = Watcher { slice, watch };
+            reports.push(search.run_observed(problem, &request.budget, &mut watcher)?);
+        }
     }
     let (all, trace, slices) = unite(&reports);
     write_up(problem, request, entry.parameters, &reports, &all, trace, slices)

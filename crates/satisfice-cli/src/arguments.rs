@@ -73,7 +73,8 @@ Examples:
       Parameters of the problem and of the engine, and the curve of hits against evaluations and time.
   satisfice run shell --time 50ms --slices 10 --threads 0
       Ten time slices of 50 ms, each warm from the hits of the one before, on all cores.
-
+  satisfice run falsification --islands 8 --threads 0 --time 5s
+      Eight engines that share their hits, on all cores.
   satisfice run arm --time 1h --checkpoint arm.json
   satisfice run arm --resume arm.json --checkpoint arm.json
       A long run that Ctrl-C or a power cut does not lose: resumed, it finds what it would have found without interruption.
@@ -98,6 +99,12 @@ pub(crate) struct RunArguments {
     /// Number of time slices, each with the whole budget and warm from the hits of the one before [default: 1].
     #[arg(long, value_name = "K", value_parser = quantity::count, allow_hyphen_values = true)]
     pub(crate) slices: Option<u64>,
+
+    /// Engines side by side, each with its share of the budget, which share their hits: for a fitness so cheap that one engine
+    /// cannot keep several threads busy. The number of islands is part of the search; that of threads is not.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::islands, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["checkpoint", "resume"])]
+    pub(crate) islands: usize,
 
     /// Keep a checkpoint of the run in this file: at the beginning, every few seconds, at Ctrl-C and at the end.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -1,3 +1,5 @@
 //! Times, counts and settings as they are written on a command line.
 
-pub(crate) use satisfice_bench::quantity::{count, positive, seed, setting, share, threads, time, width};
+pub(crate) use satisfice_bench::quantity::{
+    count, islands, positive, seed, setting, share, threads, time, width,
+};

@@ -29,6 +29,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
             let engine = arguments.engine.as_deref().unwrap_or(DEFAULT_ENGINE);
             let mut request = arguments.search.request(engine, &cancel)?;
             request.slices = arguments.slices.unwrap_or(1);
+            request.islands = arguments.islands;
             request
         }
     };

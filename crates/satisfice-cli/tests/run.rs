@@ -65,6 +65,8 @@ fn mistakes_are_told_in_one_line() {
         "run teapots --probes 0.9",
         "run teapots --threads many",
         "run teapots --threads 100000",
+        "run teapots --islands 0",
+        "run teapots --islands 2 --checkpoint saved.json",
         "run teapots --plot hits.pdf",
         "run teapots --json no/such/folder/report.json",
         "run teapots --json src",
@@ -140,6 +142,19 @@ fn a_report_repeats_itself_on_any_number_of_threads() {
     }
     let other = report(&format!("{} --json -", TEAPOTS.replace("--seed 1", "--seed 2")));
     assert!(without_times(other) != once);
+}
+
+#[test]
+fn islands_find_the_same_on_any_number_of_threads() {
+    let run = |more: &str| {
+        let arguments = "run falsification --islands 4 --evaluations 30000 --seed 1 --json -";
+        report(&format!("{arguments} {more}"))
+    };
+    let one = run("");
+    assert_eq!(one["engine_parameters"]["islands"], "4");
+    assert_eq!(one["evaluations"], 30_000);
+    assert!(one["hits"].as_u64().unwrap() > 3_000, "{}", one["hits"]);
+    assert_eq!(without_times(one), without_times(run("--threads 2")));
 }
 
 #[test]
