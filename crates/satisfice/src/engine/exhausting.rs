@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_cluster_that_is_touched_is_found_whole() {
-        // 1,257 lattice points of a disc in a million: uniform sampling alone sees some of them.
+        // 1,245 lattice points of a disc in a million: uniform sampling alone sees some of them.
         let problem = from_fn(Space::lattice(2, 1000).unwrap(), 20.0, |x: &[f64]| {
             (x[0] - 700.0).hypot(x[1] - 300.0)
         });
