@@ -35,7 +35,7 @@ fn threads_change_nothing() {
                     .hits()
                     .map(|hit| (hit.solution.coordinates.clone(), hit.evaluation))
                     .collect();
-                seen.push((hits, report.counts, report.unseen.clone()));
+                seen.push((hits, report.counts, report.unseen));
             }
             seen
         };
