@@ -91,6 +91,23 @@ fn puma_pose(q: &[f64]) -> Matrix {
     ])
 }
 
+/// A long flat valley by a singular posture: steps of Gauss and Newton lead nowhere there, damped ones to a posture.
+#[test]
+fn puma_is_polished_from_a_flat_valley() {
+    let puma = Puma::new(0.02, 0.1).unwrap();
+    let start = [
+        0.3455667895502276,
+        1.17862266004019,
+        -1.523819513514828,
+        -2.470561846239462,
+        -1.0949328789059567,
+        2.9480088150525643,
+    ];
+    assert!(puma.fitness(&puma.decode(&start)) < puma.threshold());
+    let end = puma.canonical(puma.decode(&start));
+    assert!(puma.fitness(&end) < 1e-18, "{} at {end:?}", puma.fitness(&end));
+}
+
 #[test]
 fn puma_has_eight_postures() {
     let puma = Puma::new(0.02, 0.1).unwrap();

@@ -7,29 +7,46 @@ use crate::number::Dual;
 
 /// From inside a sound threshold ten steps are plenty; more only matter at near-singular roots.
 const STEPS: usize = 60;
+/// Damped steps are shorter.
+const DAMPED_STEPS: usize = 1000;
 /// A step is halved at most this often.
 const HALVINGS: usize = 20;
+/// Where a step of Gauss and Newton leads nowhere, near a singular posture: the first damping of Levenberg 1944, and the largest.
+const DAMPING: (f64, f64) = (1e-4, 1.0);
 
 /// The root near `start`: as close as f64 allows, with a residual not above that of `start`, inside the box. `None` where
 /// the Jacobian is singular or the iteration leaves the box.
 pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
     let before = equations.fitness(start);
     let (mut best, mut least) = (start.to_vec(), before);
-    for _ in 0..STEPS {
+    let can_damp = equations.residuals > start.len();
+    let mut damping = 0.0;
+    for _ in 0..if can_damp { DAMPED_STEPS } else { STEPS } {
         if least == 0.0 {
             break;
         }
-        let step = newton_step(equations, &best)?;
+        let step = newton_step(equations, &best, damping);
+        if step.is_none() && !can_damp {
+            return None;
+        }
         let mut share = 1.0;
-        let better = (0..HALVINGS).find_map(|_| {
-            let next: Vec<f64> = best.iter().zip(step).map(|(x, step)| x - share * step).collect();
-            let here = equations.fitness(&next);
-            share *= 0.5;
-            (here < least).then_some((next, here))
+        let better = step.and_then(|step| {
+            (0..HALVINGS).find_map(|_| {
+                let next: Vec<f64> = best.iter().zip(step).map(|(x, step)| x - share * step).collect();
+                let here = equations.fitness(&next);
+                share *= 0.5;
+                (here < least).then_some((next, here))
+            })
         });
-        // No step makes it better: rounding is all that is left.
-        let Some((next, here)) = better else { break };
-        (best, least) = (next, here);
+        match better {
+            Some((next, here)) => {
+                (best, least) = (next, here);
+                damping = if damping > DAMPING.0 { damping / 4.0 } else { 0.0 };
+            }
+            None if can_damp && damping < DAMPING.1 => damping = (4.0 * damping).max(DAMPING.0),
+            // No step makes it better: rounding is all that is left.
+            None => break,
+        }
     }
     if equations.space.boundary() == Boundary::Wrap {
         equations.space.keep_inside(&mut best);
@@ -46,8 +63,8 @@ pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// J(x)^-1 e(x), by Gaussian elimination with partial pivoting on the exact derivatives. With more equations than unknowns
-/// the step of Gauss and Newton, from J^T J.
-fn newton_step(equations: &Equations, x: &[f64]) -> Option<[f64; UNKNOWNS]> {
+/// the step of Gauss and Newton, from J^T J, to whose diagonal `damping` is added.
+fn newton_step(equations: &Equations, x: &[f64], damping: f64) -> Option<[f64; UNKNOWNS]> {
     let (n, m) = (x.len(), equations.residuals);
     let mut matrix = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
     let mut input = [Dual {
@@ -73,6 +90,7 @@ fn newton_step(equations: &Equations, x: &[f64]) -> Option<[f64; UNKNOWNS]> {
             for (j, entry) in row.iter_mut().enumerate().take(n + 1) {
                 *entry = tall[..m].iter().map(|row| row[i] * row[j]).sum();
             }
+            row[i] += damping;
         }
     }
     for column in 0..n {
