@@ -144,7 +144,7 @@ impl Record {
                 seconds: seconds + found.seconds,
                 ..found
             }));
-        add(&mut self.counts, &next.counts);
+        self.counts += next.counts;
         self.elapsed_seconds += next.elapsed_seconds;
         self.overshoot_seconds += next.overshoot_seconds;
         self.stop_reason = next.stop_reason;
@@ -168,18 +168,6 @@ impl Record {
         let reference = self.reference_hits.zip(next.reference_hits).map(|(a, b)| a + b);
         self.set_reference(reference);
     }
-}
-
-/// Adds counts to counts.
-pub(crate) fn add(sum: &mut Counts, counts: &Counts) {
-    sum.evaluations += counts.evaluations;
-    sum.fitness_calls += counts.fitness_calls;
-    sum.duplicates += counts.duplicates;
-    sum.non_finite += counts.non_finite;
-    sum.verified += counts.verified;
-    sum.probes += counts.probes;
-    sum.neighbour_calls += counts.neighbour_calls;
-    sum.bound_calls += counts.bound_calls;
 }
 
 /// `hits / reference`, `None` for a reference of 0.

@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
-use crate::record::{Limits, Record, Slice, Solution, add};
+use crate::record::{Limits, Record, Slice, Solution};
 use crate::resume::{Keeping, Saved, SavedRun};
 use crate::settings::Settings;
 
@@ -97,29 +97,26 @@ where
         .iter()
         .map(|(name, text)| (name.as_str(), text.as_str()));
     let build = || entry.build(settings.clone());
-    let mut reports = Vec::new();
-    if request.islands > 1 {
+    type Run<'a, T> = dyn FnMut(&mut Watcher<'_>) -> Result<Report<T>, satisfice::Error> + 'a;
+    let mut run: Box<Run<'_, P::Solution>> = if request.islands > 1 {
         let mut islands = Islands::new(request.islands, build)?
             .seed(request.seed)
             .threads(request.threads);
         if let Some(share) = request.probes {
             islands = islands.probes(share);
         }
-        while goes_on(&reports, request) {
-            let slice = reports.len() as u64;
-            let mut watcher = Watcher { slice, watch };
-            reports.push(islands.run_observed(problem, &request.budget, &mut watcher)?);
-        }
+        Box::new(move |watcher| islands.run_observed(problem, &request.budget, watcher))
     } else {
         let mut search = Search::new(build()?).seed(request.seed).threads(request.threads);
         if let Some(share) = request.probes {
             search = search.probes(share);
         }
-        while goes_on(&reports, request) {
-            let slice = reports.len() as u64;
-            let mut watcher = Watcher { slice, watch };
-            reports.push(search.run_observed(problem, &request.budget, &mut watcher)?);
-        }
+        Box::new(move |watcher| search.run_observed(problem, &request.budget, watcher))
+    };
+    let mut reports = Vec::new();
+    while goes_on(&reports, request) {
+        let slice = reports.len() as u64;
+        reports.push(run(&mut Watcher { slice, watch })?);
     }
     let (all, trace, slices) = unite(&reports);
     write_up(problem, request, entry.parameters, &reports, &all, trace, slices)
@@ -264,7 +261,7 @@ fn unite<T: Identity + Clone>(reports: &[Report<T>]) -> (Archive<T>, Vec<TracePo
 
 fn sum(slices: &[Slice]) -> Counts {
     slices.iter().fold(Counts::default(), |mut sum, slice| {
-        add(&mut sum, &slice.counts);
+        sum += slice.counts;
         sum
     })
 }

@@ -53,6 +53,20 @@ pub struct Counts {
     pub bound_calls: u64,
 }
 
+/// Counts of several slices, or of several searches.
+impl core::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.evaluations += other.evaluations;
+        self.fitness_calls += other.fitness_calls;
+        self.duplicates += other.duplicates;
+        self.non_finite += other.non_finite;
+        self.verified += other.verified;
+        self.probes += other.probes;
+        self.neighbour_calls += other.neighbour_calls;
+        self.bound_calls += other.bound_calls;
+    }
+}
+
 /// A name with parameters as text.
 pub use crate::problem::Description as Described;
 

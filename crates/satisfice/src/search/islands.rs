@@ -268,7 +268,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Islands<S, T> {
         for island in &mut self.islands {
             if island.slice.is_some() {
                 let report = island.finish(problem)?;
-                add(&mut sum, &report.counts);
+                sum += report.counts;
                 reasons.push(report.stop_reason);
             }
         }
@@ -352,19 +352,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
 fn total<S, T>(islands: &[Search<S, T>]) -> Counts {
     let slices = islands.iter().filter_map(|island| island.slice.as_ref());
     slices.fold(Counts::default(), |mut sum, slice| {
-        add(&mut sum, &slice.ledger.counts);
+        sum += slice.ledger.counts;
         sum
     })
-}
-
-fn add(sum: &mut Counts, counts: &Counts) {
-    sum.evaluations += counts.evaluations;
-    sum.fitness_calls += counts.fitness_calls;
-    sum.duplicates += counts.duplicates;
-    sum.non_finite += counts.non_finite;
-    sum.verified += counts.verified;
-    sum.neighbour_calls += counts.neighbour_calls;
-    sum.bound_calls += counts.bound_calls;
 }
 
 /// This share of so many evaluations, rounded up.
