@@ -139,13 +139,14 @@ impl<T: Identity> Archive<T> {
         solution.visit_keys(&mut |key| self.may_hold(key) && self.find(key, solution).is_some())
     }
 
-    /// [`Archive::contains`], where hit `recent` is looked at first and left for the next time: whoever finds a known hit
-    /// again often does so many times.
+    /// Whether a solution is the same as the hit at `recent`: whoever finds a known hit again often does so many times.
     #[inline]
+    pub(crate) fn is_again(&self, solution: &T, recent: usize) -> bool {
+        self.solutions.get(recent).is_some_and(|hit| hit.same(solution)) && !self.is_hidden(recent)
+    }
+
+    /// [`Archive::contains`]; where it does, the hit is left in `recent`.
     pub(crate) fn contains_again(&self, solution: &T, recent: &mut usize) -> bool {
-        if self.solutions.get(*recent).is_some_and(|hit| hit.same(solution)) && !self.is_hidden(*recent) {
-            return true;
-        }
         let mut found = None;
         solution.visit_keys(&mut |key| {
             if self.may_hold(key) {

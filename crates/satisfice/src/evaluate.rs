@@ -420,6 +420,9 @@ impl Ledger {
             self.counts.non_finite += 1;
             Outcome::NonFinite
         } else if fitness < threshold {
+            if archive.is_again(solution, self.recent) {
+                return self.known(fitness, rules);
+            }
             self.welcome(problem, solution, fitness, rules, archive, observer)
         } else {
             Outcome::Miss(fitness)
@@ -437,16 +440,8 @@ impl Ledger {
         archive: &mut Archive<P::Solution>,
         observer: &mut dyn Observer<P::Solution>,
     ) -> Outcome<P::Scalar> {
-        let again = |counts: &mut Counts| {
-            counts.duplicates += 1;
-            if rules.deletes {
-                Outcome::Deleted
-            } else {
-                Outcome::Known(fitness)
-            }
-        };
         if archive.contains_again(solution, &mut self.recent) {
-            return again(&mut self.counts);
+            return self.known(fitness, rules);
         }
         let solution = problem.canonical(solution.clone());
         let seconds = self.clock.elapsed().as_secs_f64();
@@ -455,9 +450,20 @@ impl Ledger {
             // News to the engine only.
             Entered::Revealed => self.counts.duplicates += 1,
             // Its representative is known.
-            Entered::Known => return again(&mut self.counts),
+            Entered::Known => return self.known(fitness, rules),
         }
         Outcome::Hit(fitness)
+    }
+
+    /// What has been found before.
+    #[inline]
+    fn known<S>(&mut self, fitness: S, rules: Rules) -> Outcome<S> {
+        self.counts.duplicates += 1;
+        if rules.deletes {
+            Outcome::Deleted
+        } else {
+            Outcome::Known(fitness)
+        }
     }
 
     /// Takes over what others have done so far: their counts, and time that has passed meanwhile.

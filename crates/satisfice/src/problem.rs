@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::identity::{Identity, Located};
 use crate::parameter::{Parameter, Values};
-use crate::scalar::Real;
+use crate::scalar::{Real, copy_row};
 use crate::space::{Region, Space};
 
 /// A problem whose answers are all candidates with F(x) < delta.
@@ -204,9 +204,15 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     fn decode(&self, values: &[S]) -> Located<S> {
         Located::new(values, self.separation)
     }
+    #[inline]
     fn decode_into(&self, values: &[S], solution: &mut Located<S>) {
-        solution.coordinates.clear();
-        solution.coordinates.extend_from_slice(values);
+        if solution.coordinates.len() == values.len() {
+            copy_row(&mut solution.coordinates, values);
+        } else {
+            solution.coordinates.clear();
+            solution.coordinates.extend_from_slice(values);
+        }
+        solution.separation = self.separation;
     }
     #[inline]
     fn fitness(&self, solution: &Located<S>) -> S {

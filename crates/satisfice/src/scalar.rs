@@ -136,3 +136,14 @@ impl Real for f64 {
         (entry.build_f64)(values)
     }
 }
+
+/// Copies a row of coordinates onto one of the same length. Short ones number by number: a call of the library's costs more
+/// than that.
+#[inline]
+pub(crate) fn copy_row<S: Copy>(to: &mut [S], from: &[S]) {
+    match (to, from) {
+        ([a, b], [x, y]) => (*a, *b) = (*x, *y),
+        ([a, b, c], [x, y, z]) => (*a, *b, *c) = (*x, *y, *z),
+        (to, from) => to.copy_from_slice(from),
+    }
+}

@@ -284,10 +284,12 @@ impl<S: Real> Space<S> {
     /// Brings a position inside by the boundary rule; one that is inside stays as it is. Cost: O(D).
     #[inline]
     pub fn keep_inside(&self, position: &mut [S]) {
-        for (axis, x) in self.axes.iter().zip(position) {
-            if !(axis.lower <= *x && *x <= axis.end()) {
-                *x = bring_inside(*x, axis.lower, axis.end(), self.boundary);
-            }
+        let axes = self.axes.iter().zip(position);
+        // Which it is, is asked once.
+        if self.any_integer {
+            axes.for_each(|(axis, x)| hold(x, axis.lower, axis.end(), self.boundary));
+        } else {
+            axes.for_each(|(axis, x)| hold(x, axis.lower, axis.upper, self.boundary));
         }
     }
 
@@ -301,9 +303,7 @@ impl<S: Real> Space<S> {
             } else {
                 axis.upper
             };
-            if !(axis.lower <= *x && *x <= end) {
-                *x = bring_inside(*x, axis.lower, end, self.boundary);
-            }
+            hold(x, axis.lower, end, self.boundary);
             *value = if is_integer {
                 let whole = floor(*x);
                 if whole < axis.upper { whole } else { axis.upper }
@@ -338,6 +338,14 @@ impl<S: Real> Space<S> {
             lower: self.axes.iter().map(Axis::lower).collect(),
             upper: self.axes.iter().map(Axis::upper).collect(),
         }
+    }
+}
+
+/// Brings `x` into `[lower, end]` if it is not there.
+#[inline(always)]
+fn hold<S: Real>(x: &mut S, lower: S, end: S, boundary: Boundary) {
+    if !(lower <= *x && *x <= end) {
+        *x = bring_inside(*x, lower, end, boundary);
     }
 }
 

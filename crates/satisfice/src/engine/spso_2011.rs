@@ -2,6 +2,7 @@
 
 use super::informants::Informants;
 use super::swarm::{self, Attractor, Swarm};
+use super::velocity_swarm::drop_subnormals;
 use super::{Ask, Engine, Origin, WarmStart};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -139,6 +140,7 @@ impl<S: Real> Engine<S> for Spso2011<S> {
                 self.informants.draw(rng);
             }
             self.least_before = least;
+            drop_subnormals(&mut self.velocities);
         }
         let axes = context.space().axes();
         let confined = context.space().boundary() != Boundary::Wrap;

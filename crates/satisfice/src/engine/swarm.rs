@@ -8,7 +8,7 @@ use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::error::Error;
 use crate::parameter::{Parameter, Values};
-use crate::scalar::Real;
+use crate::scalar::{Real, copy_row};
 use crate::seed::SearchRng;
 use crate::state::Part;
 
@@ -364,14 +364,4 @@ impl<S: Real> Swarm<S> {
 
 impl<S: Real> Part for Swarm<S> {
     crate::saved_fields!(dimension, positions, bests, fitness, leader, latest_hit, turn, started; check);
-}
-
-/// Copies a row of coordinates. Short ones number by number: a call of the library's costs more than that.
-#[inline]
-fn copy_row<S: Copy>(to: &mut [S], from: &[S]) {
-    match (to, from) {
-        ([a, b], [x, y]) => (*a, *b) = (*x, *y),
-        ([a, b, c], [x, y, z]) => (*a, *b, *c) = (*x, *y, *z),
-        (to, from) => to.copy_from_slice(from),
-    }
 }
