@@ -3,6 +3,7 @@
 mod bandit;
 mod climbers;
 mod moves;
+mod near_misses;
 mod neighbourhoods;
 mod one_plus_one;
 mod populations;
@@ -13,6 +14,7 @@ mod visited;
 
 use bandit::{Arm, draw};
 use climbers::Climbers;
+use near_misses::NearMisses;
 use neighbourhoods::Neighbourhoods;
 use populations::Populations;
 use recombination::recombine;
@@ -66,6 +68,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
             "learning",
             "recombination",
             "neighbours",
+            "near-misses",
         ],
     ),
 ];
@@ -89,6 +92,8 @@ enum Source {
     Member,
     /// A neighbour of a hit, by the problem's own word.
     Neighbour,
+    /// What just missed in the slice before.
+    NearMiss,
 }
 
 /// A candidate's source, and which swarm, climber, step or trial of it.
@@ -100,7 +105,7 @@ const TRIAL: usize = 3;
 const CROSS: usize = 4;
 const MEMBER: usize = 5;
 
-/// The arm of a source; steps and neighbours keep their own books.
+/// The arm of a source; steps, neighbours and near misses keep their own books.
 fn arm_of(source: Source) -> Option<usize> {
     match source {
         Source::Uniform => Some(0),
@@ -109,7 +114,7 @@ fn arm_of(source: Source) -> Option<usize> {
         Source::Trial => Some(TRIAL),
         Source::Cross => Some(CROSS),
         Source::Member => Some(MEMBER),
-        Source::Step | Source::Neighbour => None,
+        Source::Step | Source::Neighbour | Source::NearMiss => None,
     }
 }
 
@@ -118,8 +123,10 @@ impl Saved for Source {
         (*self as u64).save(state);
     }
     fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        use Source::{Climber, Cross, Member, Neighbour, Step, Swarm, Trial, Uniform};
-        let all = [Uniform, Swarm, Climber, Step, Trial, Cross, Member, Neighbour];
+        use Source::{Climber, Cross, Member, NearMiss, Neighbour, Step, Swarm, Trial, Uniform};
+        let all = [
+            Uniform, Swarm, Climber, Step, Trial, Cross, Member, Neighbour, NearMiss,
+        ];
         let word: usize = from.read()?;
         all.get(word)
             .copied()
@@ -137,7 +144,8 @@ impl Saved for Source {
 ///   repetitions and manifolds of hits followed by those that are learned from differences of hits;
 /// - recombinations of two hits, which find the rest of a product of sets of coordinates; local searches start at those that
 ///   just miss;
-/// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses.
+/// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses;
+/// - in a slice that follows another: what just missed there, best first, because a problem that moves makes hits of these.
 ///
 /// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
 #[derive(Debug)]
@@ -156,6 +164,7 @@ pub(super) struct Portfolio<S> {
     populations: Populations<S>,
     steps: Option<Translations<S>>,
     neighbourhoods: Neighbourhoods<S>,
+    near_misses: NearMisses<S>,
     tags: Vec<Tag>,
     trials: Vec<S>,
     position: Vec<S>,
@@ -177,6 +186,7 @@ pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Erro
         populations: Populations::new(),
         steps: None,
         neighbourhoods: Neighbourhoods::default(),
+        near_misses: NearMisses::new(),
         tags: Vec::new(),
         trials: Vec::new(),
         position: Vec::new(),
@@ -220,6 +230,11 @@ impl<S: Real> Portfolio<S> {
         }
         if let Some((good, all)) = self.neighbourhoods.posterior() {
             offer(draw(rng, good, all), (Source::Neighbour, 0));
+        }
+        if uses("near-misses")
+            && let Some((good, all)) = self.near_misses.posterior()
+        {
+            offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
         best.1
     }
@@ -313,6 +328,16 @@ impl<S: Real> Portfolio<S> {
                 out.push(&self.position);
                 Some(0)
             }
+            Source::NearMiss => {
+                if !self.near_misses.propose(&mut self.position) {
+                    return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                Some(0)
+            }
         };
         match proposed {
             Some(index) => self.tags.push((source, index)),
@@ -379,6 +404,9 @@ impl<S: Real> Engine<S> for Portfolio<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
         let space = context.space();
         let dimension = space.dimension();
+        // A space of another dimension is another problem.
+        let follows = self.position.len() == dimension;
+        self.near_misses.begin(dimension, follows);
         self.position = vec![S::zero(); dimension];
         self.hits.clear();
         let lattice = space.axes().iter().all(crate::Axis::is_integer);
@@ -439,6 +467,8 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                     .zip(position)
                     .map(|(axis, &x)| axis.position(axis.value(x)));
                 self.hits.extend(centre);
+            } else if let Outcome::Miss(fitness) = *outcome {
+                self.near_misses.keep(position, fitness);
             }
             if let Some(visited) = &mut self.visited {
                 visited.insert(space, position);
@@ -460,6 +490,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                     }
                 }
                 Source::Neighbour => self.neighbourhoods.book(outcome.fitness(), outcome.is_hit()),
+                Source::NearMiss => self.near_misses.book(outcome.is_hit()),
                 // Hits are inexact on continuous axes: what was put together from two of them may just miss a third one.
                 Source::Cross => {
                     if let (None, Outcome::Miss(fitness)) = (&self.visited, outcome) {
@@ -492,6 +523,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
         self.populations.save(state);
         self.steps.save(state);
         self.neighbourhoods.save(state);
+        self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
     }
@@ -505,8 +537,12 @@ impl<S: Real> Engine<S> for Portfolio<S> {
         self.populations.restore(from)?;
         self.steps = from.read()?;
         self.neighbourhoods = from.read()?;
+        self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
+        if !self.near_misses.fit(self.position.len()) {
+            return Err(Error::State("its near misses are of another space".to_owned()));
+        }
         Ok(())
     }
 }
@@ -525,7 +561,7 @@ impl<S: Real> Portfolio<S> {
         }
         for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
             let is_near = match origin {
-                Origin::Engine => self.tags[i].0 == Source::Neighbour,
+                Origin::Engine => matches!(self.tags[i].0, Source::Neighbour | Source::NearMiss),
                 Origin::WarmStart | Origin::Exhaustion => true,
             };
             match *outcome {

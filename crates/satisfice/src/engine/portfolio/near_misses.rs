@@ -1,0 +1,186 @@
+//! What just missed in the slice before: where a problem moves, most of its new hits were near misses.
+
+use crate::scalar::Real;
+
+/// At most so many are handed on to the next slice; while one runs, twice as many are kept.
+const MOST: usize = 8192;
+/// Past trials are halved at this number: the best are tried first, so that the yield falls all the time.
+const MEMORY: f64 = 128.0;
+
+/// Points that were evaluated and missed, with their fitness.
+#[derive(Debug, Clone, Default)]
+struct Misses<S> {
+    fitness: Vec<f64>,
+    positions: Vec<S>,
+}
+
+crate::saved_struct!(Misses<S: Real> { fitness, positions });
+
+impl<S: Real> Misses<S> {
+    fn push(&mut self, fitness: f64, position: &[S]) {
+        self.fitness.push(fitness);
+        self.positions.extend_from_slice(position);
+    }
+
+    fn row(&self, index: usize, dimension: usize) -> &[S] {
+        &self.positions[index * dimension..(index + 1) * dimension]
+    }
+
+    /// The best `count`, best first; of equal ones the earlier.
+    fn best(&self, count: usize, dimension: usize) -> Self {
+        let mut order: Vec<usize> = (0..self.fitness.len()).collect();
+        let rank = |&a: &usize, &b: &usize| self.fitness[a].total_cmp(&self.fitness[b]).then(a.cmp(&b));
+        if count < order.len() {
+            order.select_nth_unstable_by(count, rank);
+            order.truncate(count);
+        }
+        order.sort_unstable_by(rank);
+        let mut best = Self::default();
+        for index in order {
+            best.push(self.fitness[index], self.row(index, dimension));
+        }
+        best
+    }
+}
+
+/// The near misses of the slice before, best first, and those of this one.
+#[derive(Debug, Clone)]
+pub(super) struct NearMisses<S> {
+    before: Misses<S>,
+    /// The next one of these.
+    cursor: usize,
+    now: Misses<S>,
+    /// What is not better than this is not kept.
+    bound: f64,
+    trials: f64,
+    hits: f64,
+}
+
+crate::saved_struct!(NearMisses<S: Real> { before, cursor, now, bound, trials, hits });
+
+impl<S: Real> NearMisses<S> {
+    pub(super) fn new() -> Self {
+        Self {
+            before: Misses::default(),
+            cursor: 0,
+            now: Misses::default(),
+            bound: f64::INFINITY,
+            trials: 0.0,
+            hits: 0.0,
+        }
+    }
+
+    /// Begins a slice in which what the last one has left is tried again; `follows`: whether there was one in this space.
+    pub(super) fn begin(&mut self, dimension: usize, follows: bool) {
+        let mut left = core::mem::take(&mut self.now);
+        if follows {
+            // What nobody came to try again is as good as it was.
+            for index in self.cursor..self.before.fitness.len() {
+                left.push(self.before.fitness[index], self.before.row(index, dimension));
+            }
+            self.before = left.best(MOST, dimension);
+        } else {
+            self.before = Misses::default();
+        }
+        self.cursor = 0;
+        self.bound = f64::INFINITY;
+        (self.trials, self.hits) = (2.0, 1.0);
+    }
+
+    /// Whether restored lists belong to a space of so many axes.
+    pub(super) fn fit(&self, dimension: usize) -> bool {
+        [&self.before, &self.now]
+            .iter()
+            .all(|misses| Some(misses.positions.len()) == misses.fitness.len().checked_mul(dimension))
+    }
+
+    /// Rate of hits lately as `(hits, trials)`, if there is one to try.
+    pub(super) fn posterior(&self) -> Option<(f64, f64)> {
+        (self.cursor < self.before.fitness.len()).then_some((self.hits, self.trials))
+    }
+
+    /// Writes the next best; `false` when there is none.
+    pub(super) fn propose(&mut self, position: &mut [S]) -> bool {
+        if self.cursor >= self.before.fitness.len() {
+            return false;
+        }
+        position.copy_from_slice(self.before.row(self.cursor, position.len()));
+        self.cursor += 1;
+        true
+    }
+
+    /// Books one that was tried.
+    pub(super) fn book(&mut self, hit: bool) {
+        self.trials += 1.0;
+        self.hits += f64::from(u8::from(hit));
+        if self.trials > MEMORY {
+            self.trials *= 0.5;
+            self.hits *= 0.5;
+        }
+    }
+
+    /// Keeps a miss of any source, if it is among the best.
+    #[inline]
+    pub(super) fn keep(&mut self, position: &[S], fitness: S) {
+        let fitness = fitness.f64();
+        if fitness < self.bound {
+            self.now.push(fitness, position);
+            if self.now.fitness.len() >= 2 * MOST {
+                self.now = self.now.best(MOST, position.len());
+                self.bound = self.now.fitness[MOST - 1];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_come_first_and_what_was_not_tried_is_not_forgotten() {
+        let mut misses = NearMisses::<f64>::new();
+        misses.begin(1, false);
+        assert!(misses.posterior().is_none());
+        for x in [5.0, 2.0, 3.0, 2.0] {
+            misses.keep(&[10.0 * x], x);
+        }
+        misses.begin(1, true);
+        let mut x = [0.0];
+        assert!(misses.propose(&mut x));
+        misses.keep(&x, 4.0); // it has moved away
+        misses.begin(1, true);
+        let mut order = Vec::new();
+        while misses.propose(&mut x) {
+            order.push(x[0]);
+        }
+        assert_eq!(order, [20.0, 30.0, 20.0, 50.0]);
+    }
+
+    #[test]
+    fn only_so_many_are_kept_and_those_are_the_best() {
+        let mut misses = NearMisses::<f64>::new();
+        misses.begin(1, false);
+        let count = 5 * MOST;
+        for i in 0..count {
+            let f = ((i * 7919) % count) as f64;
+            misses.keep(&[f], f);
+        }
+        misses.begin(1, true);
+        let mut x = [0.0];
+        for want in 0..MOST {
+            assert!(misses.propose(&mut x));
+            assert!(x[0] == want as f64);
+        }
+        assert!(!misses.propose(&mut x));
+    }
+
+    #[test]
+    fn a_first_slice_has_none() {
+        let mut misses = NearMisses::<f64>::new();
+        misses.begin(2, false);
+        misses.keep(&[1.0, 2.0], 1.0);
+        misses.begin(1, false);
+        assert!(!misses.propose(&mut [0.0]));
+    }
+}
