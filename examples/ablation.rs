@@ -1,8 +1,9 @@
 //! Which parts of the default engine earn their place: each left out in turn, beside the engines that it has to beat; then the
-//! teapots in every vertex order, and teapots that move.
+//! teapots in every vertex order, teapots that move, and the composed functions of CEC2013 where their data are at hand.
 //!
 //! `cargo run --release --example ablation` prints the table and writes it to `docs/results/ablation.md` (or to the folder
 //! `SATISFICE_OUT`). Sixteen seeds, the same for every engine; with `SATISFICE_QUICK=1` two seeds and a tenth of the evaluations.
+//! `SATISFICE_CEC2013=DIR` names the folder with the data of that suite.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 use satisfice::{Budget, WarmStart};
 use satisfice_bench::moving_teapots::{MovingTeapots, Way};
 use satisfice_bench::{Instance, Request, catalogue};
+use satisfice_problems::Cec2013;
 
 /// The ten of the paper's notes and the teapots; then some that have another structure: many optima of a smooth function,
 /// isolated postures, combinatorial designs.
@@ -62,6 +64,21 @@ const ENGINES: [(&str, &str); 18] = [
 const WHOLE: usize = 8;
 /// Engines that it is compared with on the teapots.
 const BESIDE: [&str; 4] = ["portfolio", "descent-flood", "latest-hit-qpso", "random"];
+/// The same on teapots that move, where a slice follows another.
+const WARM: [(&str, &[(&str, &str)]); 5] = [
+    ("portfolio", &[]),
+    ("portfolio", &[("without", "near-misses")]),
+    ("descent-flood", &[]),
+    ("latest-hit-qpso", &[]),
+    ("random", &[]),
+];
+/// Composed functions of CEC2013, with the evaluations that the suite allows, and the engines that meet on them.
+const COMPOSED: std::ops::RangeInclusive<u64> = 11..=20;
+const ON_COMPOSED: [(&str, &str); 3] = [
+    ("portfolio", ""),
+    ("portfolio", "without=populations"),
+    ("descent-flood", ""),
+];
 /// Frames of the teapots that move, sizes a frame, evaluations a frame.
 const FRAMES: usize = 40;
 const STEP: f64 = 0.004;
@@ -90,6 +107,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut table = table(&names, &means, seeds, evaluations)?;
     table.push_str(&orders(seeds, &[evaluations / 10, evaluations])?);
     table.push_str(&moving(seeds, if quick { 4 } else { FRAMES })?);
+    table.push_str(&composed(seeds, quick)?);
     println!("{table}");
     let folder =
         std::env::var_os("SATISFICE_OUT").map_or_else(|| PathBuf::from("docs/results"), PathBuf::from);
@@ -203,10 +221,14 @@ fn moving(seeds: u64, frames: usize) -> Result<String, Box<dyn std::error::Error
          that were hits in the frame before. Verify: all of the last hits are evaluated anew before the engine goes on, which \
          takes as many evaluations as there were hits.\n\n| the teapot moves | hits a frame | kept |"
     );
-    for engine in BESIDE {
-        write!(text, " `{engine}`, cold | verify |")?;
+    for (engine, settings) in WARM {
+        let setting: String = settings
+            .iter()
+            .map(|(name, value)| format!(" {name}={value}"))
+            .collect();
+        write!(text, " `{engine}{setting}`, cold | verify |")?;
     }
-    write!(text, "\n|---|---|---|{}", "---|---|".repeat(BESIDE.len()))?;
+    write!(text, "\n|---|---|---|{}", "---|---|".repeat(WARM.len()))?;
     for (name, way) in [("past the other", Way::Past), ("towards it", Way::Towards)] {
         let scene = MovingTeapots::new(frames, STEP, way)?;
         let hits = || (0..frames).map(|frame| scene.hits(frame));
@@ -218,12 +240,52 @@ fn moving(seeds: u64, frames: usize) -> Result<String, Box<dyn std::error::Error
             hits().max().unwrap_or(0),
             100.0 * kept
         )?;
-        for engine in BESIDE {
+        for engine in WARM {
             for rule in [WarmStart::Cold, WarmStart::Verify] {
                 let recalls = scene.recalls(engine, rule, PER_FRAME, seeds)?;
                 write!(text, " {:.1} |", recalls.iter().sum::<f64>() / frames as f64)?;
             }
         }
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+/// Optima of the composed functions of CEC2013, whose shifts and rotations are the suite's own: from the folder
+/// `SATISFICE_CEC2013`, if there is one.
+fn composed(seeds: u64, quick: bool) -> Result<String, Box<dyn std::error::Error>> {
+    let mut text = format!(
+        "\n## Composed functions of CEC2013\n\nMean optima of {seeds} seeds within the suite's evaluations, found at an accuracy of \
+         0.0001. The suite's data come from the folder `SATISFICE_CEC2013`.\n"
+    );
+    let Some(data) = std::env::var_os("SATISFICE_CEC2013") else {
+        text.push_str("\nNot measured: no such folder was named.\n");
+        return Ok(text);
+    };
+    let data = data.to_string_lossy();
+    text.push_str("\n| function (optima) |");
+    for (engine, setting) in ON_COMPOSED {
+        write!(text, " `{}` |", format!("{engine} {setting}").trim_end())?;
+    }
+    write!(text, "\n|---|{}", "---|".repeat(ON_COMPOSED.len()))?;
+    for function in COMPOSED {
+        let problem = Cec2013::new(usize::try_from(function)?, 1e-4, &data)?;
+        let evaluations = if quick { 10_000 } else { problem.max_evaluations() };
+        let number = function.to_string();
+        let instance = catalogue::find("cec2013")?.build([("problem", number.as_str()), ("data", &data)])?;
+        write!(
+            text,
+            "\n| {function} ({}) |",
+            instance.reference_hits().unwrap_or(0)
+        )?;
+        for engine in ON_COMPOSED {
+            write!(
+                text,
+                " {:.2} |",
+                mean_hits(instance.as_ref(), engine, seeds, evaluations)?
+            )?;
+        }
+        eprintln!("composed function {function} done");
     }
     text.push('\n');
     Ok(text)

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for name in ["latest-hit-qpso", "descent-flood", "portfolio"] {
         let mut recalls = Vec::new();
         for (rule, _) in RULES {
-            recalls.push(scene.recalls(name, rule, EVALUATIONS, seeds)?);
+            recalls.push(scene.recalls((name, &[]), rule, EVALUATIONS, seeds)?);
         }
         println!(
             "{name}\n  frame   hits   kept {:>10} {:>15} {:>10}",

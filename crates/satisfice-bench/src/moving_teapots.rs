@@ -88,21 +88,23 @@ impl MovingTeapots {
         both as f64 / self.hits[frame].len().max(1) as f64
     }
 
-    /// Mean recall of every frame, in percent, over the seeds 1 to `seeds`: one search each, one slice of so many
+    /// Mean recall of every frame by an engine with these settings, in percent, over the seeds 1 to `seeds`: one search each, one slice of so many
     /// evaluations a frame.
     ///
     /// # Errors
     /// As [`Search::run`], and for an engine that finds what is no hit.
     pub fn recalls(
         &self,
-        engine: &str,
+        (engine, settings): (&str, &[(&str, &str)]),
         rule: WarmStart,
         evaluations: u64,
         seeds: u64,
     ) -> Result<Vec<f64>, Error> {
         let mut recalls = vec![0.0; self.frames.len()];
         for seed in 1..=seeds {
-            let mut search = Search::new(engine::build(engine)?).seed(seed).warm_start(rule);
+            let mut search = Search::new(engine::find(engine)?.build(settings.iter().copied())?)
+                .seed(seed)
+                .warm_start(rule);
             for (frame, problem) in self.frames.iter().enumerate() {
                 let report = search.run(problem, &Budget::evaluations(evaluations))?;
                 if let Some(hit) = report.hits().find(|hit| !self.hits[frame].contains(hit.solution)) {

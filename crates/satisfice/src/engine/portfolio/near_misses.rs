@@ -70,7 +70,7 @@ impl<S: Real> NearMisses<S> {
         }
     }
 
-    /// Begins a slice in which what the last one has left is tried again; `follows`: whether there was one in this space.
+    /// Begins a slice in which what the last one has left is tried again; `follows`: whether there was one.
     pub(super) fn begin(&mut self, dimension: usize, follows: bool) {
         let mut left = core::mem::take(&mut self.now);
         if follows {
