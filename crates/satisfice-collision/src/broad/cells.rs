@@ -119,6 +119,8 @@ pub(crate) struct Sorted {
     pub(crate) id: Vec<u32>,
     /// One entry a cell and one for the end.
     pub(crate) start: Vec<u32>,
+    /// The cell of each point in its old order, so that it is computed once.
+    cell_of: Vec<u32>,
     grouped: Vec<Vec<Placed>>,
     offsets: Vec<Vec<u32>>,
 }
@@ -135,6 +137,7 @@ impl Sorted {
             axis.resize(n + PADDING, f32::INFINITY);
         }
         self.id.resize(n + PADDING, 0);
+        self.cell_of.resize(n, 0);
         self.start.clear();
         self.start.resize(total + 1, 0);
         self.start[total] = n as u32;
@@ -145,6 +148,7 @@ impl Sorted {
                 y,
                 z,
                 id: &mut self.id,
+                cell_of: &mut self.cell_of,
                 start: &mut self.start[..total],
                 base: 0,
                 first: 0,
@@ -200,6 +204,7 @@ impl Sorted {
             c: [x, y, z],
             id,
             start,
+            cell_of,
             grouped,
             offsets,
         } = self;
@@ -218,6 +223,7 @@ impl Sorted {
                     y: &mut slab.y[from..to],
                     z: &mut slab.z[from..to],
                     id: &mut slab.id[from..to],
+                    cell_of: &mut slab.cell_of[from..to],
                     start: &mut slab.start[cell..cell + cells.layer()],
                     base: (slab.base + from) as u32,
                     first: layer * cells.layer(),
@@ -230,7 +236,7 @@ impl Sorted {
             }
         };
         let (mut x, mut y, mut z, mut id) = (&mut x[..], &mut y[..], &mut z[..], &mut id[..]);
-        let mut start = &mut start[..];
+        let (mut start, mut cell_of) = (&mut start[..], &mut cell_of[..]);
         if threads < 2 {
             sort_layers(&mut Slab {
                 layers: 0..layers,
@@ -239,6 +245,7 @@ impl Sorted {
                 y,
                 z,
                 id,
+                cell_of,
                 start,
             });
             return;
@@ -260,6 +267,7 @@ impl Sorted {
                 y: y.split_off_mut(..points).unwrap_or_default(),
                 z: z.split_off_mut(..points).unwrap_or_default(),
                 id: id.split_off_mut(..points).unwrap_or_default(),
+                cell_of: cell_of.split_off_mut(..points).unwrap_or_default(),
                 start: start
                     .split_off_mut(..(last - first) * cells.layer())
                     .unwrap_or_default(),
@@ -280,6 +288,7 @@ struct Slab<'a> {
     y: &'a mut [f32],
     z: &'a mut [f32],
     id: &'a mut [u32],
+    cell_of: &'a mut [u32],
     start: &'a mut [u32],
 }
 
@@ -289,6 +298,8 @@ struct Group<'a> {
     y: &'a mut [f32],
     z: &'a mut [f32],
     id: &'a mut [u32],
+    /// Memory: a number for each point.
+    cell_of: &'a mut [u32],
     /// Zero on entry.
     start: &'a mut [u32],
     /// Points before the first of these cells.
@@ -302,19 +313,21 @@ impl Group<'_> {
     where
         I: DoubleEndedIterator<Item = &'p [Placed]> + Clone,
     {
-        for segment in segments.clone() {
-            for point in segment {
-                self.start[cells.index(&point.q) - self.first] += 1;
-            }
+        let points = segments.clone().flatten();
+        for (point, cell_of) in points.zip(self.cell_of.iter_mut()) {
+            let cell = cells.index(&point.q) - self.first;
+            *cell_of = cell as u32;
+            self.start[cell] += 1;
         }
         let mut end = 0;
         for start in self.start.iter_mut() {
             end += *start;
             *start = end;
         }
+        let mut left = self.cell_of.iter().rev();
         for segment in segments.rev() {
-            for point in segment.iter().rev() {
-                let start = &mut self.start[cells.index(&point.q) - self.first];
+            for (point, &cell) in segment.iter().rev().zip(&mut left) {
+                let start = &mut self.start[cell as usize];
                 *start -= 1;
                 let at = *start as usize;
                 self.x[at] = point.q[0];

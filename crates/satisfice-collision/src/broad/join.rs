@@ -57,13 +57,18 @@ impl Scratch {
         watch.ask(new)
     }
 
+    #[inline(always)]
     fn room(&mut self, len: usize) {
         if self.near_id.len() < len {
-            let len = len.next_power_of_two();
-            self.near_id.resize(len, 0);
-            for axis in &mut self.near {
-                axis.resize(len, f32::INFINITY);
-            }
+            self.grow(len.next_power_of_two());
+        }
+    }
+
+    #[cold]
+    fn grow(&mut self, len: usize) {
+        self.near_id.resize(len, 0);
+        for axis in &mut self.near {
+            axis.resize(len, f32::INFINITY);
         }
     }
 }
@@ -152,65 +157,51 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
         let cells = self.cells;
         let [columns, rows, _] = cells.count();
         let range = |k: usize| cells.cell(k, min[k])..cells.cell(k, max[k]) + 1;
-        let (xs, ys, zs) = (range(0), range(1), range(2));
-        let mut len = 0;
+        let (xs, ys, mut zs) = (range(0), range(1), range(2));
         if ONE_BODY {
-            len = self.append(lanes, own.clone(), 0, min, max);
+            zs.start = cell / (columns * rows);
         }
-        for z in if ONE_BODY {
-            cell / (columns * rows)..zs.end
-        } else {
-            zs
-        } {
+        let start = &self.b.start[..];
+        let points = |z: usize, y: usize| {
+            let row = (z * rows + y) * columns;
+            let (mut from, to) = (row + xs.start, row + xs.end);
+            if ONE_BODY {
+                from = from.max(cell + 1).min(to);
+            }
+            start[from] as usize..start[to] as usize
+        };
+        let mut most = own.len();
+        for z in zs.clone() {
             for y in ys.clone() {
-                let row = (z * rows + y) * columns;
-                let (mut from, to) = (row + xs.start, row + xs.end);
-                if ONE_BODY {
-                    from = from.max(cell + 1);
-                    if from >= to {
-                        continue;
-                    }
-                }
-                let range = self.b.start[from] as usize..self.b.start[to] as usize;
-                if !range.is_empty() {
-                    len = self.append(lanes, range, len, min, max);
-                }
+                most += points(z, y).len();
+            }
+        }
+        self.scratch.room(most + 16);
+        let Scratch {
+            near: [nx, ny, nz],
+            near_id,
+            ..
+        } = &mut *self.scratch;
+        let [x, y, z] = &self.b.c;
+        let mut copy = Copied {
+            from: [x, y, z],
+            from_id: &self.b.id,
+            to: [nx, ny, nz],
+            to_id: near_id,
+            len: 0,
+        };
+        if ONE_BODY {
+            copy.append(lanes, own.clone(), min, max);
+        }
+        for z in zs {
+            for y in ys.clone() {
+                copy.append(lanes, points(z, y), min, max);
             }
         }
         // what is left of the last eight must be no candidate
-        self.scratch.room(len + 8);
-        for axis in &mut self.scratch.near {
+        let len = copy.len;
+        for axis in copy.to {
             axis[len..len + 8].fill(f32::INFINITY);
-        }
-        len
-    }
-
-    /// Appends those of the sorted points `range` of b that lie inside the box, eight at a time.
-    #[inline(always)]
-    fn append<L: Lanes>(
-        &mut self,
-        lanes: L,
-        range: Range<usize>,
-        mut len: usize,
-        min: [f32; 3],
-        max: [f32; 3],
-    ) -> usize {
-        self.scratch.room(len + range.len() + 16);
-        let [nx, ny, nz] = &mut self.scratch.near;
-        let ids = &mut self.scratch.near_id;
-        let [x, y, z] = &self.b.c;
-        let mut at = range.start;
-        while at < range.end {
-            let (x, y, z) = (eight(x, at), eight(y, at), eight(z, at));
-            let rest = range.end - at;
-            let valid = if rest < 8 { (1 << rest) - 1 } else { 0xff };
-            let mask = lanes.inside([x, y, z], min, max) & valid;
-            lanes.compact(x, mask, eight_mut(nx, len));
-            lanes.compact(y, mask, eight_mut(ny, len));
-            lanes.compact(z, mask, eight_mut(nz, len));
-            lanes.compact_ids(id_eight(&self.b.id, at), mask, id_eight_mut(ids, len));
-            len += mask.count_ones() as usize;
-            at += 8;
         }
         len
     }
@@ -258,6 +249,41 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
                 found.push(self.packing.pack(a, b));
             }
             base += 64;
+        }
+    }
+}
+
+/// Candidates being copied side by side. All are slices, whose places the compiler can keep in registers.
+struct Copied<'a> {
+    from: [&'a [f32]; 3],
+    from_id: &'a [u32],
+    to: [&'a mut [f32]; 3],
+    to_id: &'a mut [u32],
+    len: usize,
+}
+
+impl Copied<'_> {
+    /// Appends those of the sorted points `range` that lie inside the box, eight at a time.
+    #[inline(always)]
+    fn append<L: Lanes>(&mut self, lanes: L, range: Range<usize>, min: [f32; 3], max: [f32; 3]) {
+        let [x, y, z] = self.from;
+        let mut at = range.start;
+        while at < range.end {
+            let (x, y, z) = (eight(x, at), eight(y, at), eight(z, at));
+            let rest = range.end - at;
+            let valid = if rest < 8 { (1 << rest) - 1 } else { 0xff };
+            let mask = lanes.inside([x, y, z], min, max) & valid;
+            let [nx, ny, nz] = &mut self.to;
+            lanes.compact(x, mask, eight_mut(nx, self.len));
+            lanes.compact(y, mask, eight_mut(ny, self.len));
+            lanes.compact(z, mask, eight_mut(nz, self.len));
+            lanes.compact_ids(
+                id_eight(self.from_id, at),
+                mask,
+                id_eight_mut(self.to_id, self.len),
+            );
+            self.len += mask.count_ones() as usize;
+            at += 8;
         }
     }
 }

@@ -9,6 +9,9 @@ pub struct Pair {
     pub b: u32,
 }
 
+/// Keys up to which a pass may write anywhere: half a megabyte.
+const IN_CACHE: usize = 1 << 16;
+
 /// How pairs are packed: a above b, no bit wasted, so that sorting needs few passes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Packing {
@@ -51,14 +54,19 @@ impl Packing {
         let n = found.clone().map(<[u64]>::len).sum::<usize>();
         let [front, back] = scratch;
         front.resize(n, 0);
-        // the tables of the passes below cost more than sorting so few
-        if n < 512 {
+        if n <= IN_CACHE {
             let mut at = 0;
             for keys in found {
                 front[at..at + keys.len()].copy_from_slice(keys);
                 at += keys.len();
             }
-            front.sort_unstable();
+            // the tables of the passes cost more than sorting so few
+            if n < 512 {
+                front.sort_unstable();
+            } else {
+                back.resize(n, 0);
+                radix::<13, { 1 << 13 }>(front, back, self.bits);
+            }
             out.extend(front.iter().map(|&key| self.unpack(key)));
             return;
         }
@@ -86,7 +94,7 @@ impl Packing {
         back.resize(n, 0);
         out.resize(n, Pair { a: 0, b: 0 });
         let sort = |front: &mut [u64], back: &mut [u64], out: &mut [Pair]| {
-            radix(front, back, low);
+            radix::<8, { 1 << 8 }>(front, back, low);
             for (pair, &key) in out.iter_mut().zip(front.iter()) {
                 *pair = self.unpack(key);
             }
@@ -116,23 +124,27 @@ impl Packing {
     }
 }
 
-/// Sorts `keys` by their lowest `bits` bits; the bits above are all equal.
-fn radix(keys: &mut [u64], back: &mut [u64], bits: u32) {
+/// Sorts `keys` by their lowest `bits` bits, up to `WIDTH` bits a pass; the bits above are all equal. `TABLE` is 2^`WIDTH`.
+fn radix<const WIDTH: u32, const TABLE: usize>(keys: &mut [u64], back: &mut [u64], bits: u32) {
     if keys.len() < 96 {
         keys.sort_unstable();
         return;
     }
-    let passes = bits.div_ceil(8).max(1);
+    // a table much longer than the keys costs more than another pass
+    let wanted = (usize::BITS - keys.len().leading_zeros()).min(WIDTH);
+    let passes = bits.div_ceil(wanted).max(1);
     let width = bits.div_ceil(passes).max(1);
     let (mut from, mut to) = (keys, back);
+    let mut table = [0_usize; TABLE];
     for pass in 0..passes {
         let digit = |key: u64| (key >> (pass * width)) as usize & ((1 << width) - 1);
-        let mut at = [0_usize; 256];
+        let at = &mut table[..1 << width];
+        at.fill(0);
         for &key in from.iter() {
             at[digit(key)] += 1;
         }
         let mut sum = 0;
-        for place in &mut at[..1 << width] {
+        for place in at.iter_mut() {
             sum += std::mem::replace(place, sum);
         }
         for &key in from.iter() {
