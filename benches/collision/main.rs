@@ -3,9 +3,10 @@
 //! `cargo bench --bench collision` runs everything and writes `docs/results/collision.md`; started as a test it runs small
 //! sizes once and writes nothing. `SATISFICE_DATA` may name a folder with `cloth_ball92.ply`, `cloth_ball93.ply` and
 //! `bunny.obj`; without it those scenes are replaced or skipped, and the output says so. A word after `--` runs the groups of
-//! that name only (points, kept, deforming, triangles, budget) and writes nothing.
+//! that name only (points, kept, deforming, triangles, budget, deadline) and writes nothing.
 
 mod budget;
+mod deadline;
 mod deforming;
 mod peers;
 mod plain_grid;
@@ -42,6 +43,9 @@ fn main() {
     }
     if wanted("budget") {
         budget::run(&mut report);
+    }
+    if wanted("deadline") {
+        deadline::run(&mut report);
     }
     if full && only.is_none() {
         report.save();

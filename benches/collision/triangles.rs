@@ -26,17 +26,16 @@ fn ours(join: &mut TreeJoin, a: &Mesh, b: Option<&Mesh>, threshold: Threshold) -
     plain(join.within(&tree, threshold, Some(&apart)))
 }
 
-/// A triangle and the lower and upper corner of its box.
-type Boxed = ([[f64; 3]; 3], [f64; 3], [f64; 3]);
+/// The lower and the upper corner of a box.
+type Boxed = ([f64; 3], [f64; 3]);
 
-/// Decides all candidates of boxes, by a plain loop over all pairs of boxes: the truth, slowly.
-fn truth(a: &Mesh, b: Option<&Mesh>, delta: f64) -> Pairs {
-    let threshold = Threshold::new(delta).expect("a positive threshold");
+/// All candidates, sorted: pairs whose boxes are within delta and, inside one mesh, share no vertex; by a plain sweep.
+pub(crate) fn culled(a: &Mesh, b: Option<&Mesh>, delta: f64) -> Pairs {
     let boxes = |mesh: &Mesh| -> Vec<Boxed> {
         let bounds = |t: [[f64; 3]; 3]| {
             let min = std::array::from_fn(|k| t[0][k].min(t[1][k]).min(t[2][k]));
             let max = std::array::from_fn(|k| t[0][k].max(t[1][k]).max(t[2][k]));
-            (t, min, max)
+            (min, max)
         };
         (0..mesh.triangles().len())
             .map(|t| bounds(mesh.triangle(t)))
@@ -45,26 +44,38 @@ fn truth(a: &Mesh, b: Option<&Mesh>, delta: f64) -> Pairs {
     let (of_a, of_b) = (boxes(a), boxes(b.unwrap_or(a)));
     // sorted along x, so that a sweep leaves most pairs out
     let mut order: Vec<usize> = (0..of_b.len()).collect();
-    order.sort_by(|&i, &j| of_b[i].1[0].total_cmp(&of_b[j].1[0]));
-    let widest = of_b.iter().map(|b| b.2[0] - b.1[0]).fold(0.0, f64::max);
+    order.sort_by(|&i, &j| of_b[i].0[0].total_cmp(&of_b[j].0[0]));
+    let widest = of_b.iter().map(|b| b.1[0] - b.0[0]).fold(0.0, f64::max);
     let mut pairs = Pairs::new();
-    for (i, (p, min, max)) in of_a.iter().enumerate() {
-        let from = order.partition_point(|&j| of_b[j].1[0] < min[0] - widest - 2.0 * delta);
+    for (i, (min, max)) in of_a.iter().enumerate() {
+        let from = order.partition_point(|&j| of_b[j].0[0] < min[0] - widest - 2.0 * delta);
         for &j in order[from..]
             .iter()
-            .take_while(|&&j| of_b[j].1[0] <= max[0] + 2.0 * delta)
+            .take_while(|&&j| of_b[j].0[0] <= max[0] + 2.0 * delta)
         {
-            let (q, lower, upper) = &of_b[j];
+            let (lower, upper) = &of_b[j];
             let shares =
                 b.is_none() && (j <= i || a.triangles()[i].iter().any(|v| a.triangles()[j].contains(v)));
             let near =
                 (0..3).all(|k| lower[k] <= max[k] + 1.001 * delta && min[k] <= upper[k] + 1.001 * delta);
-            if !shares && near && satisfice_collision::distance::triangle_triangle::within(p, q, threshold) {
+            if !shares && near {
                 pairs.push((i as u32, j as u32));
             }
         }
     }
     pairs.sort_unstable();
+    pairs
+}
+
+/// Decides all candidates: the truth, slowly.
+fn truth(a: &Mesh, b: Option<&Mesh>, delta: f64) -> Pairs {
+    let threshold = Threshold::new(delta).expect("a positive threshold");
+    let (of_a, of_b) = (a, b.unwrap_or(a));
+    let mut pairs = culled(a, b, delta);
+    pairs.retain(|&(i, j)| {
+        let (p, q) = (of_a.triangle(i as usize), of_b.triangle(j as usize));
+        satisfice_collision::distance::triangle_triangle::within(&p, &q, threshold)
+    });
     pairs
 }
 

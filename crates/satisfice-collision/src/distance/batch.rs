@@ -4,9 +4,15 @@
 //! `a_i - b_j`: a step goes to the best point between v and the difference w lowest in direction v, which takes no
 //! branch. The certificates of `frame` stop it; what they leave open after [`STEPS`] steps is decided pair by pair.
 //!
+//! What the steps and the normals of both planes leave open is mostly within: the vertices over the faces and the nine pairs of
+//! edges then offer a v each.
+//!
 //! **Error of v**, in units of `u rho` a component: 12.2 at the start (two centroids: data 2, products and sums
 //! `2 * 3.01`, weights 1/3 rounded 2.02, difference 2.01); a step `v + t (w - v)` adds at most 2.1 to the greater of the
 //! error so far and of 12.2 (w: 4.01; w - v and its product by t: `2 * 4.1`). Eight steps: 29, in norm 51, below the 64 of `SPAN_ERROR`.
+//! A point of an edge, `p + s (p1 - p)` with s from 0 to 1: data 1, the difference and its product by s 2.01 each, the sum 1.01; two
+//! of them and their difference, `2 * 6.1 + 2.02`: 15. A foot `x f + y g + z h` with x, y, z >= 0 and x = fl(fl(1 - y) - z), a sum
+//! of weights within 2u of 1: data 1, products and sums 3.03, the weights 2.01; with the vertex and the difference, 10.
 
 use super::frame::{ABOVE_ONE, GAP_ERROR, GREATEST_RHO, LEAST_GAP, LEAST_RHO, SPAN_ERROR};
 use super::lanes::{Unit, Work, dispatch};
@@ -265,7 +271,79 @@ impl<U: Unit> Kernel<U> {
             let gap = u.greatest(u.sub(least_a, greatest_b), u.sub(least_b, greatest_a));
             apart |= self.apart(n, squared, gap, gap_error, limit);
         }
+        // Most of the rest are within: where triangles do not meet, two edges are closest or a vertex and a face.
+        let (a, b) = ([a0, a1, a2], [b0, b1, b2]);
+        if (within | apart) & in_range != in_range {
+            within |= self.faces(a, b, of_a, zero, reach) | self.faces(b, a, of_b, zero, reach);
+        }
+        for i in 0..3 {
+            if (within | apart) & in_range == in_range {
+                break;
+            }
+            for j in 0..3 {
+                let v = self.edges([a[i], a[(i + 1) % 3]], [b[j], b[(j + 1) % 3]]);
+                within |= u.below(u.mul(self.dot(v, v), u.splat(ABOVE_ONE)), reach);
+            }
+        }
         (within & in_range, apart & in_range & !within)
+    }
+
+    /// The difference of the points closest to each other of two edges; of some two points where rounding misleads, as on edges
+    /// that are parallel.
+    #[inline(always)]
+    fn edges(&self, [p, p1]: [Vector<U>; 2], [q, q1]: [Vector<U>; 2]) -> Vector<U> {
+        let u = self.unit;
+        let (d, e, r) = (self.sub(p1, p), self.sub(q1, q), self.sub(p, q));
+        let (dd, ee, de) = (self.dot(d, d), self.dot(e, e), self.dot(d, e));
+        let (dr, er) = (self.dot(d, r), self.dot(e, r));
+        let s = self.share(
+            u.sub(u.mul(de, er), u.mul(dr, ee)),
+            u.sub(u.mul(dd, ee), u.mul(de, de)),
+        );
+        let t = self.share(u.add(u.mul(de, s), er), ee);
+        let s = self.share(u.sub(u.mul(de, t), dr), dd);
+        let along = |from: Vector<U>, by: Vector<U>, share: U::Number| {
+            let to = |k: usize| u.add(from[k], u.mul(share, by[k]));
+            [to(0), to(1), to(2)]
+        };
+        self.sub(along(p, d, s), along(q, e, t))
+    }
+
+    /// A quotient brought into 0 to 1; NaN becomes 0.
+    #[inline(always)]
+    fn share(&self, x: U::Number, y: U::Number) -> U::Number {
+        let u = self.unit;
+        u.least(u.greatest(u.div(x, y), u.splat(0.0)), u.splat(1.0))
+    }
+
+    /// Lanes that a vertex of `points` and its foot on `face`, whose normal is `n`, prove within.
+    #[inline(always)]
+    fn faces(
+        &self,
+        face: [Vector<U>; 3],
+        points: [Vector<U>; 3],
+        n: Vector<U>,
+        zero: U::Number,
+        reach: U::Number,
+    ) -> u32 {
+        let u = self.unit;
+        let (d, e) = (self.sub(face[1], face[0]), self.sub(face[2], face[0]));
+        let inverse = u.div(u.splat(1.0), self.dot(n, n));
+        let mut within = 0;
+        for p in points {
+            let r = self.sub(p, face[0]);
+            let y = u.mul(self.dot(self.cross(r, e), n), inverse);
+            let z = u.mul(self.dot(self.cross(d, r), n), inverse);
+            let x = u.sub(u.sub(u.splat(1.0), y), z);
+            let inside = u.at_most(zero, x) & u.at_most(zero, y) & u.at_most(zero, z);
+            let foot = |k: usize| {
+                let sum = u.add(u.mul(x, face[0][k]), u.mul(y, face[1][k]));
+                u.add(sum, u.mul(z, face[2][k]))
+            };
+            let v = self.sub([foot(0), foot(1), foot(2)], p);
+            within |= inside & u.below(u.mul(self.dot(v, v), u.splat(ABOVE_ONE)), reach);
+        }
+        within
     }
 
     /// Lanes that a gap in direction `v` proves apart.
