@@ -95,49 +95,52 @@ impl Exact<'_> {
         start: Instant,
         counting: &Counting,
     ) -> anyhow::Result<Answer> {
-        let listed = |contacts: Vec<Contact>, complete: bool, wanted: StopReason| Answer {
-            stop: if complete { StopReason::Covered } else { wanted },
-            contacts,
-            skips: Skips::default(),
-            complete,
+        let out_of_time = || self.time.is_some_and(|time| start.elapsed() >= time);
+        let stop = |found: usize| {
+            counting.show(found, start);
+            self.cancel.is_cancelled() || out_of_time()
+        };
+        // `left`: why no more were wanted, where the question is answered by some.
+        let answer = |contacts: Vec<Contact>, left: Option<StopReason>, state: scene::Completeness| {
+            let proved = state == scene::Completeness::Proved;
+            Answer {
+                contacts,
+                skips: Skips::default(),
+                stop: match (proved, left) {
+                    (true, None) => StopReason::Covered,
+                    (true, Some(reason)) => reason,
+                    (false, _) if self.cancel.is_cancelled() => StopReason::Cancelled,
+                    (false, _) => StopReason::Time,
+                },
+                complete: proved && left.is_none(),
+            }
         };
         Ok(match world.request.find {
             Find::Touching => {
-                let witnesses = scene.witnesses()?;
-                let none = witnesses.is_empty();
-                listed(witnesses, none, StopReason::Exhausted)
+                let (witnesses, state) = scene.witnesses_until(&stop)?;
+                let left = (!witnesses.is_empty()).then_some(StopReason::Exhausted);
+                answer(witnesses, left, state)
             }
             Find::First => {
-                let first: Vec<_> = scene.first()?.into_iter().collect();
-                let none = first.is_empty();
-                listed(first, none, StopReason::Hits)
+                let (first, state) = scene.first_until(&stop)?;
+                let left = first.is_some().then_some(StopReason::Hits);
+                answer(first.into_iter().collect(), left, state)
             }
             Find::Closest(k) => {
                 let wanted = usize::try_from(k).unwrap_or(usize::MAX);
-                let closest = scene.closest(wanted)?;
-                let all = closest.len() < wanted;
+                let (closest, state) = scene.closest_until(wanted, &stop)?;
+                let left = (closest.len() >= wanted).then_some(StopReason::Hits);
                 let contacts = closest.into_iter().map(|(contact, _)| contact).collect();
-                listed(contacts, all, StopReason::Hits)
+                answer(contacts, left, state)
             }
             Find::All if matches!(self.method, Method::Auto | Method::Tree) => {
                 self.pass(scene, start, counting)?
             }
             Find::All => {
-                let out_of_time = || self.time.is_some_and(|time| start.elapsed() >= time);
-                let frame = scene.contacts_until(&|found| {
-                    counting.show(found, start);
-                    self.cancel.is_cancelled() || out_of_time()
-                })?;
-                let complete = frame.completeness == scene::Completeness::Proved;
+                let frame = scene.contacts_until(&stop)?;
                 Answer {
-                    contacts: frame.contacts,
                     skips: frame.skips,
-                    stop: match (complete, self.cancel.is_cancelled()) {
-                        (true, _) => StopReason::Covered,
-                        (false, true) => StopReason::Cancelled,
-                        (false, false) => StopReason::Time,
-                    },
-                    complete,
+                    ..answer(frame.contacts, None, frame.completeness)
                 }
             }
         })

@@ -99,11 +99,11 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
         let option = useless.first().copied().unwrap_or("--prune");
         bail!("--method {method} makes no use of {option}: leave it out or choose an engine");
     }
-    let (time, hits) = arguments.search.limits();
+    let (_, hits) = arguments.search.limits();
     let find = arguments.find.find();
-    if find != Find::All && (!is_exact || time.is_some() || hits.is_some()) {
+    if find != Find::All && (!is_exact || hits.is_some()) {
         bail!(
-            "--{} is answered by the exact methods without a limit: leave out --method, --time and --hits",
+            "--{} is answered by the exact methods and lists what it is asked for: leave out --method and --hits",
             find.name()
         );
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
+use satisfice::StopReason;
 use satisfice_bench::verify::{self, LISTED_BEFORE, Mismatch};
 use satisfice_bench::{Record, record};
 use satisfice_collision::broad::FeatureKind;
@@ -128,12 +129,17 @@ impl Report {
         let mut line = |name: &str, value: String| {
             let _ = writeln!(text, "  {name:<13} {value}");
         };
+        let was_stopped = matches!(self.record.stop_reason, StopReason::Cancelled | StopReason::Time);
         let asked = match world.request.find {
             Find::All => None,
+            Find::Touching if was_stopped => {
+                Some("one pair of each two bodies that were found to touch; others may touch as well")
+            }
             Find::Touching => {
                 Some("one pair of each two bodies that touch; no other bodies do, that is proved")
             }
             Find::First => Some("one pair, whichever is found first"),
+            Find::Closest(_) if was_stopped => Some("the closest of the pairs found; others may be closer"),
             Find::Closest(_) => Some("the closest pairs, that is proved"),
         };
         if let Some(asked) = asked {

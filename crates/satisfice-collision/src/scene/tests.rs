@@ -297,6 +297,53 @@ fn an_interrupted_pass_resumes_exactly() {
     }
 }
 
+#[test]
+fn a_stopped_question_keeps_what_it_found() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let ball = generate::icosphere(1.0, 3).unwrap();
+    let threshold = Threshold::new(0.2).unwrap();
+    let row = || {
+        let mut scene = Scene::new(PairKind::TriangleTriangle, threshold);
+        for k in 0..4 {
+            let at = turn(0.3, [2.1 * f64::from(k), 0.0, 0.0]);
+            scene.add(Body::rigid(at.place(&ball).unwrap()));
+        }
+        scene
+    };
+    let never = |_: usize| false;
+    let (witnesses, state) = row().witnesses_until(&never).unwrap();
+    assert_eq!((witnesses.len(), state), (3, Completeness::Proved));
+    let (some, state) = row().witnesses_until(&|found| found >= 2).unwrap();
+    assert_eq!((&some[..], state), (&witnesses[..2], Completeness::Unknown));
+
+    assert_eq!(
+        row().first_until(&|_| true).unwrap(),
+        (None, Completeness::Unknown)
+    );
+    let first = row().first().unwrap();
+    assert!(first.is_some_and(|first| witnesses.contains(&first)));
+    assert_eq!(row().first_until(&never).unwrap(), (first, Completeness::Proved));
+
+    let all = row().contacts().unwrap().contacts;
+    let (closest, state) = row().closest_until(5, &never).unwrap();
+    assert_eq!(
+        (&closest, state),
+        (&row().closest(5).unwrap(), Completeness::Proved)
+    );
+    for at in 0..6 {
+        let asked = AtomicUsize::new(0);
+        let stop = |_: usize| asked.fetch_add(1, Ordering::Relaxed) >= at;
+        let (some, state) = row().closest_until(all.len(), &stop).unwrap();
+        assert!(some.iter().all(|(contact, _)| all.contains(contact)));
+        assert!(some.is_sorted_by(|(_, p), (_, q)| p.distance <= q.distance));
+        assert_eq!(
+            state == Completeness::Proved,
+            some.len() == all.len(),
+            "stopped at {at}"
+        );
+    }
+}
+
 /// Points so crowded that the grid looks at clumps in frames of their own, and points of which it need not.
 #[test]
 fn a_stopped_enumeration_keeps_what_it_found() {
