@@ -88,16 +88,15 @@ impl Error {
         let lower = name.to_lowercase();
         let nearest = known
             .iter()
-            .map(|k| (strsim::damerau_levenshtein(&lower, k), k))
-            .chain(
-                known
-                    .iter()
-                    .filter(|k| lower.len() > 2 && k.contains(&lower))
-                    .map(|k| (1, k)),
-            )
+            .map(|k| {
+                let distance = strsim::damerau_levenshtein(&lower, k);
+                // A part of a name is near to it, and nearer to a shorter one.
+                let is_part = lower.len() > 2 && k.contains(&lower);
+                (if is_part { distance.min(1) } else { distance }, distance, k)
+            })
             .min()
-            .filter(|(distance, _)| *distance <= 2.max(name.chars().count() / 3))
-            .map(|(_, k)| k.clone());
+            .filter(|(distance, _, _)| *distance <= 2.max(name.chars().count() / 3))
+            .map(|(_, _, k)| k.clone());
         Self::Unknown {
             what: what.to_owned(),
             name: name.to_owned(),
@@ -132,9 +131,16 @@ mod tests {
             error.to_string(),
             "unknown engine `lastest-hit-qpso`, did you mean `latest-hit-qpso`?; known: pso, qpso, latest-hit-qpso"
         );
-        let Error::Unknown { nearest, .. } = Error::unknown("engine", "zzzzzz", ["pso"]) else {
-            panic!("not an unknown name")
-        };
-        assert_eq!(nearest, None);
+        for (name, wanted) in [
+            ("zzzzzz", None),
+            ("qps", Some("qpso")),
+            ("latest", Some("latest-hit-qpso")),
+        ] {
+            let error = Error::unknown("engine", name, ["latest-hit-qpso", "pso", "qpso"]);
+            let Error::Unknown { nearest, .. } = error else {
+                panic!("not an unknown name")
+            };
+            assert_eq!(nearest.as_deref(), wanted, "{name}");
+        }
     }
 }
