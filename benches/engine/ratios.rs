@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 use std::hint::black_box;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use satisfice::{Budget, SatisficingProblem, Search, engine};
+use satisfice::{Budget, SatisficingProblem, Search, Space, engine, from_fn};
 
 use crate::loops::{latest_hit_loop, random_loop};
 use crate::peers::{self, argmin_swarm, our_swarm};
@@ -151,6 +151,7 @@ pub(crate) fn run(full: bool) {
             false,
         );
     }
+    overshoots(&mut table, full);
     if full {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results/engine.md");
         match std::fs::write(&path, &table.text) {
@@ -185,6 +186,49 @@ where
             ],
             true,
         );
+    }
+}
+
+/// By how much a limit of 100 ms is overrun: with a fitness of some nanoseconds, and with one of five milliseconds.
+fn overshoots(table: &mut Table, full: bool) {
+    let time = Duration::from_millis(if full { 100 } else { 10 });
+    let runs = if full { 20 } else { 1 };
+    table.line(&format!(
+        "\n## How late a limit of {} ms is kept\n",
+        time.as_millis()
+    ));
+    table.line("| | ms late, median of 20 runs | most |");
+    table.line("|---|---|---|");
+    let free = |x: &[f64]| 1.0 + x[0].abs();
+    let slow = |x: &[f64]| {
+        let end = Instant::now() + Duration::from_millis(5);
+        while Instant::now() < end {}
+        1.0 + x[0].abs()
+    };
+    let fitness: [(&str, &(dyn Fn(&[f64]) -> f64 + Sync)); 2] =
+        [("some nanoseconds", &free), ("5 ms", &slow)];
+    for ((cost, fitness), engine, batch, threads) in [
+        (fitness[0], "latest-hit-qpso", "1", 1),
+        (fitness[0], "random", "64", 1),
+        (fitness[0], "portfolio", "32", 1),
+        (fitness[1], "latest-hit-qpso", "1", 1),
+        (fitness[1], "random", "64", 2),
+    ] {
+        let space = Space::cube(3, -1.0, 1.0).unwrap();
+        let problem = from_fn(space, 0.5, fitness);
+        let late = |seed: u64| {
+            let engine = engine::find(engine).unwrap().build([("batch", batch)]).unwrap();
+            let mut search = Search::new(engine).seed(seed).threads(threads);
+            let report = search.run(&problem, &Budget::time(time)).unwrap();
+            report.overshoot.as_secs_f64() * 1e3
+        };
+        let mut late: Vec<f64> = (0..runs).map(late).collect();
+        late.sort_by(f64::total_cmp);
+        table.line(&format!(
+            "| `{engine}`, a fitness of {cost}, threads: {threads} | {:.2} | {:.2} |",
+            late[late.len() / 2],
+            late[late.len() - 1]
+        ));
     }
 }
 

@@ -29,7 +29,7 @@ type Points = [[[f64; LANES]; 3]; 3];
 /// Collects triangle pairs and decides eight at a time whether they are within a threshold.
 ///
 /// Answers come in the order of the pairs, each with the tag it was pushed with; after the last pair call
-/// [`finish`](Self::finish). They are those of [`triangle_triangle::decide`]. Cost: 20 to 100 ns a pair.
+/// [`finish`](Self::finish). They are those of [`triangle_triangle::decide`]. Cost: 20 to 250 ns a pair, the most where two triangles are near each other.
 ///
 /// ```
 /// use satisfice_collision::distance::{Threshold, TriangleBatch};

@@ -318,18 +318,13 @@ impl<S: Real> Portfolio<S> {
                 out.push(&self.position);
                 Some(0)
             }
-            Source::Neighbour => {
-                if !self.neighbourhoods.propose(&mut self.position) {
-                    return false;
-                }
-                if !self.is_fresh(context) {
-                    return true;
-                }
-                out.push(&self.position);
-                Some(0)
-            }
-            Source::NearMiss => {
-                if !self.near_misses.propose(&mut self.position) {
+            Source::Neighbour | Source::NearMiss => {
+                let position = &mut self.position;
+                let is_there = match source {
+                    Source::Neighbour => self.neighbourhoods.propose(position),
+                    _ => self.near_misses.propose(position),
+                };
+                if !is_there {
                     return false;
                 }
                 if !self.is_fresh(context) {
