@@ -205,8 +205,8 @@ fn overshoots(table: &mut Table, full: bool) {
         while Instant::now() < end {}
         1.0 + x[0].abs()
     };
-    let fitness: [(&str, &(dyn Fn(&[f64]) -> f64 + Sync)); 2] =
-        [("some nanoseconds", &free), ("5 ms", &slow)];
+    type Fitness<'f> = &'f (dyn Fn(&[f64]) -> f64 + Sync);
+    let fitness: [(&str, Fitness<'_>); 2] = [("some nanoseconds", &free), ("5 ms", &slow)];
     for ((cost, fitness), engine, batch, threads) in [
         (fitness[0], "latest-hit-qpso", "1", 1),
         (fitness[0], "random", "64", 1),
