@@ -116,14 +116,44 @@ impl<S: Real> Located<S> {
         cells
     }
 
-    /// The first and the last cell on one axis that a solution within the radius may be in.
-    fn cells_near(&self, x: S) -> [S; 2] {
+    /// The cell of `x` on one axis, and the first and the last one that a solution within the radius may be in.
+    ///
+    /// The usual way costs one division: where `x` is in its cell, in [0, 1), says which neighbours are within the radius, a
+    /// quarter, and a hundredth more for what `x / edge` is rounded by, as long as that is small.
+    #[inline]
+    fn cells_near(&self, x: S) -> [S; 3] {
+        let scaled = x / (self.separation * S::of(EDGE));
+        if scaled.abs() < S::of(COARSE) / S::epsilon() {
+            let cell = floor(scaled) + S::zero();
+            let place = scaled - cell;
+            let reach = S::of(1.01 / EDGE);
+            let first = if place < reach { cell - S::one() } else { cell };
+            let last = if place > S::one() - reach {
+                cell + S::one()
+            } else {
+                cell
+            };
+            return [cell, first, last];
+        }
+        self.cells_near_by_ends(x)
+    }
+
+    /// The same for all other `x`: radius 0, and coordinates so large that they are as coarse as the cells, or infinite.
+    #[cold]
+    fn cells_near_by_ends(&self, x: S) -> [S; 3] {
         // A little more than the radius, so that rounding in `same` loses nothing.
         let reach = self.separation * S::of(1.0 + 1e-6);
         let within = |x: S| x.max(S::min_value()).min(S::max_value());
-        [self.cell(within(x - reach)), self.cell(within(x + reach))]
+        [
+            self.cell(x),
+            self.cell(within(x - reach)),
+            self.cell(within(x + reach)),
+        ]
     }
 }
+
+/// Coordinates over this share of the number of cells that the scalar tells apart are looked at with more care.
+const COARSE: f64 = 1.0 / 4096.0;
 
 /// Edge of a cell in radii. A ball then meets one cell or two on each axis, or three where the scalar's rounding is as
 /// coarse as the radius.
@@ -154,16 +184,21 @@ impl<S: Real> Identity for Located<S> {
     }
 
     fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
+        let mut ends = [[S::zero(); 2]; HASHED];
+        let mut own = [S::zero(); HASHED];
+        let mut cells = [S::zero(); HASHED];
+        for (((end, own), cell), &x) in ends
+            .iter_mut()
+            .zip(&mut own)
+            .zip(&mut cells)
+            .zip(&self.coordinates)
+        {
+            [*own, end[0], end[1]] = self.cells_near(x);
+            *cell = end[0];
+        }
         // Its own first: what is the same is most often filed there.
-        let own = self.own_cells();
         if visit(hash_cells(own)) {
             return true;
-        }
-        let mut ends = [[S::zero(); 2]; HASHED];
-        let mut cells = [S::zero(); HASHED];
-        for ((end, cell), &x) in ends.iter_mut().zip(&mut cells).zip(&self.coordinates) {
-            *end = self.cells_near(x);
-            *cell = end[0];
         }
         loop {
             if cells != own && visit(hash_cells(cells)) {

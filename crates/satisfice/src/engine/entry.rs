@@ -161,6 +161,12 @@ static ENGINES: &[Entry] = &[
         "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV"
     ),
     entry!(
+        restarted_cma_es,
+        "restarted-cma-es",
+        "restarted (1+1)-CMA-ES for continuous axes, and recombination of hits",
+        "this project; parts after Igel, Suttorp, Hansen 2006, doi 10.1145/1143997.1144082, and Luby, Sinclair, Zuckerman 1993, doi 10.1016/0020-0190(93)90029-9"
+    ),
+    entry!(
         pso_1995,
         "pso-1995",
         "the first particle swarm, without inertia weight",

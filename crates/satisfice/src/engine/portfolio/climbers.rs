@@ -1,11 +1,11 @@
 //! Local searches, several at a time, restarted when they stall, hit, or come back to a known hit.
 
-use super::bandit::luby;
 use super::moves::{Move, Moves};
-use super::one_plus_one::Mutation;
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::bandit::luby;
+use crate::engine::one_plus_one::Mutation;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::Saved;

@@ -1,27 +1,25 @@
 //! The default engine: sources of candidates that compete for evaluations by what they yield.
 
-mod bandit;
 mod climbers;
 mod moves;
 mod near_misses;
 mod neighbourhoods;
-mod one_plus_one;
 mod populations;
-mod recombination;
 mod swarms;
 mod translations;
 mod visited;
 
-use bandit::{Arm, draw};
 use climbers::Climbers;
 use near_misses::NearMisses;
 use neighbourhoods::Neighbourhoods;
 use populations::Populations;
-use recombination::recombine;
+
 use swarms::Swarms;
 use translations::Translations;
 use visited::Visited;
 
+use super::bandit::{Arm, draw};
+use super::recombination::recombine;
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;

@@ -3,9 +3,9 @@
 //!
 //! Beyer, Sendhoff 2017, doi 10.1109/TEVC.2017.2680320 (MA-ES), with its default weights and learning rates.
 
-use super::bandit::luby;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::bandit::luby;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
