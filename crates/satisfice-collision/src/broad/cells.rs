@@ -32,32 +32,6 @@ const OCCUPANCY: f32 = 6.0;
 const SAMPLE: usize = 512;
 
 impl Cells {
-    /// The grid for these points, none of whose cells is much narrower than `reach`.
-    pub(crate) fn fit(parts: &[Part], reach: f32) -> Self {
-        let n = parts.iter().map(|part| part.points.len()).sum::<usize>();
-        let min: [f32; 3] =
-            std::array::from_fn(|k| parts.iter().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
-        let max: [f32; 3] = std::array::from_fn(|k| {
-            parts
-                .iter()
-                .map(|part| part.max[k])
-                .fold(f32::NEG_INFINITY, greater)
-        });
-        let volume: f32 = (0..3).map(|k| greater(max[k] - min[k], reach)).product();
-        let mut edge = greater((volume * OCCUPANCY / n as f32).cbrt(), reach);
-        if edge > reach && n > 4 * SAMPLE {
-            // points on surfaces fill few cells; a sample tells how many share one
-            for _ in 0..3 {
-                let crowd = crowd(parts, n, &Self::new(min, max, edge, usize::MAX));
-                if crowd < 2.0 * OCCUPANCY || edge <= reach {
-                    break;
-                }
-                edge = greater(edge * (OCCUPANCY / crowd).sqrt(), reach);
-            }
-        }
-        Self::new(min, max, edge, 2 * n + 64)
-    }
-
     /// The grid over `min..=max` with cells of edge `edge` or longer, as needed to have at most `limit` of them.
     pub(crate) fn new(min: [f32; 3], max: [f32; 3], mut edge: f32, limit: usize) -> Self {
         loop {
@@ -93,10 +67,96 @@ impl Cells {
         (self.cell(2, q[2]) * self.count[1] + self.cell(1, q[1])) * self.count[0] + self.cell(0, q[0])
     }
 
+    /// Visits the serial numbers of all cells that hold a point within `reach` of `q`, and of few others.
+    pub(crate) fn visit_near(&self, q: &[f32; 3], reach: f32, mut visit: impl FnMut(usize)) {
+        // A coordinate is filed up to 2^-8 of a cell beside the cell that it is in, and so may be the middle of a cell.
+        const BESIDE: f32 = 0.02;
+        let edge = 1.0 / self.inverse;
+        let range = |k: usize| self.cell(k, q[k] - reach)..self.cell(k, q[k] + reach) + 1;
+        // How far q is from a cell along an axis; the outermost cells have no end.
+        let gap = |k: usize, cell: usize| {
+            let middle = self.lower[k] + cell as f32 * edge;
+            let gap = (q[k] - middle).abs() - (0.5 + BESIDE) * edge;
+            let outermost = cell == 0 || cell + 1 == self.count[k];
+            if outermost || gap < 0.0 { 0.0 } else { gap }
+        };
+        let square = reach * reach;
+        for z in range(2) {
+            let across = gap(2, z) * gap(2, z);
+            for y in range(1) {
+                let across = across + gap(1, y) * gap(1, y);
+                for x in range(0) {
+                    if across + gap(0, x) * gap(0, x) <= square {
+                        visit((z * self.count[1] + y) * self.count[0] + x);
+                    }
+                }
+            }
+        }
+    }
+
     /// Cells in one layer of equal z.
     pub(crate) fn layer(&self) -> usize {
         self.count[0] * self.count[1]
     }
+}
+
+/// How wide the cells are made. What a sample told is kept for the calls that follow, which often are frames of one motion.
+#[derive(Debug, Default)]
+pub(crate) struct Fit {
+    /// Of the points that the sample was taken of: how many they were, the reach, and by how much the edge was shortened.
+    points: usize,
+    reach: f32,
+    shortened: f32,
+    /// Calls since then.
+    age: u32,
+}
+
+/// Calls after which another sample is taken.
+const FRESH: u32 = 16;
+
+impl Fit {
+    /// The grid for these points, none of whose cells is much narrower than `reach`.
+    pub(crate) fn cells(&mut self, parts: &[Part], reach: f32) -> Cells {
+        let n = parts.iter().map(|part| part.points.len()).sum::<usize>();
+        let min: [f32; 3] =
+            std::array::from_fn(|k| parts.iter().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
+        let max: [f32; 3] = std::array::from_fn(|k| {
+            parts
+                .iter()
+                .map(|part| part.max[k])
+                .fold(f32::NEG_INFINITY, greater)
+        });
+        let volume: f32 = (0..3).map(|k| greater(max[k] - min[k], reach)).product();
+        let mut edge = greater((volume * OCCUPANCY / n as f32).cbrt(), reach);
+        if edge > reach && n > 4 * SAMPLE {
+            let is_alike = n.abs_diff(self.points) <= n / 16 && (reach - self.reach).abs() <= 0.1 * reach;
+            if is_alike && self.age < FRESH {
+                self.age += 1;
+            } else {
+                *self = Self {
+                    points: n,
+                    reach,
+                    shortened: shortened(parts, n, min, max, edge, reach),
+                    age: 0,
+                };
+            }
+            edge = greater(edge * self.shortened, reach);
+        }
+        Cells::new(min, max, edge, 2 * n + 64)
+    }
+}
+
+/// Points on surfaces fill few cells; a sample tells how many share one, and by what factor the edge is to be shortened.
+fn shortened(parts: &[Part], n: usize, min: [f32; 3], max: [f32; 3], longest: f32, reach: f32) -> f32 {
+    let mut edge = longest;
+    for _ in 0..3 {
+        let crowd = crowd(parts, n, &Cells::new(min, max, edge, usize::MAX));
+        if crowd < 2.0 * OCCUPANCY || edge <= reach {
+            break;
+        }
+        edge = greater(edge * (OCCUPANCY / crowd).sqrt(), reach);
+    }
+    edge / longest
 }
 
 /// How many points, on average over the points, share a point's cell, estimated from a sample.
@@ -313,27 +373,40 @@ impl Group<'_> {
     where
         I: DoubleEndedIterator<Item = &'p [Placed]> + Clone,
     {
-        let points = segments.clone().flatten();
-        for (point, cell_of) in points.zip(self.cell_of.iter_mut()) {
-            let cell = cells.index(&point.q) - self.first;
-            *cell_of = cell as u32;
-            self.start[cell] += 1;
+        let mut rest = &mut *self.cell_of;
+        for segment in segments.clone() {
+            let (cell_of, behind) = std::mem::take(&mut rest).split_at_mut(segment.len());
+            rest = behind;
+            // apart from the counting, which waits for memory, so that several are computed at a time
+            for (cell_of, point) in cell_of.iter_mut().zip(segment) {
+                *cell_of = (cells.index(&point.q) - self.first) as u32;
+            }
+        }
+        for &cell in &*self.cell_of {
+            self.start[cell as usize] += 1;
         }
         let mut end = 0;
         for start in self.start.iter_mut() {
             end += *start;
             *start = end;
         }
+        let n = self.x.len();
+        let (x, y, z, id) = (
+            &mut *self.x,
+            &mut self.y[..n],
+            &mut self.z[..n],
+            &mut self.id[..n],
+        );
         let mut left = self.cell_of.iter().rev();
         for segment in segments.rev() {
             for (point, &cell) in segment.iter().rev().zip(&mut left) {
                 let start = &mut self.start[cell as usize];
                 *start -= 1;
                 let at = *start as usize;
-                self.x[at] = point.q[0];
-                self.y[at] = point.q[1];
-                self.z[at] = point.q[2];
-                self.id[at] = point.id;
+                x[at] = point.q[0];
+                y[at] = point.q[1];
+                z[at] = point.q[2];
+                id[at] = point.id;
             }
         }
         if self.base > 0 {

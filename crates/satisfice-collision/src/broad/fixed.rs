@@ -1,15 +1,20 @@
-//! The points of a body that stays where it is, sorted into a grid once; every point of another body is looked up in it.
+//! The points of a body that stays where it is, filed once in every cell of a grid that they are near to; a point of another body
+//! is then looked up in its own cell alone.
 
-use super::cells::{Cells, Sorted};
-use super::clip::{Clip, Runs, inflate};
+use super::cells::{Cells, PADDING};
+use super::clip::{Clip, Part, Runs, inflate};
 use super::exact::Decide;
 use super::frame::{Filter, Frame};
 use super::join::{eight, id_eight};
 use super::lanes::{Lanes, Work, dispatch};
 use super::order::Packing;
-use super::sieve::Presence;
 use crate::distance::Threshold;
 use crate::{Aabb, Error};
+
+/// The edge of a cell in reaches. Longer ones file a point in fewer cells, shorter ones have fewer points to look through.
+const EDGE: f32 = 2.0;
+/// Cells at most, for each point.
+const CELLS: usize = 4;
 
 /// A kept grid.
 pub(crate) struct FixedGrid {
@@ -18,9 +23,63 @@ pub(crate) struct FixedGrid {
     region: Aabb,
     frame: Frame,
     filter: Filter,
-    presence: Presence,
     cells: Cells,
-    sorted: Sorted,
+    near: Near,
+}
+
+/// The points near each cell, in the order of their numbers, structure of arrays.
+///
+/// Memory: 16 bytes for each cell that a point is near to. On a surface these are four to six for most points, if the threshold is
+/// about as long as the points are apart.
+#[derive(Debug, Default)]
+struct Near {
+    c: [Vec<f32>; 3],
+    id: Vec<u32>,
+    /// One entry a cell and one for the end.
+    start: Vec<u32>,
+}
+
+impl Near {
+    /// `None` where there are too many to be counted in 32 bits.
+    fn new(parts: &[Part], cells: &Cells, reach: f32) -> Option<Self> {
+        let count = cells.count();
+        let mut start = vec![0_u32; count.iter().product::<usize>() + 1];
+        let mut total = 0_u32;
+        for point in parts.iter().flat_map(|part| &part.points) {
+            let mut overflows = false;
+            cells.visit_near(&point.q, reach, |cell| {
+                start[cell + 1] = start[cell + 1].saturating_add(1);
+                let sum = total.checked_add(1);
+                overflows |= sum.is_none();
+                total = sum.unwrap_or(u32::MAX);
+            });
+            if overflows {
+                return None;
+            }
+        }
+        for cell in 1..start.len() {
+            start[cell] += start[cell - 1];
+        }
+        let len = total as usize + PADDING;
+        let mut near = Self {
+            c: [(); 3].map(|()| vec![f32::INFINITY; len]),
+            id: vec![0; len],
+            start: Vec::new(),
+        };
+        let mut next = start.clone();
+        for point in parts.iter().flat_map(|part| &part.points) {
+            cells.visit_near(&point.q, reach, |cell| {
+                let at = next[cell] as usize;
+                next[cell] += 1;
+                for (axis, &c) in near.c.iter_mut().zip(&point.q) {
+                    axis[at] = c;
+                }
+                near.id[at] = point.id;
+            });
+        }
+        near.start = start;
+        Some(near)
+    }
 }
 
 /// What a look into it found.
@@ -56,17 +115,27 @@ impl FixedGrid {
         }
         .place(&mut parts, 1);
         let filter = frame.filter(threshold.get());
-        let cells = Cells::fit(&parts, filter.reach);
-        let mut sorted = Sorted::default();
-        sorted.sort(&parts, &cells, 1);
+        let bound = |of: fn(&Part) -> [f32; 3], more: fn(f32, f32) -> f32| {
+            let bounds = parts.iter().map(of);
+            bounds.reduce(|a, b| std::array::from_fn(|k| more(a[k], b[k])))
+        };
+        let (Some(min), Some(max)) = (
+            bound(|part| part.min, super::clip::lesser),
+            bound(|part| part.max, super::clip::greater),
+        ) else {
+            return Ok(None);
+        };
+        let cells = Cells::new(min, max, EDGE * filter.reach, CELLS * points.len() + 64);
+        let Some(near) = Near::new(&parts, &cells, filter.reach) else {
+            return Ok(None);
+        };
         Ok(Some(Self {
             threshold,
             region,
             frame,
             filter,
-            presence: Presence::of(&parts, filter.reach),
             cells,
-            sorted,
+            near,
         }))
     }
 
@@ -103,17 +172,16 @@ impl Work for LookUp<'_> {
         let FixedGrid {
             region,
             frame,
-            filter,
-            presence,
+            filter: Filter { sure, limit, .. },
             cells,
-            sorted,
+            near:
+                Near {
+                    c: [x, y, z],
+                    id,
+                    start,
+                },
             ..
         } = self.grid;
-        let Filter {
-            sure, limit, reach, ..
-        } = *filter;
-        let [columns, rows, _] = cells.count();
-        let ([x, y, z], start) = (&sorted.c, &sorted.start);
         for (a, point) in (0..).zip(self.decide.a) {
             let inside = (0..3).fold(true, |inside, k| {
                 inside & (region.min[k] <= point[k]) & (point[k] <= region.max[k])
@@ -123,34 +191,24 @@ impl Work for LookUp<'_> {
                 continue;
             }
             let q = frame.place(point);
-            if !presence.near(q) {
-                self.found.lonely += 1;
-                continue;
-            }
-            let range = |k: usize| cells.cell(k, q[k] - reach)..cells.cell(k, q[k] + reach) + 1;
-            let (xs, ys, zs) = (range(0), range(1), range(2));
-            for layer in zs {
-                for row in ys.clone() {
-                    let row = (layer * rows + row) * columns;
-                    let mut at = start[row + xs.start] as usize;
-                    let end = start[row + xs.end] as usize;
-                    while at < end {
-                        let rest = end - at;
-                        let valid = if rest < 8 { (1 << rest) - 1 } else { 0xff };
-                        let c = [eight(x, at), eight(y, at), eight(z, at)];
-                        let mut hits = lanes.closer(c, q, limit) & valid;
-                        while hits != 0 {
-                            let lane = hits.trailing_zeros() as usize & 7;
-                            hits &= hits - 1;
-                            let d: [f32; 3] = std::array::from_fn(|k| c[k][lane] - q[k]);
-                            let b = id_eight(&sorted.id, at)[lane];
-                            if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < sure || self.decide.closer(a, b) {
-                                self.found.keys.push(self.packing.pack(a, b));
-                            }
-                        }
-                        at += 8;
+            let cell = cells.index(&q);
+            let (mut at, end) = (start[cell] as usize, start[cell + 1] as usize);
+            self.found.lonely += u64::from(at == end);
+            while at < end {
+                let rest = end - at;
+                let valid = if rest < 8 { (1 << rest) - 1 } else { 0xff };
+                let c = [eight(x, at), eight(y, at), eight(z, at)];
+                let mut hits = lanes.closer(c, q, *limit) & valid;
+                while hits != 0 {
+                    let lane = hits.trailing_zeros() as usize & 7;
+                    hits &= hits - 1;
+                    let d: [f32; 3] = std::array::from_fn(|k| c[k][lane] - q[k]);
+                    let b = id_eight(id, at)[lane];
+                    if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < *sure || self.decide.closer(a, b) {
+                        self.found.keys.push(self.packing.pack(a, b));
                     }
                 }
+                at += 8;
             }
         }
     }

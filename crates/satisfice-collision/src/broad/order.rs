@@ -61,7 +61,9 @@ impl Packing {
                 at += keys.len();
             }
             // the tables of the passes cost more than sorting so few
-            if n < 512 {
+            if front.is_sorted() {
+                // as a look-up of point after point finds them
+            } else if n < 512 {
                 front.sort_unstable();
             } else {
                 back.resize(n, 0);

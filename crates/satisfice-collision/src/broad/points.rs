@@ -1,6 +1,6 @@
 //! All pairs of points within a threshold, of two bodies or inside one, exactly and in order.
 
-use super::cells::{Cells, Sorted};
+use super::cells::{Cells, Fit, Sorted};
 use super::clip::{Clip, Part, Runs, union};
 use super::exact::Decide;
 use super::frame::{Filter, Frame};
@@ -36,6 +36,7 @@ pub struct PointGrid {
     threads: usize,
     runs: [Runs; 2],
     parts: [Vec<Part>; 2],
+    fit: Fit,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
     keys: [Vec<u64>; 2],
@@ -152,7 +153,7 @@ impl PointGrid {
             return Ok(());
         }
         let filter = frame.filter(threshold.get());
-        let cells = Cells::fit(&self.parts[0], filter.reach);
+        let cells = self.fit.cells(&self.parts[0], filter.reach);
         self.sorted[0].sort(&self.parts[0], &cells, self.threads);
         if !ONE_BODY {
             self.sorted[1].sort(&self.parts[1], &cells, self.threads);

@@ -36,26 +36,6 @@ pub(crate) fn sieve(a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) 
     before - count(a) - count(b)
 }
 
-/// Where a body's points are, roughly.
-pub(crate) struct Presence {
-    grid: Grid,
-    near: Bitmap,
-}
-
-impl Presence {
-    pub(crate) fn of(parts: &[Part], reach: f32) -> Self {
-        let grid = Grid::new(&parts.iter(), reach);
-        let near = mark(parts, &grid, 1).near();
-        Self { grid, near }
-    }
-
-    /// Whether there can be a point within a reach along each axis.
-    #[inline(always)]
-    pub(crate) fn near(&self, q: [f32; 3]) -> bool {
-        self.near.holds(&self.grid, &Placed { q, id: 0 })
-    }
-}
-
 fn mark(parts: &[Part], grid: &Grid, threads: usize) -> Bitmap {
     let one = |part: &Part| {
         let mut bitmap = Bitmap::new();

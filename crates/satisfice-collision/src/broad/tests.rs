@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
+use super::{FeatureKind, FeatureTree, FixedGrid, Found, Packing, Pair, PointGrid, TreeJoin};
 use crate::distance::{Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex};
 use crate::{Error, Mesh, Placement, generate};
 
@@ -140,6 +140,36 @@ fn two_bodies_agree_with_brute_force() {
             );
         }
     }
+}
+
+#[test]
+fn a_kept_grid_agrees_with_brute_force() {
+    let (mut found, mut looked_up) = (Found::default(), 0);
+    for (name, a, b, deltas) in scenes() {
+        for delta in deltas {
+            let threshold = Threshold::new(delta).unwrap();
+            let Some(grid) = FixedGrid::new(&b, threshold).unwrap() else {
+                assert!(b.is_empty(), "{name}");
+                continue;
+            };
+            let packing = Packing::new(a.len(), b.len());
+            grid.look_up(&a, &b, packing, &mut found);
+            let mut pairs: Vec<Pair> = found.keys.iter().map(|&key| packing.unpack(key)).collect();
+            looked_up += pairs.len();
+            pairs.sort_unstable();
+            assert!(
+                pairs == brute(&a, &b, delta, false),
+                "{name}, {delta}: {} pairs",
+                pairs.len()
+            );
+            let with_partner = a.len() as u64 - found.clipped - found.lonely;
+            assert!(
+                pairs.chunk_by(|p, q| p.a == q.a).count() as u64 <= with_partner,
+                "{name}"
+            );
+        }
+    }
+    assert!(looked_up > 100_000, "{looked_up} pairs");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::distance::PairKind;
 /// about that share of them has to be looked up in every frame.
 const CALM: f64 = 0.1;
 /// Frames for which a list that did not pay is not tried again, at first and at last: trying costs as much as a few frames.
-const PAUSES: [u32; 2] = [8, 1024];
+const PAUSES: [u32; 2] = [32, 1024];
 
 /// What is kept of a pair of bodies.
 #[derive(Default)]
@@ -58,8 +58,13 @@ impl Scene {
         }
         self.states[stayer].pose();
         let (one, two) = (&self.states[mover], &self.states[stayer]);
+        let is_first = self.links[at].seen.is_none();
         let kept = &mut self.links[at].kept;
         if kept.grid.is_none() {
+            // It costs as much as several grids of a frame, so that a scene of one frame does without.
+            if is_first {
+                return Ok(None);
+            }
             kept.grid = FixedGrid::new(two.posed(), self.threshold)?;
         }
         let Some(grid) = &kept.grid else { return Ok(None) };
