@@ -86,6 +86,14 @@ impl Plan {
             }
         }
         let problems = self.problems(&part.problems)?;
+        let labels = || problems.iter().map(|(_, label)| label.as_str());
+        if let Some((label, _)) = part
+            .beside
+            .iter()
+            .find(|(beside, _)| !labels().any(|label| label == beside))
+        {
+            return Err(satisfice::Error::unknown("problem of this part", label, labels()).into());
+        }
         for method in engines
             .iter()
             .filter(|engine| exact::find(&engine.name).is_some())

@@ -150,8 +150,12 @@ fn table(group: &Group) -> String {
     let all = group
         .reference_hits
         .map_or_else(|| "not known".to_owned(), shown::count);
+    let beside = group
+        .beside
+        .as_ref()
+        .map_or_else(String::new, |text| format!(" Beside them: {}.", escape(text)));
     let mut text = format!(
-        "<p>Hits that there are: {all}.</p><div class=\"wide\"><table>{}",
+        "<p>Hits that there are: {all}.{beside}</p><div class=\"wide\"><table>{}",
         row("th", heading(group))
     );
     group

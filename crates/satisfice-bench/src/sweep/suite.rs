@@ -23,6 +23,7 @@ use crate::quantity;
 /// evaluations = 100_000                           # and / or: time = "100ms", hits, slices, probes
 /// at-evaluations = [1000, 10_000]                 # where hits are noted; at-times = ["10ms"]
 /// against = "random"                              # with whom all others are compared seed by seed
+/// beside = { queens = "backtracking: all 92 in 2,057 nodes" }   # said beside the figures of a problem
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite {
@@ -67,6 +68,8 @@ pub struct Part {
     pub at_times: Vec<Duration>,
     /// The engine all others are compared with: a name or a label; the first one by default.
     pub against: Option<String>,
+    /// What is said beside a problem's figures, by the problem's label: its name and the parameters that the suite names.
+    pub beside: Vec<(String, String)>,
 }
 
 /// A name with parameters, each with the values to try.
@@ -225,7 +228,7 @@ pub fn seeds(text: &str) -> Result<Range<u64>, String> {
     Ok(range)
 }
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "name",
     "engines",
     "problems",
@@ -238,6 +241,7 @@ const KEYS: [&str; 12] = [
     "at-evaluations",
     "at-times",
     "against",
+    "beside",
 ];
 
 fn part(fields: &Fields<'_>, index: usize, seeds_of_suite: Option<Range<u64>>) -> Result<Part, String> {
@@ -265,6 +269,7 @@ fn part(fields: &Fields<'_>, index: usize, seeds_of_suite: Option<Range<u64>>) -
         at_evaluations: fields.quantities("at-evaluations", quantity::count)?,
         at_times: fields.quantities("at-times", quantity::time)?,
         against: fields.text("against")?.map(str::to_owned),
+        beside: fields.texts("beside")?,
     };
     if part.time.is_none() && part.evaluations.is_none() {
         return Err("no budget: give evaluations = 100_000, time = \"100ms\", or both".to_owned());
@@ -290,6 +295,23 @@ impl<'a> Fields<'a> {
             None => Ok(None),
             Some(Value::String(text)) => Ok(Some(text)),
             Some(other) => Err(format!("{key} = {other} is not allowed: a text in quotes")),
+        }
+    }
+
+    /// A table of texts.
+    fn texts(&self, key: &str) -> Result<Vec<(String, String)>, String> {
+        let hint =
+            |found: &Value| format!("{key} = {found} is not allowed: write {{ \"PROBLEM\" = \"TEXT\" }}");
+        match self.table.get(key) {
+            None => Ok(Vec::new()),
+            Some(Value::Table(table)) => table
+                .iter()
+                .map(|(name, value)| match value {
+                    Value::String(text) => Ok((name.clone(), text.clone())),
+                    other => Err(hint(other)),
+                })
+                .collect(),
+            Some(other) => Err(hint(other)),
         }
     }
 

@@ -30,6 +30,9 @@ pub struct Group {
     pub at_seconds: Vec<f64>,
     /// Label of the engine that the others are compared with.
     pub against: String,
+    /// What the suite says beside the figures.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub beside: Option<String>,
     /// A line an engine, in the order of the suite.
     pub lines: Vec<Line>,
 }
@@ -98,7 +101,13 @@ pub fn groups(plan: &Plan, rows: &[Row]) -> Vec<Group> {
                 .filter(|row| row.problem_label == problem)
                 .collect();
             let engines = unique(planned().map(|run| run.engine_label.as_str()));
-            groups.extend(group(&of_group, &engines, part.against.as_deref()));
+            let beside = part.beside.iter().find(|(label, _)| label == problem);
+            groups.extend(
+                group(&of_group, &engines, part.against.as_deref()).map(|group| Group {
+                    beside: beside.map(|(_, text)| text.clone()),
+                    ..group
+                }),
+            );
         }
     }
     groups
@@ -157,6 +166,7 @@ fn group(rows: &[&Row], engines: &[&str], against: Option<&str>) -> Option<Group
         at_evaluations: key.at_evaluations.clone(),
         at_seconds: key.at_seconds.clone(),
         against: (*against).to_owned(),
+        beside: None,
         lines,
     })
 }
@@ -255,6 +265,9 @@ pub fn table(groups: &[Group]) -> String {
             "{}: {}, {}; hits that there are: {all}",
             group.part, group.problem, group.budget
         );
+        if let Some(beside) = &group.beside {
+            let _ = writeln!(text, "  beside them: {beside}");
+        }
         let mut rows = vec![heading(group)];
         rows.extend(group.lines.iter().map(|line| cells(group, line)));
         let widths: Vec<usize> = (0..rows[0].len())

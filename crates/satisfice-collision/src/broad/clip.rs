@@ -10,7 +10,7 @@ use crate::{Aabb, Error};
 pub(crate) const RUN: usize = 64;
 
 /// The bounding boxes of a body's points, run by run.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Runs {
     boxes: Vec<Aabb>,
     whole: Option<Aabb>,
@@ -45,6 +45,12 @@ impl Runs {
         }
         self.whole = self.boxes.iter().copied().reduce(|a, b| union(&a, &b));
         Ok(())
+    }
+
+    /// Takes over what was measured elsewhere, of the same points.
+    pub(crate) fn copy(&mut self, known: &Self) {
+        self.boxes.clone_from(&known.boxes);
+        self.whole = known.whole;
     }
 
     /// The box of all points; `None` if there are none.

@@ -89,7 +89,7 @@ impl PointGrid {
     /// # Errors
     /// As [`PointGrid::between`].
     pub fn within(&mut self, points: &[[f64; 3]], threshold: Threshold) -> Result<&[Pair], Error> {
-        self.within_until(points, threshold, &Watch::none())
+        self.within_until(points, None, threshold, &Watch::none())
     }
 
     /// [`PointGrid::between`] for as long as the watch lets it.
@@ -100,18 +100,19 @@ impl PointGrid {
         threshold: Threshold,
         watch: &Watch<'_>,
     ) -> Result<&[Pair], Error> {
-        self.run::<false>(a, b, threshold, watch, 0)?;
+        self.run::<false>(a, b, None, threshold, watch, 0)?;
         Ok(&self.pairs)
     }
 
-    /// [`PointGrid::within`] for as long as the watch lets it.
+    /// [`PointGrid::within`] for as long as the watch lets it, of points that may have been measured already.
     pub(crate) fn within_until(
         &mut self,
         points: &[[f64; 3]],
+        measured: Option<&Runs>,
         threshold: Threshold,
         watch: &Watch<'_>,
     ) -> Result<&[Pair], Error> {
-        self.run::<true>(points, points, threshold, watch, 0)?;
+        self.run::<true>(points, points, measured, threshold, watch, 0)?;
         Ok(&self.pairs)
     }
 
@@ -119,6 +120,7 @@ impl PointGrid {
         &mut self,
         a: &[[f64; 3]],
         b: &[[f64; 3]],
+        measured: Option<&Runs>,
         threshold: Threshold,
         watch: &Watch<'_>,
         depth: u32,
@@ -133,7 +135,10 @@ impl PointGrid {
             }
         }
         let (one, two) = self.runs.split_at_mut(1);
-        one[0].measure(a, self.threads)?;
+        match measured {
+            Some(runs) => one[0].copy(runs),
+            None => one[0].measure(a, self.threads)?,
+        }
         if !ONE_BODY {
             two[0].measure(b, self.threads)?;
         }
@@ -302,10 +307,10 @@ impl PointGrid {
             }));
         };
         if ONE_BODY {
-            inner.run::<true>(&a, &a, decide.threshold, watch, depth)?;
+            inner.run::<true>(&a, &a, None, decide.threshold, watch, depth)?;
             take(&inner, own);
         }
-        inner.run::<false>(&a, &b, decide.threshold, watch, depth)?;
+        inner.run::<false>(&a, &b, None, decide.threshold, watch, depth)?;
         take(&inner, others);
         Ok(())
     }

@@ -263,7 +263,8 @@ impl Scene {
             self.states[b].pose();
             let (one, two) = (&self.states[a], &self.states[b]);
             let pairs = if a == b {
-                self.grid.within_until(one.posed(), threshold, watch)?
+                self.grid
+                    .within_until(one.posed(), one.runs(), threshold, watch)?
             } else {
                 self.grid
                     .between_until(one.posed(), two.posed(), threshold, watch)?

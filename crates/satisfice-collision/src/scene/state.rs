@@ -15,8 +15,9 @@ pub(super) struct State {
     rests: bool,
     next_vertices: Vec<Point>,
     has_next: bool,
-    /// The boxes of the next vertices.
+    /// The boxes of the vertices given last, and whether these are the present ones.
     runs: Runs,
+    runs_are_current: bool,
     next_placement: Option<Placement>,
     /// What moved between the last two frames.
     pub(super) moved: Moved,
@@ -58,6 +59,7 @@ impl State {
             next_vertices: Vec::new(),
             has_next: false,
             runs: Runs::default(),
+            runs_are_current: false,
             next_placement: None,
             moved: Moved::All,
             share: 1.0,
@@ -90,6 +92,7 @@ impl State {
                 "a frame has as many vertices as its body",
             ));
         }
+        self.runs_are_current = false;
         self.runs.measure(vertices, 1)?;
         self.next_vertices.clear();
         self.next_vertices.extend_from_slice(vertices);
@@ -142,6 +145,7 @@ impl State {
             self.bounds = self.posed_bounds(&placement);
         }
         if std::mem::take(&mut self.has_next) {
+            self.runs_are_current = true;
             let (mut count, mut square, mut sum, mut squares) = (0, 0.0, [0.0; 3], 0.0);
             for (old, new) in self.vertices.iter().zip(&self.next_vertices) {
                 let step: Point = std::array::from_fn(|k| new[k] - old[k]);
@@ -217,6 +221,11 @@ impl State {
         } else {
             &self.posed
         }
+    }
+
+    /// The boxes of the posed vertices, where they are known.
+    pub(super) fn runs(&self) -> Option<&Runs> {
+        (self.runs_are_current && self.rests).then_some(&self.runs)
     }
 
     /// Where a vertex is in the world.
