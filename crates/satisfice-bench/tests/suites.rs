@@ -32,3 +32,49 @@ fn every_named_suite_is_valid() {
     }
     assert!(names >= 4, "{names}");
 }
+
+const QUEENS: &str = r#"
+    seeds = "0..1"
+    [[part]]
+    engines = ["random"]
+    problems = ["himmelblau", { name = "queens", n = 4 }]
+    evaluations = 100
+    beside = { "queens n=4" = "backtracking: both in a moment" }
+"#;
+
+#[test]
+fn what_stands_beside_a_problem_is_said_with_its_figures_alone() {
+    let plan = Plan::new(Suite::parse("mine", QUEENS).unwrap()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let done = sweep::execute(&plan, folder.path(), 1, &satisfice::Cancel::new(), &mut |_| {}).unwrap();
+    let groups = sweep::groups(&plan, &done.rows);
+    let beside: Vec<Option<&str>> = groups.iter().map(|group| group.beside.as_deref()).collect();
+    assert_eq!(beside, [None, Some("backtracking: both in a moment")]);
+    let table = sweep::table(&groups);
+    assert_eq!(
+        table
+            .matches("beside them: backtracking: both in a moment")
+            .count(),
+        1,
+        "{table}"
+    );
+}
+
+#[test]
+fn something_beside_a_problem_that_is_not_there_is_refused() {
+    for (wrong, hint) in [
+        (r#""queen n=4" = "x""#, "did you mean `queens n=4`"),
+        (r#""queens n=4" = 2"#, "is not allowed"),
+    ] {
+        let text = QUEENS.replace(r#""queens n=4" = "backtracking: both in a moment""#, wrong);
+        let error = Suite::parse("mine", &text).and_then(Plan::new).err().unwrap();
+        assert!(error.to_string().contains(hint), "{error}");
+    }
+}
+
+#[test]
+fn the_same_stands_beside_the_problems_of_both_generalisation_suites() {
+    let beside = |name| Suite::open(name).unwrap().parts.remove(0).beside;
+    assert!(!beside("generalisation").is_empty());
+    assert_eq!(beside("generalisation"), beside("generalisation-time"));
+}
