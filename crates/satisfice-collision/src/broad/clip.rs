@@ -118,39 +118,30 @@ impl Work for Measure<'_> {
     type Output = bool;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) -> bool {
-        let mut finite = true;
+    fn run<L: Lanes>(self, lanes: L) -> bool {
+        let mut all_finite = true;
         for (points, bounds) in self.points.chunks(RUN).zip(self.boxes) {
             // four points are twelve numbers: whole vectors of either width, the same axis in the same lane
             let (fours, rest) = points.as_flattened().as_chunks::<12>();
-            let (mut min, mut max, mut zero) = ([f64::INFINITY; 12], [f64::NEG_INFINITY; 12], [0.0; 12]);
-            for four in fours {
-                for k in 0..12 {
-                    min[k] = if four[k] < min[k] { four[k] } else { min[k] };
-                    max[k] = if four[k] > max[k] { four[k] } else { max[k] };
-                }
-            }
-            for four in fours {
-                for k in 0..12 {
-                    zero[k] += four[k] * 0.0;
-                }
-            }
+            let ([mut min, mut max], mut finite) = lanes.extremes(fours);
             for (k, &c) in rest.iter().enumerate() {
                 min[k] = min[k].min(c);
                 max[k] = max[k].max(c);
-                zero[k] += c * 0.0;
+                finite &= c.is_finite();
             }
-            finite &= zero.iter().sum::<f64>() == 0.0;
-            let fold = |of: &[f64; 12], k: usize, least: bool| {
-                let pick = |a: f64, b: f64| if least { a.min(b) } else { a.max(b) };
+            all_finite &= finite;
+            // plain comparisons: what is not finite is refused anyway
+            let least = |a: f64, b: f64| if a < b { a } else { b };
+            let greatest = |a: f64, b: f64| if a > b { a } else { b };
+            let fold = |of: &[f64; 12], k: usize, pick: fn(f64, f64) -> f64| {
                 pick(pick(of[k], of[k + 3]), pick(of[k + 6], of[k + 9]))
             };
             *bounds = Aabb {
-                min: std::array::from_fn(|k| fold(&min, k, true)),
-                max: std::array::from_fn(|k| fold(&max, k, false)),
+                min: std::array::from_fn(|k| fold(&min, k, least)),
+                max: std::array::from_fn(|k| fold(&max, k, greatest)),
             };
         }
-        finite
+        all_finite
     }
 }
 
@@ -182,14 +173,33 @@ impl Default for Part {
 impl Part {
     /// Measures the box anew.
     pub(crate) fn measure(&mut self) {
-        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for point in &self.points {
-            for k in 0..3 {
-                min[k] = lesser(point.q[k], min[k]);
-                max[k] = greater(point.q[k], max[k]);
-            }
+        dispatch(MeasurePart(self));
+    }
+}
+
+struct MeasurePart<'a>(&'a mut Part);
+
+impl Work for MeasurePart<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Part { points, min, max } = self.0;
+        let none = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
+        // two, because each waits for what it was
+        let mut extremes = [none; 2];
+        let mut widen = |of: usize, Placed { q: [x, y, z], .. }: &Placed| {
+            lanes.widen(&mut extremes[of], [*x, *y, *z, 0.0]);
+        };
+        let (twos, rest) = points.as_chunks::<2>();
+        for [one, two] in twos {
+            widen(0, one);
+            widen(1, two);
         }
-        (self.min, self.max) = (min, max);
+        rest.iter().for_each(|one| widen(0, one));
+        let [[min_one, max_one], [min_two, max_two]] = extremes;
+        *min = std::array::from_fn(|k| lesser(min_one[k], min_two[k]));
+        *max = std::array::from_fn(|k| greater(max_one[k], max_two[k]));
     }
 }
 
@@ -225,36 +235,60 @@ impl Clip<'_> {
 
     fn part(&self, runs: Range<usize>, to: &mut Part) {
         to.points.clear();
-        for run in runs {
-            self.run(run, &mut to.points);
-        }
+        dispatch(Placing {
+            clip: self,
+            runs,
+            to: &mut to.points,
+        });
         to.measure();
     }
+}
 
-    #[inline]
-    fn run(&self, run: usize, to: &mut Vec<Placed>) {
-        let Self { region, frame, .. } = self;
-        let bounds = &self.runs.boxes[run];
-        let first = run * RUN;
-        let points = &self.points[first..self.points.len().min(first + RUN)];
-        let placed = |(at, point): (usize, &[f64; 3])| Placed {
-            q: frame.place(point),
-            id: (first + at) as u32,
-        };
-        if region.contains(bounds.min) && region.contains(bounds.max) {
-            to.extend(points.iter().enumerate().map(placed));
-        } else if intersection(bounds, region).is_some() {
-            // branch-free: always written, kept by moving the end
-            let mut len = to.len();
-            to.resize(len + points.len(), Placed::default());
-            for (at, point) in points.iter().enumerate() {
-                to[len] = placed((at, point));
-                let inside = (0..3).fold(true, |inside, k| {
-                    inside & (region.min[k] <= point[k]) & (point[k] <= region.max[k])
-                });
-                len += usize::from(inside);
+/// The runs of a part being placed.
+struct Placing<'a> {
+    clip: &'a Clip<'a>,
+    runs: Range<usize>,
+    to: &'a mut Vec<Placed>,
+}
+
+impl Work for Placing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Clip {
+            points,
+            runs: Runs { boxes, .. },
+            region,
+            frame,
+        } = *self.clip;
+        let wide = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
+        let (min, max, origin) = (wide(region.min), wide(region.max), wide(frame.origin));
+        let axes = frame.axes();
+        let numbers = points.as_flattened();
+        for run in self.runs {
+            let bounds = &boxes[run];
+            if intersection(bounds, region).is_none() {
+                continue;
             }
-            to.truncate(len);
+            let all = region.contains(bounds.min) && region.contains(bounds.max);
+            let (first, last) = (run * RUN, points.len().min((run + 1) * RUN));
+            // always written, kept by moving the end
+            let mut len = self.to.len();
+            self.to.resize(len + last - first, Placed::default());
+            for (at, point) in (first..).zip(&points[first..last]) {
+                let four = match numbers.get(3 * at..3 * at + 4) {
+                    Some(&[x, y, z, next]) => [x, y, z, next],
+                    _ => wide(*point),
+                };
+                let [x, y, z, _] = lanes.place(&four, &origin, frame.scale, axes);
+                self.to[len] = Placed {
+                    q: [x, y, z],
+                    id: at as u32,
+                };
+                len += usize::from(all || lanes.is_inside(&four, &min, &max));
+            }
+            self.to.truncate(len);
         }
     }
 }

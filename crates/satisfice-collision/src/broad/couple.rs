@@ -3,7 +3,7 @@
 use super::boxes::Moved;
 use super::features::{FeatureKind, FeatureTree};
 use super::lanes::dispatch;
-use super::order::{Packing, Pair};
+use super::pair::Pair;
 use super::relative::Relative;
 use super::separate::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
@@ -46,10 +46,6 @@ impl Couple<'_> {
     /// Whether every feature is a point.
     pub(crate) fn points(&self) -> bool {
         self.a.0.kind() == FeatureKind::Vertex && self.b.0.kind() == FeatureKind::Vertex
-    }
-
-    pub(crate) fn packing(&self) -> Packing {
-        Packing::new(self.a.0.len(), self.b.0.len())
     }
 
     pub(crate) fn keeps(&self, a: u32, b: u32) -> bool {
@@ -122,51 +118,38 @@ impl Couple<'_> {
         enough: usize,
         found: &mut Vec<Pair>,
     ) -> TreeWork {
-        let packing = self.packing();
-        let mut keys = Vec::new();
-        let work = self.lay(|trees, flip| {
-            let go = |points: bool, stack: &mut Vec<Visit>, keys: &mut Vec<u64>| {
-                let work = TreeWork::default();
-                if points {
-                    let mut visit = Visitor::<true> {
-                        couple: self,
-                        flip,
-                        packing,
-                        found: keys,
-                        glance: self.glance(&trees, flip),
-                        enough,
-                        work,
-                    };
-                    let visits = dispatch(Descend {
-                        trees,
-                        stack,
-                        most,
-                        visit: &mut visit,
-                    });
-                    TreeWork { visits, ..visit.work }
-                } else {
-                    let mut visit = Visitor::<false> {
-                        couple: self,
-                        flip,
-                        packing,
-                        found: keys,
-                        glance: self.glance(&trees, flip),
-                        enough,
-                        work,
-                    };
-                    let visits = dispatch(Descend {
-                        trees,
-                        stack,
-                        most,
-                        visit: &mut visit,
-                    });
-                    TreeWork { visits, ..visit.work }
-                }
+        let enough = found.len().saturating_add(enough);
+        if self.points() {
+            self.step_as::<true>(stack, most, enough, found)
+        } else {
+            self.step_as::<false>(stack, most, enough, found)
+        }
+    }
+
+    fn step_as<const POINTS: bool>(
+        &self,
+        stack: &mut Vec<Visit>,
+        most: usize,
+        enough: usize,
+        found: &mut Vec<Pair>,
+    ) -> TreeWork {
+        self.lay(|trees, flip| {
+            let mut visit = Visitor::<POINTS> {
+                couple: self,
+                flip,
+                found,
+                glance: self.glance(&trees, flip),
+                enough,
+                work: TreeWork::default(),
             };
-            go(self.points(), stack, &mut keys)
-        });
-        found.extend(keys.into_iter().map(|key| packing.unpack(key)));
-        work
+            let visits = dispatch(Descend {
+                trees,
+                stack,
+                most,
+                visit: &mut visit,
+            });
+            TreeWork { visits, ..visit.work }
+        })
     }
 
     /// Where a descent starts.
@@ -228,8 +211,7 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
     pub(crate) couple: &'a Couple<'a>,
     /// Whether the first tree of the descent is `b`.
     pub(crate) flip: bool,
-    pub(crate) packing: Packing,
-    pub(crate) found: &'a mut Vec<u64>,
+    pub(crate) found: &'a mut Vec<Pair>,
     /// How to see that two triangles are far apart, if that is what the pairs are.
     pub(crate) glance: Option<Glance<'a>>,
     /// Pairs after which the descent pauses.
@@ -270,7 +252,7 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
                 return;
             }
         }
-        self.found.push(self.packing.pack(a, b));
+        self.found.push(Pair { a, b });
     }
 }
 

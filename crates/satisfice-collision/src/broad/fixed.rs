@@ -7,7 +7,7 @@ use super::exact::Decide;
 use super::frame::{Filter, Frame};
 use super::join::{eight, id_eight};
 use super::lanes::{Lanes, Work, dispatch};
-use super::order::Packing;
+use super::pair::Pair;
 use crate::distance::Threshold;
 use crate::{Aabb, Error};
 
@@ -85,8 +85,8 @@ impl Near {
 /// What a look into it found.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
-    /// The pairs, packed, the looking body's point first, in its order.
-    pub(crate) keys: Vec<u64>,
+    /// The pairs, the looking body's point first, in its order.
+    pub(crate) pairs: Vec<Pair>,
     /// Points outside the region.
     pub(crate) clipped: u64,
     /// Points inside it without a point nearby.
@@ -140,8 +140,8 @@ impl FixedGrid {
     }
 
     /// All pairs of a point of `a` and one of the points that were sorted, which are `b`.
-    pub(crate) fn look_up(&self, a: &[[f64; 3]], b: &[[f64; 3]], packing: Packing, found: &mut Found) {
-        found.keys.clear();
+    pub(crate) fn look_up(&self, a: &[[f64; 3]], b: &[[f64; 3]], found: &mut Found) {
+        found.pairs.clear();
         (found.clipped, found.lonely) = (0, 0);
         let decide = &Decide {
             a,
@@ -151,7 +151,6 @@ impl FixedGrid {
         dispatch(LookUp {
             grid: self,
             decide,
-            packing,
             found,
         });
     }
@@ -160,7 +159,6 @@ impl FixedGrid {
 struct LookUp<'a> {
     grid: &'a FixedGrid,
     decide: &'a Decide<'a>,
-    packing: Packing,
     found: &'a mut Found,
 }
 
@@ -205,7 +203,7 @@ impl Work for LookUp<'_> {
                     let d: [f32; 3] = std::array::from_fn(|k| c[k][lane] - q[k]);
                     let b = id_eight(id, at)[lane];
                     if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < *sure || self.decide.closer(a, b) {
-                        self.found.keys.push(self.packing.pack(a, b));
+                        self.found.pairs.push(Pair { a, b });
                     }
                 }
                 at += 8;

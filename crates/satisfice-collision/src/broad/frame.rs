@@ -82,6 +82,12 @@ impl Frame {
         })
     }
 
+    /// The world axis of each local axis, and a fourth lane that stays where it is.
+    pub(crate) fn axes(&self) -> [u32; 4] {
+        let [x, y, z] = self.axes.map(|axis| axis as u32);
+        [x, y, z, 3]
+    }
+
     /// What can be concluded in this frame about the threshold `delta` (finite, positive).
     pub(crate) fn filter(&self, delta: f64) -> Filter {
         Filter::new(delta * self.scale, self.error, self.half)

@@ -6,8 +6,9 @@ use super::cells::{Cells, Sorted};
 use super::clip::{greater, lesser};
 use super::exact::Decide;
 use super::frame::Filter;
+use super::groups::Groups;
 use super::lanes::{Eight, Lanes, Work};
-use super::order::Packing;
+use super::pair::Pair;
 use super::watch::Watch;
 
 /// Tests between two looks at the watch: some 20 us, or 0.2 ms where most are pairs.
@@ -27,8 +28,8 @@ pub(crate) struct Clump {
 pub(crate) struct Scratch {
     near: [Vec<f32>; 3],
     near_id: Vec<u32>,
-    /// The pairs found, packed.
-    pub(crate) found: Vec<u64>,
+    /// The pairs found.
+    pub(crate) found: Vec<Pair>,
     /// What has to be looked at again in a frame of its own.
     pub(crate) clumps: Vec<Clump>,
     /// Squared distances computed.
@@ -80,7 +81,10 @@ pub(crate) struct Join<'a, const ONE_BODY: bool> {
     pub(crate) cells: &'a Cells,
     pub(crate) filter: &'a Filter,
     pub(crate) decide: &'a Decide<'a>,
-    pub(crate) packing: Packing,
+    /// Of two bodies the points of `a` are known by rank.
+    pub(crate) groups: &'a Groups,
+    /// Number of this task.
+    pub(crate) task: usize,
     pub(crate) layers: Range<usize>,
     /// Whether clumps may be handed back.
     pub(crate) split: bool,
@@ -135,7 +139,12 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
         for (i, at) in own.enumerate() {
             let q = [self.a.c[0][at], self.a.c[1][at], self.a.c[2][at]];
             let skip = if ONE_BODY { i + 1 } else { 0 };
-            self.scan(lanes, q, self.a.id[at], skip, near);
+            let (id, place) = (self.a.id[at], self.scratch.found.len());
+            self.scan(lanes, q, id, skip, near);
+            let count = self.scratch.found.len() - place;
+            if !ONE_BODY && count > 0 {
+                self.groups.found(id, self.task, place, count);
+            }
             self.scratch.tests += near as u64;
             if self.scratch.tests >= self.scratch.next_look && self.scratch.is_enough(self.watch) {
                 return true;
@@ -242,11 +251,12 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
                 }
                 if dx * dx + dy * dy + dz * dz >= sure {
                     *in_band += 1;
+                    let a = if ONE_BODY { a } else { self.groups.id(a) };
                     if !self.decide.closer(a, b) {
                         continue;
                     }
                 }
-                found.push(self.packing.pack(a, b));
+                found.push(Pair { a, b });
             }
             base += 64;
         }

@@ -22,6 +22,14 @@ pub(crate) trait Lanes: Copy + Send + Sync {
     fn compact(self, from: &Eight, mask: u32, to: &mut Eight);
     /// The same for serial numbers.
     fn compact_ids(self, from: &[u32; 8], mask: u32, to: &mut [u32; 8]);
+    /// The least and the greatest of each of twelve columns, and whether all are finite.
+    fn extremes(self, rows: &[[f64; 12]]) -> ([[f64; 12]; 2], bool);
+    /// Whether each of the first three numbers lies between the bounds, which are included.
+    fn is_inside(self, point: &[f64; 4], min: &[f64; 4], max: &[f64; 4]) -> bool;
+    /// `((point - origin) * scale) as f32`, with the numbers then taken in the order of `axes`.
+    fn place(self, point: &[f64; 4], origin: &[f64; 4], scale: f64, axes: [u32; 4]) -> [f32; 4];
+    /// The lesser and the greater of each two numbers.
+    fn widen(self, extremes: &mut [[f32; 4]; 2], point: [f32; 4]);
 }
 
 /// A piece of work that runs inside a function compiled for the vector unit found.
@@ -106,6 +114,42 @@ impl Lanes for Portable {
             mask &= mask - 1;
         }
     }
+
+    #[inline(always)]
+    fn extremes(self, rows: &[[f64; 12]]) -> ([[f64; 12]; 2], bool) {
+        let (mut min, mut max, mut zero) = ([f64::INFINITY; 12], [f64::NEG_INFINITY; 12], [0.0; 12]);
+        for row in rows {
+            for k in 0..12 {
+                min[k] = if row[k] < min[k] { row[k] } else { min[k] };
+                max[k] = if row[k] > max[k] { row[k] } else { max[k] };
+                zero[k] += row[k] * 0.0;
+            }
+        }
+        ([min, max], zero.iter().all(|&zero| zero == 0.0))
+    }
+
+    #[inline(always)]
+    fn is_inside(self, point: &[f64; 4], min: &[f64; 4], max: &[f64; 4]) -> bool {
+        (0..3).fold(true, |inside, k| {
+            inside & (min[k] <= point[k]) & (point[k] <= max[k])
+        })
+    }
+
+    #[inline(always)]
+    fn place(self, point: &[f64; 4], origin: &[f64; 4], scale: f64, axes: [u32; 4]) -> [f32; 4] {
+        axes.map(|axis| {
+            let axis = axis as usize & 3;
+            ((point[axis] - origin[axis]) * scale) as f32
+        })
+    }
+
+    #[inline(always)]
+    fn widen(self, [min, max]: &mut [[f32; 4]; 2], point: [f32; 4]) {
+        for k in 0..4 {
+            min[k] = if point[k] < min[k] { point[k] } else { min[k] };
+            max[k] = if point[k] > max[k] { point[k] } else { max[k] };
+        }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -113,7 +157,7 @@ use avx2::OnAvx2;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use std::arch::x86_64::{__m256, __m256i, _CMP_LE_OQ, _CMP_LT_OQ};
+    use std::arch::x86_64::{__m256, __m256d, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
 
     use pulp::NullaryFnOnce;
     use pulp::x86::V3;
@@ -163,6 +207,11 @@ mod avx2 {
     #[expect(clippy::cast_sign_loss, reason = "a mask of eight bits")]
     fn bits(unit: V3, of: __m256) -> u32 {
         unit.avx._mm256_movemask_ps(of) as u32
+    }
+
+    #[inline(always)]
+    fn three(row: &[f64; 12]) -> [__m256d; 3] {
+        pulp::cast(*row)
     }
 
     impl Lanes for V3 {
@@ -233,6 +282,55 @@ mod avx2 {
                 self.avx2
                     ._mm256_permutevar8x32_epi32(pulp::cast(*from), order(mask)),
             );
+        }
+
+        #[inline(always)]
+        fn extremes(self, rows: &[[f64; 12]]) -> ([[f64; 12]; 2], bool) {
+            let avx = self.avx;
+            let mut min = [avx._mm256_set1_pd(f64::INFINITY); 3];
+            let mut max = [avx._mm256_set1_pd(f64::NEG_INFINITY); 3];
+            let mut zero = [avx._mm256_set1_pd(0.0); 3];
+            let nothing = zero[0];
+            for row in rows {
+                let row = three(row);
+                for k in 0..3 {
+                    min[k] = avx._mm256_min_pd(row[k], min[k]);
+                    max[k] = avx._mm256_max_pd(row[k], max[k]);
+                    // not a number from here on, if one is not finite
+                    zero[k] = self.fma._mm256_fmadd_pd(row[k], nothing, zero[k]);
+                }
+            }
+            let zero = avx._mm256_add_pd(avx._mm256_add_pd(zero[0], zero[1]), zero[2]);
+            let is_zero = avx._mm256_cmp_pd::<_CMP_EQ_OQ>(zero, nothing);
+            (
+                [pulp::cast(min), pulp::cast(max)],
+                avx._mm256_movemask_pd(is_zero) == 0xf,
+            )
+        }
+
+        #[inline(always)]
+        fn is_inside(self, point: &[f64; 4], min: &[f64; 4], max: &[f64; 4]) -> bool {
+            let avx = self.avx;
+            let point = pulp::cast(*point);
+            let above = avx._mm256_cmp_pd::<_CMP_LE_OQ>(pulp::cast(*min), point);
+            let below = avx._mm256_cmp_pd::<_CMP_LE_OQ>(point, pulp::cast(*max));
+            avx._mm256_movemask_pd(avx._mm256_and_pd(above, below)) & 7 == 7
+        }
+
+        #[inline(always)]
+        fn place(self, point: &[f64; 4], origin: &[f64; 4], scale: f64, axes: [u32; 4]) -> [f32; 4] {
+            let avx = self.avx;
+            let from = avx._mm256_sub_pd(pulp::cast(*point), pulp::cast(*origin));
+            let scaled = avx._mm256_mul_pd(from, avx._mm256_set1_pd(scale));
+            let placed = avx._mm256_cvtpd_ps(scaled);
+            pulp::cast(avx._mm_permutevar_ps(placed, pulp::cast(axes)))
+        }
+
+        #[inline(always)]
+        fn widen(self, [min, max]: &mut [[f32; 4]; 2], point: [f32; 4]) {
+            let point = pulp::cast(point);
+            *min = pulp::cast(self.sse._mm_min_ps(point, pulp::cast(*min)));
+            *max = pulp::cast(self.sse._mm_max_ps(point, pulp::cast(*max)));
         }
     }
 }

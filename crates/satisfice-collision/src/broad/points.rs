@@ -4,11 +4,13 @@ use super::cells::{Cells, Fit, Sorted};
 use super::clip::{Clip, Part, Runs, union};
 use super::exact::Decide;
 use super::frame::{Filter, Frame};
+use super::groups::Groups;
 use super::join::{Clump, Join, Scratch};
 use super::lanes::dispatch;
-use super::order::{Packing, Pair};
 use super::overlap;
+use super::pair::Pair;
 use super::sieve::sieve;
+use super::sorting::Sorter;
 use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Aabb, Error};
@@ -39,7 +41,8 @@ pub struct PointGrid {
     fit: Fit,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
-    keys: [Vec<u64>; 2],
+    groups: Groups,
+    sorter: Sorter,
     pairs: Vec<Pair>,
     work: PointWork,
 }
@@ -159,25 +162,31 @@ impl PointGrid {
         }
         let filter = frame.filter(threshold.get());
         let cells = self.fit.cells(&self.parts[0], filter.reach);
+        if !ONE_BODY {
+            self.groups.rank(&mut self.parts[0]);
+        }
         self.sorted[0].sort(&self.parts[0], &cells, self.threads);
         if !ONE_BODY {
             self.sorted[1].sort(&self.parts[1], &cells, self.threads);
         }
-        let packing = Packing::new(a.len(), b.len());
         let decide = Decide { a, b, threshold };
-        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, packing, depth < DEEPEST, watch);
+        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, depth < DEEPEST, watch);
         for task in 0..tasks {
             for clump in std::mem::take(&mut self.tasks[task].clumps) {
                 if watch.stopped() {
                     break;
                 }
-                self.clump::<ONE_BODY>(&decide, packing, task, &clump, watch, depth)?;
+                self.clump::<ONE_BODY>(&decide, task, &clump, watch, depth)?;
             }
             self.work.tests += self.tasks[task].tests;
             self.work.in_band += self.tasks[task].in_band;
         }
         let found = self.tasks[..tasks].iter().map(|task| task.found.as_slice());
-        packing.sort(found, &mut self.keys, &mut self.pairs, self.threads);
+        if ONE_BODY {
+            self.sorter.sort(found, &mut self.pairs, self.threads);
+        } else {
+            self.groups.gather(found, &mut self.pairs, self.threads);
+        }
         Ok(())
     }
 
@@ -231,10 +240,10 @@ impl PointGrid {
         cells: &Cells,
         filter: &Filter,
         decide: &Decide<'_>,
-        packing: Packing,
         split: bool,
         watch: &Watch<'_>,
     ) -> usize {
+        let groups = &self.groups;
         let a = &self.sorted[0];
         let b = if ONE_BODY { a } else { &self.sorted[1] };
         let layers = cells.count()[2];
@@ -242,7 +251,7 @@ impl PointGrid {
         let tasks = if self.threads < 2 || points < 16_384 {
             1
         } else {
-            (self.threads * 8).min(layers)
+            (self.threads * 8).min(layers).min(super::groups::TASKS)
         };
         self.tasks
             .resize_with(tasks.max(self.tasks.len()), Scratch::default);
@@ -256,7 +265,8 @@ impl PointGrid {
                 cells,
                 filter,
                 decide,
-                packing,
+                groups,
+                task,
                 layers,
                 split,
                 watch,
@@ -279,15 +289,14 @@ impl PointGrid {
     fn clump<const ONE_BODY: bool>(
         &mut self,
         decide: &Decide<'_>,
-        packing: Packing,
         task: usize,
         Clump { a: own, b: others }: &Clump,
         watch: &Watch<'_>,
         depth: u32,
     ) -> Result<(), Error> {
-        let pick = |of: &[[f64; 3]], ids: &[u32]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
-        let a = pick(decide.a, own);
-        let b = pick(decide.b, others);
+        let id = |a: u32| if ONE_BODY { a } else { self.groups.id(a) };
+        let a: Vec<_> = own.iter().map(|&a| decide.a[id(a) as usize]).collect();
+        let b: Vec<_> = others.iter().map(|&b| decide.b[b as usize]).collect();
         let bounds = Aabb::of_points(a.iter().copied());
         let whole = self.runs[0].whole();
         let halves = bounds
@@ -298,13 +307,23 @@ impl PointGrid {
         let mut take = |inner: &Self, b: &[u32]| {
             self.work.tests += inner.work.tests;
             self.work.in_band += inner.work.in_band;
-            self.tasks[task].found.extend(inner.pairs.iter().map(|pair| {
-                let (mut a, mut b) = (own[pair.a as usize], b[pair.b as usize]);
-                if ONE_BODY && a > b {
-                    (a, b) = (b, a);
-                }
-                packing.pack(a, b)
-            }));
+            let found = &mut self.tasks[task].found;
+            if ONE_BODY {
+                found.extend(inner.pairs.iter().map(|pair| {
+                    let (a, b) = (own[pair.a as usize], b[pair.b as usize]);
+                    let (a, b) = (a.min(b), a.max(b));
+                    Pair { a, b }
+                }));
+                return;
+            }
+            for group in inner.pairs.chunk_by(|p, q| p.a == q.a) {
+                let a = own[group[0].a as usize];
+                self.groups.found(a, task, found.len(), group.len());
+                found.extend(group.iter().map(|pair| Pair {
+                    a,
+                    b: b[pair.b as usize],
+                }));
+            }
         };
         if ONE_BODY {
             inner.run::<true>(&a, &a, None, decide.threshold, watch, depth)?;

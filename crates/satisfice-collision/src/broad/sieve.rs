@@ -7,8 +7,9 @@ use super::clip::{Part, Placed, greater, lesser};
 const SIDE: usize = 64;
 /// Fewer points than this are sorted faster than sieved.
 const WORTH: usize = 1 << 15;
-/// Points that tell whether the other body fills the overlap, so that a sieve would hold nothing back.
-const SAMPLE: usize = 1 << 11;
+/// Points that tell whether the other body fills the overlap, so that a sieve would hold nothing back: uniform points of this
+/// number are near to half of the cells.
+const SAMPLE: usize = 1 << 13;
 
 /// Drops the points of either body that have no cell of the other's nearby. Returns how many.
 pub(crate) fn sieve(a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
@@ -37,23 +38,22 @@ pub(crate) fn sieve(a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) 
 }
 
 fn mark(parts: &[Part], grid: &Grid, threads: usize) -> Bitmap {
-    let one = |part: &Part| {
+    let mark = |parts: &[Part]| {
         let mut bitmap = Bitmap::new();
-        part.points.iter().for_each(|point| bitmap.mark(grid, point));
+        for part in parts {
+            part.points.iter().for_each(|point| bitmap.mark(grid, point));
+        }
         bitmap
     };
     if threads < 2 {
-        parts
-            .iter()
-            .map(one)
-            .fold(Bitmap::new(), |all, part| all.or(&part))
-    } else {
-        use rayon::prelude::*;
-        parts
-            .par_iter()
-            .map(one)
-            .reduce(Bitmap::new, |all, part| all.or(&part))
+        return mark(parts);
     }
+    use rayon::prelude::*;
+    // a bitmap a thread, not a part
+    parts
+        .par_chunks(parts.len().div_ceil(threads))
+        .map(mark)
+        .reduce(Bitmap::new, |all, part| all.or(&part))
 }
 
 fn keep(parts: &mut [Part], grid: &Grid, near: &Bitmap, threads: usize) {

@@ -4,7 +4,8 @@ use super::boxes::{BoxTree, Moved};
 use super::couple::{Couple, Keep, Visitor};
 use super::features::FeatureTree;
 use super::lanes::dispatch;
-use super::order::Pair;
+use super::pair::Pair;
+use super::sorting::Sorter;
 use super::traverse::{Descend, Trees, Visit};
 use super::watch::Watch;
 use crate::distance::Threshold;
@@ -29,7 +30,7 @@ pub struct TreeWork {
 pub struct TreeJoin {
     threads: usize,
     tasks: Vec<Task>,
-    keys: [Vec<u64>; 2],
+    sorter: Sorter,
     pairs: Vec<Pair>,
     work: TreeWork,
 }
@@ -37,7 +38,7 @@ pub struct TreeJoin {
 #[derive(Debug, Default)]
 struct Task {
     stack: Vec<Visit>,
-    found: Vec<u64>,
+    found: Vec<Pair>,
     work: TreeWork,
 }
 
@@ -175,14 +176,12 @@ impl TreeJoin {
         flip: bool,
         watch: &Watch<'_>,
     ) {
-        let packing = couple.packing();
         let glance = couple.glance(&trees, flip);
         let go = |task: &mut Task, most: usize| {
             let Task { stack, found, work } = task;
             let mut visit = Visitor::<POINTS> {
                 couple,
                 flip,
-                packing,
                 found,
                 glance,
                 enough: usize::MAX,
@@ -245,6 +244,6 @@ impl TreeJoin {
             self.work.decisions += work.decisions;
         }
         let found = self.tasks.iter().map(|task| task.found.as_slice());
-        packing.sort(found, &mut self.keys, &mut self.pairs, self.threads);
+        self.sorter.sort(found, &mut self.pairs, self.threads);
     }
 }

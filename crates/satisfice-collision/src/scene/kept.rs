@@ -5,7 +5,7 @@ use super::link::{Near, filters, keeps};
 use super::near::NearList;
 use super::{Scene, Skips};
 use crate::Error;
-use crate::broad::{FixedGrid, Method, Packing, Pair};
+use crate::broad::{FixedGrid, Method, Pair};
 use crate::distance::PairKind;
 
 /// A list is made if in the last frame the vertices of a body moved less than this among themselves, in margins of the list:
@@ -68,13 +68,12 @@ impl Scene {
             kept.grid = FixedGrid::new(two.posed(), self.threshold)?;
         }
         let Some(grid) = &kept.grid else { return Ok(None) };
-        let packing = Packing::new(one.vertices.len(), two.vertices.len());
-        grid.look_up(one.posed(), two.posed(), packing, &mut self.found);
+        grid.look_up(one.posed(), two.posed(), &mut self.found);
         skips.outside_overlap += self.found.clipped;
         skips.without_partner += self.found.lonely;
         let mut pairs = Vec::new();
-        let found = std::iter::once(self.found.keys.as_slice());
-        packing.sort(found, &mut self.keys, &mut pairs, 1);
+        let found = std::iter::once(self.found.pairs.as_slice());
+        self.sorter.sort(found, &mut pairs, 1);
         if filters(one, two, false) {
             let near = Near::default();
             pairs.retain(|pair| keeps(self.kind, one, two, false, *pair, &near));
@@ -115,12 +114,17 @@ impl Scene {
             kept.list = NearList::new(self.threshold, points, &keep);
         }
         let pairs = kept.list.as_mut().map(|list| {
-            let packing = Packing::new(points.len(), points.len());
-            let keys = &mut self.found.keys;
-            keys.clear();
-            list.pairs(points, |v, w| keys.push(packing.pack(v.min(w), v.max(w))));
+            let found = &mut self.found.pairs;
+            found.clear();
+            list.pairs(points, |v, w| {
+                found.push(Pair {
+                    a: v.min(w),
+                    b: v.max(w),
+                });
+            });
             let mut pairs = Vec::new();
-            packing.sort(std::iter::once(keys.as_slice()), &mut self.keys, &mut pairs, 1);
+            let found = std::iter::once(found.as_slice());
+            self.sorter.sort(found, &mut pairs, 1);
             pairs
         });
         if pairs.is_none() {

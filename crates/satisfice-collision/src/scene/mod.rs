@@ -35,7 +35,7 @@ pub use skips::Skips;
 
 use std::collections::BTreeSet;
 
-use crate::broad::{FeatureKind, Found, Method, PointGrid, TreeJoin, Watch};
+use crate::broad::{FeatureKind, Found, Method, PointGrid, Sorter, TreeJoin, Watch};
 use crate::distance::{PairKind, Point, Proximity, Threshold};
 use crate::{Error, Placement};
 use link::Link;
@@ -101,7 +101,7 @@ pub struct Scene {
     laid_out: Vec<Contact>,
     /// For sorting.
     found: Found,
-    keys: [Vec<u64>; 2],
+    sorter: Sorter,
 }
 
 impl Scene {
@@ -123,7 +123,7 @@ impl Scene {
             parallel: false,
             laid_out: Vec::new(),
             found: Found::default(),
-            keys: Default::default(),
+            sorter: Sorter::default(),
         }
     }
 
