@@ -3,7 +3,7 @@ use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, Tree
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::{Mesh, Placement};
 
-use crate::table::{Method, Pairs, Report, all_threads};
+use crate::table::{Method, Pairs, Report, all_threads, least, time};
 use crate::{peers, plain_grid, scenes};
 
 pub(crate) fn plain(pairs: &[Pair]) -> Pairs {
@@ -42,6 +42,44 @@ fn truth(scene: &scenes::Pair, trees: &[FeatureTree; 2], threshold: Threshold) -
         .expect("finite points");
     assert!(by_tree == by_grid, "{}", scene.name);
     plain(by_grid)
+}
+
+/// What no method can do without: reading the coordinates once, and how much faster that is on all threads.
+fn reading(report: &mut Report, pool: &rayon::ThreadPool, bodies: [&[[f64; 3]]; 2]) {
+    fn sum(points: &[[f64; 3]]) -> f64 {
+        let (chunks, rest) = points.as_flattened().as_chunks::<32>();
+        let mut sums = [0.0; 32];
+        for chunk in chunks {
+            sums.iter_mut().zip(chunk).for_each(|(sum, c)| *sum += c);
+        }
+        sums.iter().chain(rest).sum()
+    }
+    let rounds = if report.full { 31 } else { 1 };
+    let mut times = [const { Vec::new() }; 2];
+    for _ in 0..rounds {
+        let (one, _) = time(|| std::hint::black_box(bodies.map(sum)));
+        let (all, _) = time(|| {
+            pool.install(|| {
+                use rayon::prelude::*;
+                let parts = bodies.par_iter().flat_map(|body| body.par_chunks(1 << 16));
+                std::hint::black_box(parts.map(sum).sum::<f64>())
+            })
+        });
+        times[0].push(one);
+        times[1].push(all);
+    }
+    let [one, all] = times.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        (times[times.len() / 2], times[0])
+    });
+    report.line(&format!(
+        "Reading the coordinates alone: {:.2} ms, by all threads {:.2}; one thread / all threads {:.2} (least {:.2}).",
+        one.0,
+        all.0,
+        one.0 / all.0,
+        one.1 / all.1
+    ));
+    report.line("");
 }
 
 /// Structure built each frame.
@@ -98,15 +136,19 @@ pub(crate) fn fresh(report: &mut Report) {
                 Pairs::new()
             }));
         }
-        let ms = report.compare(name, &truth, methods);
+        let times = report.compare(name, &truth, methods);
         report.line(&format!(
-            "Fastest rival / ours {:.1}; plain grid / ours {:.2}; kiddo / plain grid {:.2}; one thread / all threads {:.2}.",
-            ms[3].min(ms[4]) / ms[0],
-            ms[2] / ms[0],
-            ms[3] / ms[2],
-            ms[0] / ms[1]
+            "Fastest rival / ours {}; plain grid / ours {}; kiddo / plain grid {}; one thread / all threads {:.2} (least {:.2}).",
+            least(times[3].ratios(times[0]), times[4].ratios(times[0])),
+            times[2].ratios(times[0]),
+            times[3].ratios(times[2]),
+            times[0].warm / times[1].warm,
+            times[0].least / times[1].least,
         ));
         report.line("");
+        if !small {
+            reading(report, &pool, [a, b]);
+        }
     }
 }
 
@@ -160,8 +202,12 @@ pub(crate) fn kept(report: &mut Report) {
                 )
             }),
         ];
-        let ms = report.compare(name, &truth, methods);
-        report.line(&format!("parry / ours {:.2}.", ms[2] / ms[0]));
+        let times = report.compare(name, &truth, methods);
+        report.line(&format!(
+            "parry / ours {}; one thread / all threads {:.2}.",
+            times[2].ratios(times[0]),
+            times[0].warm / times[1].warm
+        ));
         report.line("");
     }
 }

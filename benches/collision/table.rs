@@ -4,6 +4,9 @@
 use std::fmt::Write as _;
 use std::time::{Instant, SystemTime};
 
+/// Turns of a method running.
+const TURNS: usize = 3;
+
 /// Pairs by number.
 pub(crate) type Pairs = Vec<(u32, u32)>;
 
@@ -20,6 +23,44 @@ impl<'a> Method<'a> {
             run: Box::new(run),
         }
     }
+}
+
+/// Times of a method, in milliseconds.
+#[derive(Clone, Copy)]
+pub(crate) struct Times {
+    /// Median of the turns after the first of a round.
+    pub(crate) warm: f64,
+    /// Median of the first turns.
+    pub(crate) cold: f64,
+    pub(crate) least: f64,
+}
+
+impl Times {
+    /// How many times as long it takes as another.
+    pub(crate) fn ratios(self, to: Self) -> Ratios {
+        Ratios {
+            warm: self.warm / to.warm,
+            cold: self.cold / to.cold,
+        }
+    }
+}
+
+/// A ratio of times, and the same of first turns.
+#[derive(Clone, Copy)]
+pub(crate) struct Ratios {
+    pub(crate) warm: f64,
+    cold: f64,
+}
+
+impl std::fmt::Display for Ratios {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.2} (after others {:.2})", self.warm, self.cold)
+    }
+}
+
+/// Whichever is the less.
+pub(crate) fn least(one: Ratios, two: Ratios) -> Ratios {
+    if one.warm < two.warm { one } else { two }
 }
 
 /// The report of one run.
@@ -40,9 +81,11 @@ impl Report {
         report.line(&machine());
         report.line("");
         report.line(
-            "Times are medians in milliseconds of interleaved runs, one thread unless a name says otherwise, results \
-             included. Error is (missed + wrong pairs) / true pairs; the truth is what two exact methods agree on. Ratio is \
-             the time divided by that of the first row. Written by `cargo bench --bench collision`.",
+            "Times are medians in milliseconds, one thread unless a name says otherwise, results included. In a round every \
+             method has three turns running, and rounds follow each other: the first turn finds in the cache what another \
+             method left there (column *after others*), the other two what itself left there (*ms*, and *least*). Ratio is *ms* \
+             divided by that of the first row. Error is (missed + wrong pairs) / true pairs; the truth is what two exact methods \
+             agree on. Written by `cargo bench --bench collision`.",
         );
         report
     }
@@ -60,17 +103,17 @@ impl Report {
         self.line("");
     }
 
-    /// Times the methods of one scene; `truth` is sorted. Returns the medians. A test asks each method once.
+    /// Times the methods of one scene; `truth` is sorted. A test asks each method once.
     pub(crate) fn compare(
         &mut self,
         scene: &str,
         truth: &[(u32, u32)],
         mut methods: Vec<Method<'_>>,
-    ) -> Vec<f64> {
+    ) -> Vec<Times> {
         self.line(&format!("**{scene}**, {} pairs", truth.len()));
         self.line("");
-        self.line("| method | ms | ratio | missed | wrong | error |");
-        self.line("|---|---|---|---|---|---|");
+        self.line("| method | ms | ratio | after others | least | missed | wrong | error |");
+        self.line("|---|---|---|---|---|---|---|---|");
         let mut errors = Vec::new();
         let mut slowest = 0.0_f64;
         for method in &mut methods {
@@ -89,38 +132,45 @@ impl Report {
             errors.push((missed, wrong));
         }
         let rounds = if self.full {
-            ((2.0 / slowest) as usize).clamp(5, 101)
+            ((1.0 / slowest) as usize).clamp(4, 61)
         } else {
             1
         };
-        let mut times = vec![Vec::new(); methods.len()];
+        let mut times = vec![[const { Vec::new() }; 2]; methods.len()];
         for _ in 0..rounds {
-            for (method, times) in methods.iter_mut().zip(&mut times) {
-                let start = Instant::now();
-                std::hint::black_box((method.run)());
-                times.push(start.elapsed().as_secs_f64() * 1e3);
+            for (method, [warm, cold]) in methods.iter_mut().zip(&mut times) {
+                for turn in 0..TURNS {
+                    let (ms, _) = time(|| std::hint::black_box((method.run)()));
+                    if turn == 0 { &mut *cold } else { &mut *warm }.push(ms);
+                }
             }
         }
-        let medians: Vec<f64> = times
-            .iter_mut()
-            .map(|times| {
-                times.sort_by(f64::total_cmp);
-                times[times.len() / 2]
+        let times: Vec<Times> = times
+            .into_iter()
+            .map(|[mut warm, mut cold]| {
+                warm.sort_by(f64::total_cmp);
+                cold.sort_by(f64::total_cmp);
+                Times {
+                    warm: warm[warm.len() / 2],
+                    cold: cold[cold.len() / 2],
+                    least: warm[0].min(cold[0]),
+                }
             })
             .collect();
-        for ((method, &median), (missed, wrong)) in methods.iter().zip(&medians).zip(errors) {
+        for ((method, times_of), (missed, wrong)) in methods.iter().zip(&times).zip(errors) {
+            let Times { warm, cold, least } = times_of;
             let error = (missed + wrong) as f64 / truth.len().max(1) as f64;
             self.line(&format!(
-                "| {} | {median:.4} | {:.2} | {missed} | {wrong} | {error:.2e} |",
+                "| {} | {warm:.4} | {:.2} | {cold:.4} | {least:.4} | {missed} | {wrong} | {error:.2e} |",
                 method.name,
-                median / medians[0]
+                warm / times[0].warm
             ));
             if method.name.starts_with("ours") {
                 assert_eq!((missed, wrong), (0, 0), "{}: {}", scene, method.name);
             }
         }
         self.line("");
-        medians
+        times
     }
 
     /// Writes the report.

@@ -18,6 +18,22 @@ use crate::{Aabb, Error};
 /// How deep clumps are looked at in frames of their own; each is at most half as wide as the one before.
 const DEEPEST: u32 = 40;
 
+/// Points from which threads share the work: to wake one takes as long as some hundreds of points do.
+const SHARED: usize = 1 << 15;
+
+/// Does both, side by side where there are threads for it.
+fn both<A: Send, B: Send>(
+    shared: bool,
+    one: impl FnOnce() -> A + Send,
+    two: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if shared {
+        rayon::join(one, two)
+    } else {
+        (one(), two())
+    }
+}
+
 /// What an enumeration had to do.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PointWork {
@@ -137,14 +153,26 @@ impl PointGrid {
                 });
             }
         }
-        let (one, two) = self.runs.split_at_mut(1);
-        match measured {
-            Some(runs) => one[0].copy(runs),
-            None => one[0].measure(a, self.threads)?,
-        }
-        if !ONE_BODY {
-            two[0].measure(b, self.threads)?;
-        }
+        let (threads, shared) = (self.threads, self.threads > 1 && a.len() + b.len() >= SHARED);
+        let [runs_a, runs_b] = &mut self.runs;
+        let (one, two) = both(
+            shared && !ONE_BODY,
+            || match measured {
+                Some(runs) => {
+                    runs_a.copy(runs);
+                    Ok(())
+                }
+                None => runs_a.measure(a, threads),
+            },
+            || {
+                if ONE_BODY {
+                    Ok(())
+                } else {
+                    runs_b.measure(b, threads)
+                }
+            },
+        );
+        one.and(two)?;
         let Some(frame) = self.clip::<ONE_BODY>(a, b, threshold) else {
             self.work.clipped = if ONE_BODY { a.len() } else { a.len() + b.len() } as u64;
             return Ok(());
@@ -165,10 +193,16 @@ impl PointGrid {
         if !ONE_BODY {
             self.groups.rank(&mut self.parts[0]);
         }
-        self.sorted[0].sort(&self.parts[0], &cells, self.threads);
-        if !ONE_BODY {
-            self.sorted[1].sort(&self.parts[1], &cells, self.threads);
-        }
+        let ([sorted_a, sorted_b], [parts_a, parts_b]) = (&mut self.sorted, &self.parts);
+        both(
+            shared && !ONE_BODY,
+            || sorted_a.sort(parts_a, &cells, threads),
+            || {
+                if !ONE_BODY {
+                    sorted_b.sort(parts_b, &cells, threads);
+                }
+            },
+        );
         let decide = Decide { a, b, threshold };
         let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, depth < DEEPEST, watch);
         for task in 0..tasks {
@@ -217,20 +251,20 @@ impl PointGrid {
         }
         let regions = overlap::regions(runs_a, runs_b, threshold.get())?;
         let frame = &Frame::for_threshold(&union(&regions[0], &regions[1]), threshold.get());
-        Clip {
-            points: a,
-            runs: runs_a,
-            region: &regions[0],
-            frame,
-        }
-        .place(parts_a, *threads);
-        Clip {
-            points: b,
-            runs: runs_b,
-            region: &regions[1],
-            frame,
-        }
-        .place(parts_b, *threads);
+        let clip = |points, runs, region, parts: &mut Vec<Part>| {
+            Clip {
+                points,
+                runs,
+                region,
+                frame,
+            }
+            .place(parts, *threads);
+        };
+        both(
+            *threads > 1 && a.len() + b.len() >= SHARED,
+            || clip(a, &*runs_a, &regions[0], parts_a),
+            || clip(b, &*runs_b, &regions[1], parts_b),
+        );
         self.work.lonely = sieve(parts_a, parts_b, frame.filter(threshold.get()).reach, *threads) as u64;
         Some(*frame)
     }
@@ -248,7 +282,7 @@ impl PointGrid {
         let b = if ONE_BODY { a } else { &self.sorted[1] };
         let layers = cells.count()[2];
         let points = a.start[a.start.len() - 1] as usize;
-        let tasks = if self.threads < 2 || points < 16_384 {
+        let tasks = if self.threads < 2 || points < SHARED / 8 {
             1
         } else {
             (self.threads * 8).min(layers).min(super::groups::TASKS)
