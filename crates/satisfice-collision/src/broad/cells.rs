@@ -5,7 +5,7 @@ use super::clip::{Part, Placed, greater, lesser};
 /// Cells along one axis at most: the cell of a coordinate then stays exact enough to be useful, and no index overflows.
 const PER_AXIS: usize = 1 << 15;
 /// Points up to which one pass sorts; more are first dealt out to groups of layers, each small enough for the cache.
-const ONE_PASS: usize = 1 << 15;
+const ONE_PASS: usize = 1 << 16;
 
 /// 2^23: added to a number from 0 to 2^22, it leaves the nearest whole number in the lowest bits of the sum.
 const WHOLE: f32 = 8_388_608.0;
