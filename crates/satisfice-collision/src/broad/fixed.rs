@@ -44,19 +44,15 @@ impl Near {
     fn new(parts: &[Part], cells: &Cells, reach: f32) -> Option<Self> {
         let count = cells.count();
         let mut start = vec![0_u32; count.iter().product::<usize>() + 1];
-        let mut total = 0_u32;
+        let mut total = 0_u64;
         for point in parts.iter().flat_map(|part| &part.points) {
-            let mut overflows = false;
             cells.visit_near(&point.q, reach, |cell| {
-                start[cell + 1] = start[cell + 1].saturating_add(1);
-                let sum = total.checked_add(1);
-                overflows |= sum.is_none();
-                total = sum.unwrap_or(u32::MAX);
+                // what wraps around is refused below
+                start[cell + 1] = start[cell + 1].wrapping_add(1);
+                total += 1;
             });
-            if overflows {
-                return None;
-            }
         }
+        let total = u32::try_from(total).ok()?;
         for cell in 1..start.len() {
             start[cell] += start[cell - 1];
         }

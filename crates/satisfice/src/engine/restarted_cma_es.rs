@@ -103,30 +103,41 @@ pub(super) struct RestartedCmaEs<S> {
 }
 
 pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
-    let climb = Climb {
-        position: Vec::new(),
-        fitness: S::infinity(),
-        running: false,
-        barren: 0,
-        patience: 0,
-        mutation: Mutation::default(),
-    };
-    Ok(Box::new(RestartedCmaEs {
-        step: (values.real("smallest-step"), values.real("step")),
-        patience: values.count("patience") as u64,
-        climbs: vec![climb; values.count("searches")],
-        restarts: 0,
-        hits: Vec::new(),
-        pairs: Pairs::default(),
-        misses: Vec::new(),
-        kept: 0,
-        arms: [Arm::default(); 2],
-        stepped: 0,
-        position: Vec::new(),
-    }))
+    let step = (values.real("smallest-step"), values.real("step"));
+    let patience = values.count("patience") as u64;
+    Ok(Box::new(RestartedCmaEs::new(
+        step,
+        patience,
+        values.count("searches"),
+    )))
 }
 
 impl<S: Real> RestartedCmaEs<S> {
+    /// First steps between these shares of the axes.
+    fn new(step: (f64, f64), patience: u64, searches: usize) -> Self {
+        let climb = Climb {
+            position: Vec::new(),
+            fitness: S::infinity(),
+            running: false,
+            barren: 0,
+            patience: 0,
+            mutation: Mutation::default(),
+        };
+        Self {
+            step,
+            patience,
+            climbs: vec![climb; searches],
+            restarts: 0,
+            hits: Vec::new(),
+            pairs: Pairs::default(),
+            misses: Vec::new(),
+            kept: 0,
+            arms: [Arm::default(); 2],
+            stepped: 0,
+            position: Vec::new(),
+        }
+    }
+
     /// Appends the next recombinations that are no known hits.
     fn recombine(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         let count = self.climbs.len();
@@ -397,19 +408,7 @@ mod tests {
 
     #[test]
     fn near_misses_are_kept_best_last() {
-        let mut engine = RestartedCmaEs::<f64> {
-            step: (0.001, 0.1),
-            patience: 8,
-            climbs: Vec::new(),
-            restarts: 0,
-            hits: Vec::new(),
-            pairs: Pairs::default(),
-            misses: Vec::new(),
-            kept: 0,
-            arms: [Arm::default(); 2],
-            stepped: 0,
-            position: Vec::new(),
-        };
+        let mut engine = RestartedCmaEs::<f64>::new((0.001, 0.1), 8, 1);
         let mut rng = SearchRng::new(5);
         let mut all = Vec::new();
         for _ in 0..200 {
