@@ -23,8 +23,9 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(10);
 /// Threads to evaluate on.
 #[derive(Debug, Default)]
 pub(crate) struct Threads {
+    /// One less than there are threads: the one that calls works, too.
     #[cfg(feature = "rayon")]
-    pool: Option<rayon::ThreadPool>,
+    helpers: Option<rayon::ThreadPool>,
 }
 
 impl Threads {
@@ -36,11 +37,11 @@ impl Threads {
             threads => threads,
         };
         if threads == 1 {
-            return Ok(Self { pool: None });
+            return Ok(Self { helpers: None });
         }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build();
         Ok(Self {
-            pool: Some(pool.map_err(|e| Error::Threads {
+            helpers: Some(pool.map_err(|e| Error::Threads {
                 threads,
                 reason: e.to_string(),
             })?),
@@ -58,16 +59,50 @@ impl Threads {
 }
 
 impl Threads {
-    /// Does something with each item, on as many threads as there are: one item a thread at a time.
-    pub(crate) fn for_each<I: Send>(&self, items: &mut [I], work: impl Fn(&mut I) + Send + Sync) {
+    /// Does something with each item, on as many threads as there are: whoever is free takes the next one.
+    pub(crate) fn for_each<I>(&self, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
         #[cfg(feature = "rayon")]
-        if let Some(pool) = &self.pool {
-            use rayon::prelude::*;
-            pool.install(|| items.par_iter_mut().with_max_len(1).for_each(work));
+        if let Some(helpers) = &self.helpers {
+            share(helpers, items, work);
             return;
         }
-        items.iter_mut().for_each(work);
+        items.for_each(work);
     }
+}
+
+/// Whoever calls works, too, so that nobody has to be woken twice for each batch.
+#[cfg(feature = "rayon")]
+fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
+    use core::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::{Mutex, PoisonError};
+
+    /// Looks at whether the helpers are done, before the caller sleeps: some 20 us.
+    const LOOKS: usize = 400;
+
+    let items = Mutex::new(items);
+    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let drain = || {
+        while let Some(item) = next() {
+            work(item);
+        }
+    };
+    let count = helpers.current_num_threads();
+    let busy = AtomicUsize::new(count);
+    helpers.in_place_scope(|scope| {
+        for _ in 0..count {
+            scope.spawn(|_| {
+                drain();
+                busy.fetch_sub(1, Ordering::Release);
+            });
+        }
+        drain();
+        for _ in 0..LOOKS {
+            if busy.load(Ordering::Acquire) == 0 {
+                break;
+            }
+            core::hint::spin_loop();
+        }
+    });
 }
 
 /// How a batch is judged.
@@ -256,12 +291,12 @@ impl Ledger {
         candidates: &mut Candidates<P::Scalar, P::Solution>,
         threads: &Threads,
     ) -> bool {
-        use rayon::prelude::*;
-
         /// Below this much work, handing it to threads costs more than it saves.
         const WORTH: Duration = Duration::from_micros(30);
 
-        let Some(pool) = &threads.pool else { return false };
+        if threads.helpers.is_none() {
+            return false;
+        }
         let live = candidates.live;
         let work = self
             .clock
@@ -276,17 +311,13 @@ impl Ledger {
             deadline.is_some_and(crate::clock::has_come)
                 || cancel.as_ref().is_some_and(crate::Cancel::is_cancelled)
         };
-        let slots = candidates.slots();
-        pool.install(|| {
-            slots
-                .into_par_iter()
-                .with_max_len(1)
-                .for_each(|(solution, fitness, done)| {
-                    if !*done && !over() {
-                        *fitness = problem.fitness(solution);
-                        *done = true;
-                    }
-                });
+        let (solutions, fitness, done) = candidates.slots();
+        let slots = solutions.iter().zip(fitness).zip(done);
+        threads.for_each(slots, |((solution, fitness), done)| {
+            if !*done && !over() {
+                *fitness = problem.fitness(solution);
+                *done = true;
+            }
         });
         self.pass(live);
         let _ = self.interrupted();

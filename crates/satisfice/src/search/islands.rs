@@ -153,7 +153,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Islands<S, T> {
         loop {
             until += round;
             round = (2 * round).min(LONGEST_ROUND);
-            threads.for_each(&mut self.islands, |island| island.advance_until(problem, until));
+            threads.for_each(self.islands.iter_mut(), |island| {
+                island.advance_until(problem, until);
+            });
             let over = self.exchange(observer);
             let covered = |island: &Search<S, T>| island.stop() == Some(StopReason::Covered);
             let islands = &self.islands;
