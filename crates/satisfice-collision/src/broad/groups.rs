@@ -10,7 +10,7 @@ use super::pair::Pair;
 const PLACE_BITS: u32 = 40;
 const COUNT_BITS: u32 = 12;
 /// A count of this may be of more.
-const MANY: usize = (1 << COUNT_BITS) - 1;
+const MANY: u64 = (1 << COUNT_BITS) - 1;
 /// Tasks at most.
 pub(crate) const TASKS: usize = 1 << (u64::BITS - PLACE_BITS - COUNT_BITS);
 /// Points from which threads share the work.
@@ -21,7 +21,8 @@ const SHARED: usize = 1 << 14;
 pub(crate) struct Groups {
     /// The serial number of each rank.
     ids: Vec<u32>,
-    /// Place, count and task of the pairs; 0 for none. Atomic, because tasks write to it in any order, but each of them of points of its own.
+    /// Place, count and task of the pairs; 0 for none. Atomic, because tasks write to it in any order, but each of them of
+    /// points of its own.
     starts: Vec<AtomicU64>,
     chunks: Vec<Vec<Pair>>,
 }
@@ -46,9 +47,9 @@ impl Groups {
     /// The pairs of this rank are those of a task from `place` on.
     #[inline(always)]
     pub(crate) fn found(&self, rank: u32, task: usize, place: usize, count: usize) {
-        let group = (task << COUNT_BITS | count.min(MANY)) << PLACE_BITS | place;
+        let group = ((task as u64) << COUNT_BITS | MANY.min(count as u64)) << PLACE_BITS | place as u64;
         // whoever reads it has joined the threads
-        self.starts[rank as usize].store(group as u64, Ordering::Relaxed);
+        self.starts[rank as usize].store(group, Ordering::Relaxed);
     }
 
     /// Writes the pairs that the tasks found, a rank and a serial number, in order.
@@ -64,11 +65,12 @@ impl Groups {
         let Self { ids, starts, chunks } = self;
         let gather = |ids: &[u32], starts: &[AtomicU64], out: &mut Vec<Pair>| {
             for (&a, start) in ids.iter().zip(starts) {
-                let group = start.load(Ordering::Relaxed) as usize;
+                let group = start.load(Ordering::Relaxed);
                 let count = group >> PLACE_BITS & MANY;
                 if count > 0 {
-                    let found = &tasks[group >> (PLACE_BITS + COUNT_BITS)][group & ((1 << PLACE_BITS) - 1)..];
-                    append(found, count, a, out);
+                    let task = tasks[(group >> (PLACE_BITS + COUNT_BITS)) as usize];
+                    let place = (group & ((1 << PLACE_BITS) - 1)) as usize;
+                    append(&task[place..], count, a, out);
                 }
             }
         };
@@ -94,9 +96,9 @@ impl Groups {
     }
 }
 
-/// Appends the first pairs, in order, with a serial number.
+/// Appends the first `count` pairs, in order, with a serial number.
 #[inline(always)]
-fn append(found: &[Pair], count: usize, a: u32, out: &mut Vec<Pair>) {
+fn append(found: &[Pair], count: u64, a: u32, out: &mut Vec<Pair>) {
     let pair = |b| Pair { a, b };
     match (count, found) {
         (1, [x, ..]) => out.push(pair(x.b)),
@@ -108,9 +110,10 @@ fn append(found: &[Pair], count: usize, a: u32, out: &mut Vec<Pair>) {
         }
         _ => {
             let start = out.len();
-            out.extend(found[..count].iter().map(|found| pair(found.b)));
+            let known = count as usize;
+            out.extend(found[..known].iter().map(|found| pair(found.b)));
             if count == MANY {
-                let rest = found.iter().take_while(|pair| pair.a == found[0].a).skip(count);
+                let rest = found.iter().take_while(|pair| pair.a == found[0].a).skip(known);
                 out.extend(rest.map(|found| pair(found.b)));
             }
             out[start..].sort_unstable_by_key(|pair| pair.b);

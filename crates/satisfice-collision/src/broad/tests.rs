@@ -143,6 +143,23 @@ fn two_bodies_agree_with_brute_force() {
 }
 
 #[test]
+fn points_with_thousands_of_partners_have_all_of_them() {
+    let a: Vec<[f64; 3]> = (0..5).map(|i| [f64::from(i) * 0.1, 0.0, 0.0]).collect();
+    let b: Vec<[f64; 3]> = (0..10_000)
+        .map(|i| [f64::from(i * 7919 % 10_000) * 1e-4, 0.1, 0.0])
+        .collect();
+    for delta in [0.3, 2.0] {
+        let threshold = Threshold::new(delta).unwrap();
+        let expected = brute(&a, &b, delta, false);
+        assert!(expected.len() > 5 * 4095 / 2);
+        for mut grid in [PointGrid::new(), PointGrid::parallel()] {
+            assert!(grid.between(&a, &b, threshold).unwrap() == expected, "{delta}");
+            assert_eq!(grid.between(&b, &a, threshold).unwrap().len(), expected.len());
+        }
+    }
+}
+
+#[test]
 fn a_kept_grid_agrees_with_brute_force() {
     let (mut found, mut looked_up) = (Found::default(), 0);
     for (name, a, b, deltas) in scenes() {
