@@ -10,10 +10,9 @@ use crate::{scenes, triangles};
 
 /// Decisions between two looks at the clock.
 const LOOK: usize = 64;
-/// Bounds of the bands of likelihood: distances of centres, in units of the farthest at which the triangles can be within delta.
-const BANDS: [f32; 9] = [0.0, 0.15, 0.2, 0.24, 0.28, 0.34, 0.4, 0.55, f32::INFINITY];
-/// Candidates between two looks at the clock where none of them is in the band.
-const BLOCK: usize = 4096;
+/// Upper ends of the bands of likelihood: distances of centres, in units of the farthest at which the triangles can be within
+/// delta.
+const BANDS: [f32; 4] = [0.28, 0.4, 0.55, f32::INFINITY];
 
 /// What is there when the clock starts.
 struct Culled {
@@ -41,11 +40,7 @@ impl Clock {
 
     fn is_over(&mut self) -> bool {
         self.steps += 1;
-        self.steps.is_multiple_of(LOOK) && self.is_past()
-    }
-
-    fn is_past(&self) -> bool {
-        Instant::now() >= self.end
+        self.steps.is_multiple_of(LOOK) && Instant::now() >= self.end
     }
 }
 
@@ -107,27 +102,38 @@ impl Culled {
         found
     }
 
-    /// Eight at once, those first whose centres are close to each other: band by band, for which all distances are read again.
-    /// That takes less time than to put aside those of later bands.
+    /// Eight at once, those first whose centres are close to each other: they are decided as they are met, the others put
+    /// aside by band.
     fn likely_first(&self, time: Duration) -> Pairs {
+        let mut aside: [Vec<u32>; BANDS.len()] = Default::default();
+        for band in &mut aside {
+            band.reserve(self.candidates.len());
+        }
         let mut clock = Clock::start(time);
         let mut found = Pairs::new();
         let mut batch = TriangleBatch::new(self.threshold);
-        'bands: for band in BANDS.windows(2) {
-            let band = band[0] * band[0]..band[1] * band[1];
-            for (apart, candidates) in self.apart.chunks(BLOCK).zip(self.candidates.chunks(BLOCK)) {
-                if clock.is_past() {
-                    break 'bands;
-                }
-                for (apart, &pair) in apart.iter().zip(candidates) {
-                    if band.contains(apart) {
-                        self.push(&mut batch, pair, &mut found);
-                        if clock.is_over() {
-                            break 'bands;
-                        }
-                    }
-                }
+        let mut over = false;
+        for (at, &apart) in self.apart.iter().enumerate() {
+            let band = BANDS[..BANDS.len() - 1]
+                .iter()
+                .filter(|&&end| apart > end * end)
+                .count();
+            if band == 0 {
+                self.push(&mut batch, self.candidates[at], &mut found);
+            } else {
+                aside[band].push(at as u32);
             }
+            if clock.is_over() {
+                over = true;
+                break;
+            }
+        }
+        for &at in aside.iter().flatten() {
+            if over {
+                break;
+            }
+            self.push(&mut batch, self.candidates[at as usize], &mut found);
+            over = clock.is_over();
         }
         batch.finish(|pair, decision| found.extend(decision.within.then_some(pair)));
         found
