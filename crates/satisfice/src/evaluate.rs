@@ -1,7 +1,7 @@
 //! The ledger: what reaches it is counted, evaluated, compared with the threshold, stamped and told in order.
 //!
-//! The only file that knows of threads. Numbers of a batch are computed on any number of them, but written by index and
-//! settled in order, so that threads change nothing but the time.
+//! Numbers of a batch are computed on any number of threads, but written by index and settled in order, so that threads change
+//! nothing but the time.
 
 use core::time::Duration;
 
@@ -12,98 +12,13 @@ use crate::batch::Outcome;
 use crate::budget::{Budget, StopReason};
 use crate::candidates::Candidates;
 use crate::clock::{Alarm, Clock};
-use crate::error::Error;
 use crate::observer::Observer;
 use crate::problem::SatisficingProblem;
 use crate::report::{Counts, TracePoint};
+use crate::threads::Threads;
 
 /// Progress is reported to observers at most this often.
 const PROGRESS_EVERY: Duration = Duration::from_millis(10);
-
-/// Threads to evaluate on.
-#[derive(Debug, Default)]
-pub(crate) struct Threads {
-    /// One less than there are threads: the one that calls works, too.
-    #[cfg(feature = "rayon")]
-    helpers: Option<rayon::ThreadPool>,
-}
-
-impl Threads {
-    /// `threads` of them, 0 for as many as there are cores. Without the feature `rayon` always one.
-    #[cfg(feature = "rayon")]
-    pub(crate) fn new(threads: usize) -> Result<Self, Error> {
-        let threads = match threads {
-            0 => std::thread::available_parallelism().map_or(1, core::num::NonZero::get),
-            threads => threads,
-        };
-        if threads == 1 {
-            return Ok(Self { helpers: None });
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build();
-        Ok(Self {
-            helpers: Some(pool.map_err(|e| Error::Threads {
-                threads,
-                reason: e.to_string(),
-            })?),
-        })
-    }
-
-    #[cfg(not(feature = "rayon"))]
-    #[expect(
-        clippy::unnecessary_wraps,
-        reason = "one signature with and without the feature"
-    )]
-    pub(crate) fn new(_threads: usize) -> Result<Self, Error> {
-        Ok(Self {})
-    }
-}
-
-impl Threads {
-    /// Does something with each item, on as many threads as there are: whoever is free takes the next one.
-    pub(crate) fn for_each<I>(&self, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
-        #[cfg(feature = "rayon")]
-        if let Some(helpers) = &self.helpers {
-            share(helpers, items, work);
-            return;
-        }
-        items.for_each(work);
-    }
-}
-
-/// Whoever calls works, too, so that nobody has to be woken twice for each batch.
-#[cfg(feature = "rayon")]
-fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
-    use core::sync::atomic::{AtomicUsize, Ordering};
-    use std::sync::{Mutex, PoisonError};
-
-    /// Looks at whether the helpers are done, before the caller sleeps: some 20 us.
-    const LOOKS: usize = 400;
-
-    let items = Mutex::new(items);
-    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let drain = || {
-        while let Some(item) = next() {
-            work(item);
-        }
-    };
-    let count = helpers.current_num_threads();
-    let busy = AtomicUsize::new(count);
-    helpers.in_place_scope(|scope| {
-        for _ in 0..count {
-            scope.spawn(|_| {
-                drain();
-                busy.fetch_sub(1, Ordering::Release);
-            });
-        }
-        drain();
-        for _ in 0..LOOKS {
-            if busy.load(Ordering::Acquire) == 0 {
-                break;
-            }
-            core::hint::spin_loop();
-        }
-    });
-}
 
 /// How a batch is judged.
 #[derive(Debug, Clone, Copy)]
@@ -294,7 +209,7 @@ impl Ledger {
         /// Below this much work, handing it to threads costs more than it saves.
         const WORTH: Duration = Duration::from_micros(30);
 
-        if threads.helpers.is_none() {
+        if threads.is_one() {
             return false;
         }
         let live = candidates.live;

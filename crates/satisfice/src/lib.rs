@@ -24,6 +24,7 @@ mod seed;
 pub mod space;
 pub mod state;
 pub mod testing;
+mod threads;
 mod unseen;
 mod view;
 

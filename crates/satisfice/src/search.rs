@@ -12,7 +12,6 @@ use crate::batch::Outcome;
 use crate::budget::{Budget, StopReason};
 use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
 use crate::error::Error;
-use crate::evaluate::Threads;
 use crate::identity::Identity;
 use crate::observer::Observer;
 use crate::probes::Probes;
@@ -20,6 +19,7 @@ use crate::problem::{Description, SatisficingProblem};
 use crate::report::{Completeness, Report};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
+use crate::threads::Threads;
 use crate::unseen::Unseen;
 use crate::view::View;
 

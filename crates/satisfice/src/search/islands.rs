@@ -8,7 +8,6 @@ use crate::budget::{Budget, StopReason};
 use crate::context::Context;
 use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
 use crate::error::Error;
-use crate::evaluate::Threads;
 use crate::identity::Identity;
 use crate::observer::Observer;
 use crate::problem::SatisficingProblem;
@@ -16,6 +15,7 @@ use crate::report::{Counts, Report};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
+use crate::threads::Threads;
 
 /// Evaluations of an island before the first exchange of hits; then twice as many, and so on.
 const FIRST_ROUND: u64 = 256;

@@ -1,0 +1,94 @@
+//! The threads that work is shared among: the calling one and its helpers. The only file that knows of them.
+
+use crate::error::Error;
+
+/// Threads to evaluate on.
+#[derive(Debug, Default)]
+pub(crate) struct Threads {
+    /// One less than there are threads: the one that calls works, too.
+    #[cfg(feature = "rayon")]
+    helpers: Option<rayon::ThreadPool>,
+}
+
+impl Threads {
+    /// `threads` of them, 0 for as many as there are cores. Without the feature `rayon` always one.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn new(threads: usize) -> Result<Self, Error> {
+        let threads = match threads {
+            0 => std::thread::available_parallelism().map_or(1, core::num::NonZero::get),
+            threads => threads,
+        };
+        if threads == 1 {
+            return Ok(Self { helpers: None });
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build();
+        Ok(Self {
+            helpers: Some(pool.map_err(|e| Error::Threads {
+                threads,
+                reason: e.to_string(),
+            })?),
+        })
+    }
+
+    #[cfg(not(feature = "rayon"))]
+    #[expect(
+        clippy::unnecessary_wraps,
+        reason = "one signature with and without the feature"
+    )]
+    pub(crate) fn new(_threads: usize) -> Result<Self, Error> {
+        Ok(Self {})
+    }
+}
+
+impl Threads {
+    /// Whether only the caller works.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn is_one(&self) -> bool {
+        self.helpers.is_none()
+    }
+
+    /// Does something with each item, on as many threads as there are: whoever is free takes the next one.
+    pub(crate) fn for_each<I>(&self, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
+        #[cfg(feature = "rayon")]
+        if let Some(helpers) = &self.helpers {
+            share(helpers, items, work);
+            return;
+        }
+        items.for_each(work);
+    }
+}
+
+/// Whoever calls works, too, so that nobody has to be woken twice for each batch.
+#[cfg(feature = "rayon")]
+fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
+    use core::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::{Mutex, PoisonError};
+
+    /// Looks at whether the helpers are done, before the caller sleeps: some 20 us.
+    const LOOKS: usize = 400;
+
+    let items = Mutex::new(items);
+    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let drain = || {
+        while let Some(item) = next() {
+            work(item);
+        }
+    };
+    let count = helpers.current_num_threads();
+    let busy = AtomicUsize::new(count);
+    helpers.in_place_scope(|scope| {
+        for _ in 0..count {
+            scope.spawn(|_| {
+                drain();
+                busy.fetch_sub(1, Ordering::Release);
+            });
+        }
+        drain();
+        for _ in 0..LOOKS {
+            if busy.load(Ordering::Acquire) == 0 {
+                break;
+            }
+            core::hint::spin_loop();
+        }
+    });
+}
