@@ -1,8 +1,10 @@
 //! A tree of boxes with eight children a node, without pointers: level 0 holds the items' boxes in groups of eight, and
-//! box g of level k + 1 bounds group g of level k. Refitting is one pass from the bottom up.
+//! box g of level k + 1 bounds group g of level k. Refitting is one pass from the bottom up. Items that are points are kept as
+//! such, in half the memory.
 
-use super::clip::{greater, lesser};
-use super::lanes::Eight;
+use super::clip::{four, greater, lesser, wide};
+use super::frame::Frame;
+use super::lanes::{Eight, Lanes, Work, dispatch};
 
 /// A box of `f32` coordinates; empty if a lower side lies above its upper one.
 #[derive(Debug, Clone, Copy)]
@@ -36,22 +38,10 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         lower: [[f32::INFINITY; 8]; 3],
         upper: [[f32::NEG_INFINITY; 8]; 3],
     };
-
-    #[inline(always)]
-    fn bounds(&self) -> Box32 {
-        let fold = |of: &Eight, pick: fn(f32, f32) -> f32| {
-            let four: [f32; 4] = std::array::from_fn(|i| pick(of[i], of[i + 4]));
-            pick(pick(four[0], four[2]), pick(four[1], four[3]))
-        };
-        Box32 {
-            min: std::array::from_fn(|k| fold(&self.lower[k], lesser)),
-            max: std::array::from_fn(|k| fold(&self.upper[k], greater)),
-        }
-    }
 
     #[inline(always)]
     fn set(&mut self, lane: usize, to: &Box32) {
@@ -67,8 +57,10 @@ impl Group {
 pub(crate) struct BoxTree {
     /// The item at each place of level 0.
     pub(crate) order: Vec<u32>,
-    /// From the items up to the one group of the root.
-    pub(crate) levels: Vec<Vec<Group>>,
+    /// From the items' boxes up to the one group of the root.
+    levels: Vec<Vec<Group>>,
+    /// Level 0 of a tree of points; the level itself is then empty. What is missing in the last group is the last point again.
+    points: Vec<[Eight; 3]>,
     /// Which lanes of each group hold an item that moved at the last refit.
     moved: Vec<Vec<u8>>,
 }
@@ -83,8 +75,8 @@ pub(crate) enum Moved {
 }
 
 impl BoxTree {
-    /// Builds the tree over items with these boxes. Cost: O(n log n).
-    pub(crate) fn build(boxes: &[Box32], threads: usize) -> Self {
+    /// Orders items with these boxes, which a refit then puts into the tree. Cost: O(n log n).
+    pub(crate) fn order(boxes: &[Box32], are_points: bool, threads: usize) -> Self {
         let mut items: Vec<Item> = (0_u32..)
             .zip(boxes)
             .map(|(id, b)| Item {
@@ -95,56 +87,63 @@ impl BoxTree {
         split(&mut items, threads > 1);
         let mut tree = Self {
             order: items.iter().map(|item| item.id).collect(),
-            levels: Vec::new(),
-            moved: Vec::new(),
+            ..Self::default()
         };
         let mut groups = boxes.len().div_ceil(8);
+        if are_points {
+            tree.points = vec![[[0.0; 8]; 3]; groups];
+        }
         while groups > 0 {
-            tree.levels.push(vec![Group::EMPTY; groups]);
+            let boxes = if are_points && tree.levels.is_empty() {
+                0
+            } else {
+                groups
+            };
+            tree.levels.push(vec![Group::EMPTY; boxes]);
             tree.moved.push(vec![0xff; groups]);
             groups = if groups == 1 { 0 } else { groups.div_ceil(8) };
         }
-        tree.refit(boxes, threads);
         tree
     }
 
     /// Measures the tree anew after its items have moved; `boxes` are by item. Cost: O(n), and no allocation.
     pub(crate) fn refit(&mut self, boxes: &[Box32], threads: usize) {
-        use rayon::prelude::*;
         let Some((items, above)) = self.levels.split_first_mut() else {
             return;
         };
-        let place = |(group, order): (&mut Group, &[u32])| {
-            for (lane, &id) in order.iter().enumerate() {
-                group.set(lane, &boxes[id as usize]);
-            }
-        };
-        if threads < 2 || boxes.len() < 20_000 {
-            items.iter_mut().zip(self.order.chunks(8)).for_each(place);
-        } else {
-            items
-                .par_iter_mut()
-                .with_min_len(512)
-                .zip(self.order.par_chunks(8))
-                .for_each(place);
-        }
-        let mut below: &[Group] = items;
-        for level in above {
-            let bound = |(group, children): (&mut Group, &[Group])| {
-                for (lane, child) in children.iter().enumerate() {
-                    group.set(lane, &child.bounds());
+        chunks(threads, items, &self.order, |items, order| {
+            for (group, order) in items.iter_mut().zip(order.chunks(8)) {
+                for (lane, &id) in order.iter().enumerate() {
+                    group.set(lane, &boxes[id as usize]);
                 }
-            };
-            if threads < 2 || level.len() < 4096 {
-                level.iter_mut().zip(below.chunks(8)).for_each(bound);
-            } else {
-                level
-                    .par_iter_mut()
-                    .with_min_len(512)
-                    .zip(below.par_chunks(8))
-                    .for_each(bound);
             }
-            below = level;
+        });
+        bound(items, above, threads);
+    }
+
+    /// The same for a tree of points, in a frame.
+    pub(crate) fn refit_points(&mut self, points: &[[f64; 3]], frame: &Frame, threads: usize) {
+        let Some((_, above)) = self.levels.split_first_mut() else {
+            return;
+        };
+        chunks(threads, &mut self.points, &self.order, |groups, order| {
+            dispatch(PlacePoints {
+                points,
+                frame,
+                order,
+                groups,
+            });
+        });
+        if let Some((first, above)) = above.split_first_mut() {
+            fill(&self.points, first, threads);
+            bound(first, above, threads);
+        }
+    }
+
+    /// All items moved, or none.
+    pub(crate) fn mark_all(&mut self, moved: bool) {
+        for level in &mut self.moved {
+            level.fill(if moved { 0xff } else { 0 });
         }
     }
 
@@ -185,6 +184,138 @@ impl BoxTree {
     /// How many items there are.
     pub(crate) fn len(&self) -> usize {
         self.order.len()
+    }
+
+    /// The level of the root; `None` if there are no items.
+    pub(crate) fn root(&self) -> Option<u8> {
+        self.levels.len().checked_sub(1).map(|level| level as u8)
+    }
+
+    /// A group of boxes; `room` is for one of points.
+    #[inline(always)]
+    pub(crate) fn group<'g>(&'g self, level: u8, group: u32, room: &'g mut Group) -> &'g Group {
+        match self.points.get(group as usize) {
+            Some(&points) if level == 0 => {
+                *room = Group {
+                    lower: points,
+                    upper: points,
+                };
+                room
+            }
+            _ => &self.levels[level as usize][group as usize],
+        }
+    }
+
+    /// A group of level 0 of a tree of points.
+    #[inline(always)]
+    pub(crate) fn points(&self, group: u32) -> &[Eight; 3] {
+        &self.points[group as usize]
+    }
+
+    /// How many lanes of a group hold something.
+    #[inline(always)]
+    pub(crate) fn lanes(&self, level: u8, group: u32) -> usize {
+        let items = match level {
+            0 => self.order.len(),
+            _ => self.moved[level as usize - 1].len(),
+        };
+        (items - group as usize * 8).min(8)
+    }
+}
+
+/// What bounds a group of eight.
+trait Bounds: Sync {
+    fn bounds(&self) -> Box32;
+}
+
+impl Bounds for Group {
+    #[inline(always)]
+    fn bounds(&self) -> Box32 {
+        Box32 {
+            min: std::array::from_fn(|k| fold(&self.lower[k], lesser)),
+            max: std::array::from_fn(|k| fold(&self.upper[k], greater)),
+        }
+    }
+}
+
+impl Bounds for [Eight; 3] {
+    #[inline(always)]
+    fn bounds(&self) -> Box32 {
+        Box32 {
+            min: std::array::from_fn(|k| fold(&self[k], lesser)),
+            max: std::array::from_fn(|k| fold(&self[k], greater)),
+        }
+    }
+}
+
+#[inline(always)]
+fn fold(of: &Eight, pick: fn(f32, f32) -> f32) -> f32 {
+    let four: [f32; 4] = std::array::from_fn(|i| pick(of[i], of[i + 4]));
+    pick(pick(four[0], four[2]), pick(four[1], four[3]))
+}
+
+/// Gives `place` the groups of level 0 and the items in them, in parts if there are threads for it.
+fn chunks<G: Send>(threads: usize, groups: &mut [G], order: &[u32], place: impl Fn(&mut [G], &[u32]) + Sync) {
+    use rayon::prelude::*;
+    if threads < 2 || order.len() < 20_000 {
+        place(groups, order);
+    } else {
+        groups
+            .par_chunks_mut(512)
+            .zip(order.par_chunks(512 * 8))
+            .for_each(|(groups, order)| place(groups, order));
+    }
+}
+
+/// Bounds a level, each level above it in turn.
+fn bound<'g>(mut below: &'g [Group], above: &'g mut [Vec<Group>], threads: usize) {
+    for level in above {
+        fill(below, level, threads);
+        below = level;
+    }
+}
+
+fn fill(below: &[impl Bounds], level: &mut [Group], threads: usize) {
+    use rayon::prelude::*;
+    if threads < 2 || level.len() < 4096 {
+        let groups = level.iter_mut().zip(below.chunks(8));
+        groups.for_each(|(group, children)| set_all(group, children));
+    } else {
+        let groups = level.par_iter_mut().with_min_len(512).zip(below.par_chunks(8));
+        groups.for_each(|(group, children)| set_all(group, children));
+    }
+}
+
+fn set_all(group: &mut Group, children: &[impl Bounds]) {
+    for (lane, child) in children.iter().enumerate() {
+        group.set(lane, &child.bounds());
+    }
+}
+
+/// Points of a body, put into groups of eight.
+struct PlacePoints<'a> {
+    points: &'a [[f64; 3]],
+    frame: &'a Frame,
+    order: &'a [u32],
+    groups: &'a mut [[Eight; 3]],
+}
+
+impl Work for PlacePoints<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let (origin, axes) = (wide(self.frame.origin), self.frame.axes());
+        for (group, order) in self.groups.iter_mut().zip(self.order.chunks(8)) {
+            // the last group may have less than eight: one of them stands for those missing
+            let ids: [u32; 8] = std::array::from_fn(|lane| order[lane.min(order.len() - 1)]);
+            let mut rows = [[0.0; 4]; 8];
+            for lane in 0..8 {
+                let point = four(self.points, ids[lane] as usize);
+                rows[lane] = lanes.place(&point, &origin, self.frame.scale, axes);
+            }
+            *group = lanes.columns(&rows);
+        }
     }
 }
 

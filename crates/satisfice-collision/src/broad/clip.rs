@@ -262,10 +262,8 @@ impl Work for Placing<'_> {
             region,
             frame,
         } = *self.clip;
-        let wide = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
         let (min, max, origin) = (wide(region.min), wide(region.max), wide(frame.origin));
         let axes = frame.axes();
-        let numbers = points.as_flattened();
         for run in self.runs {
             let bounds = &boxes[run];
             if intersection(bounds, region).is_none() {
@@ -276,11 +274,8 @@ impl Work for Placing<'_> {
             // always written, kept by moving the end
             let mut len = self.to.len();
             self.to.resize(len + last - first, Placed::default());
-            for (at, point) in (first..).zip(&points[first..last]) {
-                let four = match numbers.get(3 * at..3 * at + 4) {
-                    Some(&[x, y, z, next]) => [x, y, z, next],
-                    _ => wide(*point),
-                };
+            for at in first..last {
+                let four = four(points, at);
                 let [x, y, z, _] = lanes.place(&four, &origin, frame.scale, axes);
                 self.to[len] = Placed {
                     q: [x, y, z],
@@ -290,6 +285,21 @@ impl Work for Placing<'_> {
             }
             self.to.truncate(len);
         }
+    }
+}
+
+/// Three numbers and a fourth that says nothing.
+#[inline(always)]
+pub(crate) fn wide([x, y, z]: [f64; 3]) -> [f64; 4] {
+    [x, y, z, 0.0]
+}
+
+/// A point and whatever number lies behind it: one load, but for the last.
+#[inline(always)]
+pub(crate) fn four(points: &[[f64; 3]], at: usize) -> [f64; 4] {
+    match points.as_flattened().get(3 * at..3 * at + 4) {
+        Some(&[x, y, z, next]) => [x, y, z, next],
+        _ => wide(points[at]),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::boxes::{Box32, BoxTree};
 use super::clip::Runs;
 use super::frame::Frame;
+use super::lanes::{Lanes, Work, dispatch};
 use super::separate::{self, Directions, Triangles};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::{Error, Mesh};
@@ -81,6 +82,51 @@ pub struct Refit {
     pub motion: f64,
 }
 
+/// Vertices being moved, and what is seen of it: the motion squared.
+struct Move<'a> {
+    moved: &'a mut [bool],
+    old: &'a mut [Point],
+    new: &'a [Point],
+}
+
+impl Work for Move<'_> {
+    type Output = Refit;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> Refit {
+        let Self { moved, old, new } = self;
+        // four at a time, so that the maximum of one need not wait for that of the one before
+        let (mut count, mut most) = (0, [0.0; 4]);
+        let mut step = |lane: usize, moved: &mut bool, old: &mut Point, new: &Point| {
+            let way = [new[0] - old[0], new[1] - old[1], new[2] - old[2]];
+            *moved = (way[0] != 0.0) | (way[1] != 0.0) | (way[2] != 0.0);
+            *old = *new;
+            count += usize::from(*moved);
+            let square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+            most[lane] = if square > most[lane] { square } else { most[lane] };
+        };
+        let ((fours, rest), (old_fours, old_rest), (new_fours, new_rest)) = (
+            moved.as_chunks_mut::<4>(),
+            old.as_chunks_mut::<4>(),
+            new.as_chunks::<4>(),
+        );
+        for ((moved, old), new) in fours.iter_mut().zip(old_fours).zip(new_fours) {
+            for lane in 0..4 {
+                step(lane, &mut moved[lane], &mut old[lane], &new[lane]);
+            }
+        }
+        for ((moved, old), new) in rest.iter_mut().zip(old_rest).zip(new_rest) {
+            step(0, moved, old, new);
+        }
+        Refit {
+            moved: count,
+            motion: most
+                .iter()
+                .fold(0.0, |most, &square| if square > most { square } else { most }),
+        }
+    }
+}
+
 impl FeatureTree {
     /// Builds the tree. Cost: O(n log n).
     #[must_use]
@@ -102,8 +148,22 @@ impl FeatureTree {
             moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
         };
-        tree.measure();
-        tree.tree = BoxTree::build(&tree.boxes, rayon::current_num_threads());
+        tree.measure(mesh.vertices());
+        let points: Vec<Box32>;
+        let boxes = if kind == FeatureKind::Vertex {
+            let at = |vertex| tree.frame.place(vertex);
+            points = tree
+                .vertices
+                .iter()
+                .map(at)
+                .map(|q| Box32 { min: q, max: q })
+                .collect();
+            &points
+        } else {
+            &tree.boxes
+        };
+        tree.tree = BoxTree::order(boxes, kind == FeatureKind::Vertex, rayon::current_num_threads());
+        tree.fit(mesh.vertices());
         tree
     }
 
@@ -123,51 +183,62 @@ impl FeatureTree {
         if let Some(bounds) = self.runs.whole() {
             self.frame = Frame::unit(&bounds);
         }
-        let mut refit = Refit::default();
-        for ((moved, old), new) in self.moved.iter_mut().zip(&self.vertices).zip(vertices) {
-            *moved = old != new;
-            refit.moved += usize::from(*moved);
-            let square: f64 = (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum();
-            refit.motion = if square > refit.motion {
-                square
-            } else {
-                refit.motion
-            };
-        }
+        // first what reads them in the order of the tree, while they are in the cache
+        self.measure(vertices);
+        self.fit(vertices);
+        let mut refit = dispatch(Move {
+            moved: &mut self.moved,
+            old: &mut self.vertices,
+            new: vertices,
+        });
         // rounded up; squares that underflow belong to motions below 1e-153
         refit.motion = if refit.moved == 0 {
             0.0
         } else {
             refit.motion.sqrt() * (1.0 + 1e-12) + 1e-153
         };
-        self.vertices.copy_from_slice(vertices);
-        self.measure();
-        self.tree.refit(&self.boxes, rayon::current_num_threads());
         let (moved, elements) = (&self.moved, &self.elements);
-        self.tree
-            .mark(|feature| elements.corners(feature).iter().any(|&v| moved[v as usize]));
+        if refit.moved == 0 || refit.moved == moved.len() {
+            self.tree.mark_all(refit.moved > 0);
+        } else {
+            self.tree
+                .mark(|feature| elements.corners(feature).iter().any(|&v| moved[v as usize]));
+        }
         Ok(refit)
     }
 
-    fn measure(&mut self) {
+    /// Puts the features into the tree.
+    fn fit(&mut self, vertices: &[Point]) {
+        let threads = rayon::current_num_threads();
+        match self.elements {
+            Elements::Vertices => self.tree.refit_points(vertices, &self.frame, threads),
+            _ => self.tree.refit(&self.boxes, threads),
+        }
+    }
+
+    /// The boxes of what is not a point.
+    fn measure(&mut self, vertices: &[Point]) {
         let Self {
             frame,
             placed,
             boxes,
             directions,
-            vertices,
+            elements,
             ..
         } = self;
+        if matches!(elements, Elements::Vertices) {
+            return;
+        }
         placed.clear();
         placed.extend(vertices.iter().map(|vertex| frame.place(vertex)));
         let at = |v: u32| placed[v as usize];
         boxes.clear();
-        match &self.elements {
-            Elements::Vertices => boxes.extend(placed.iter().map(|&q| Box32 { min: q, max: q })),
+        directions.clear();
+        match elements {
+            Elements::Vertices => {}
             Elements::Edges(edges) => boxes.extend(edges.iter().map(|edge| Box32::around(edge.map(at)))),
             Elements::Triangles(triangles) => {
                 boxes.extend(triangles.iter().map(|triangle| Box32::around(triangle.map(at))));
-                directions.clear();
                 directions.extend(
                     triangles
                         .iter()

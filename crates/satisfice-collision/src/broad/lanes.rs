@@ -9,15 +9,20 @@ pub(crate) trait Lanes: Copy + Send + Sync {
     fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32;
     /// Lanes inside the closed box `min..=max`.
     fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32;
-    /// Lanes (boxes) whose squared distance from the box `min..=max` is at most `limit`.
+    /// `closer` for each of eight points: bit `8 i + j` speaks of point `i` and lane `j`.
+    fn all_closer(self, c: [&Eight; 3], points: &[Eight; 3], limit: f32) -> u64;
+    /// Lanes (boxes) whose squared distance from each of eight boxes `min..=max` is at most `limit`: bit `8 i + j` speaks of
+    /// box `i` and lane `j`.
     fn boxes_within(
         self,
         lower: [&Eight; 3],
         upper: [&Eight; 3],
-        min: [f32; 3],
-        max: [f32; 3],
+        min: &[Eight; 3],
+        max: &[Eight; 3],
         limit: f32,
-    ) -> u32;
+    ) -> u64;
+    /// The first three columns of eight rows.
+    fn columns(self, rows: &[[f32; 4]; 8]) -> [Eight; 3];
     /// The lanes of `mask` moved to the front of `to`, in order; what follows them is unspecified.
     fn compact(self, from: &Eight, mask: u32, to: &mut Eight);
     /// The same for serial numbers.
@@ -58,6 +63,12 @@ fn mask(of: impl Fn(usize) -> bool) -> u32 {
     (0..8).fold(0, |bits, i| bits | (u32::from(of(i)) << i))
 }
 
+/// Eight masks as one.
+#[inline(always)]
+fn rows(of: impl Fn(usize) -> u32) -> u64 {
+    (0..8).fold(0, |bits, i| bits | (u64::from(of(i)) << (8 * i)))
+}
+
 /// Distance of two intervals, 0 if they meet.
 #[inline(always)]
 fn gap(lower: f32, upper: f32, min: f32, max: f32) -> f32 {
@@ -79,20 +90,30 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn all_closer(self, c: [&Eight; 3], points: &[Eight; 3], limit: f32) -> u64 {
+        rows(|i| self.closer(c, points.map(|axis| axis[i]), limit))
+    }
+
+    #[inline(always)]
     fn boxes_within(
         self,
         lower: [&Eight; 3],
         upper: [&Eight; 3],
-        min: [f32; 3],
-        max: [f32; 3],
+        min: &[Eight; 3],
+        max: &[Eight; 3],
         limit: f32,
-    ) -> u32 {
-        mask(|i| {
-            let x = gap(lower[0][i], upper[0][i], min[0], max[0]);
-            let y = gap(lower[1][i], upper[1][i], min[1], max[1]);
-            let z = gap(lower[2][i], upper[2][i], min[2], max[2]);
-            x * x + y * y + z * z <= limit
+    ) -> u64 {
+        rows(|i| {
+            mask(|j| {
+                let [x, y, z] = std::array::from_fn(|k| gap(lower[k][j], upper[k][j], min[k][i], max[k][i]));
+                x * x + y * y + z * z <= limit
+            })
         })
+    }
+
+    #[inline(always)]
+    fn columns(self, rows: &[[f32; 4]; 8]) -> [Eight; 3] {
+        std::array::from_fn(|k| rows.map(|row| row[k]))
     }
 
     #[inline(always)]
@@ -210,6 +231,35 @@ mod avx2 {
     }
 
     #[inline(always)]
+    fn square(unit: V3, x: __m256, y: __m256, z: __m256) -> __m256 {
+        let d = unit.avx._mm256_mul_ps(x, x);
+        let d = unit.fma._mm256_fmadd_ps(y, y, d);
+        unit.fma._mm256_fmadd_ps(z, z, d)
+    }
+
+    /// The results of eight comparisons as one mask.
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, reason = "masks of 32 bits")]
+    fn rows(unit: V3, row: [__m256; 8]) -> u64 {
+        let avx2 = unit.avx2;
+        // packing works within halves: the first halves of the four rows lie before the second ones
+        let in_order = pulp::cast([0_u32, 4, 1, 5, 2, 6, 3, 7]);
+        let mut both = [0; 2];
+        for half in 0..2 {
+            let [a, b, c, d]: [__m256i; 4] = pulp::cast([
+                row[4 * half],
+                row[4 * half + 1],
+                row[4 * half + 2],
+                row[4 * half + 3],
+            ]);
+            let four = avx2._mm256_packs_epi16(avx2._mm256_packs_epi32(a, b), avx2._mm256_packs_epi32(c, d));
+            let four = avx2._mm256_permutevar8x32_epi32(four, in_order);
+            both[half] = avx2._mm256_movemask_epi8(four) as u32;
+        }
+        u64::from(both[0]) | u64::from(both[1]) << 32
+    }
+
+    #[inline(always)]
     fn three(row: &[f64; 12]) -> [__m256d; 3] {
         pulp::cast(*row)
     }
@@ -221,9 +271,7 @@ mod avx2 {
             let x = avx._mm256_sub_ps(load(c[0]), avx._mm256_set1_ps(p[0]));
             let y = avx._mm256_sub_ps(load(c[1]), avx._mm256_set1_ps(p[1]));
             let z = avx._mm256_sub_ps(load(c[2]), avx._mm256_set1_ps(p[2]));
-            let d = avx._mm256_mul_ps(x, x);
-            let d = self.fma._mm256_fmadd_ps(y, y, d);
-            let d = self.fma._mm256_fmadd_ps(z, z, d);
+            let d = square(self, x, y, z);
             bits(
                 self,
                 avx._mm256_cmp_ps::<_CMP_LT_OQ>(d, avx._mm256_set1_ps(limit)),
@@ -247,28 +295,70 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn all_closer(self, c: [&Eight; 3], points: &[Eight; 3], limit: f32) -> u64 {
+            let avx = self.avx;
+            let (x, y, z) = (load(c[0]), load(c[1]), load(c[2]));
+            let limit = avx._mm256_set1_ps(limit);
+            let mut row = [limit; 8];
+            for i in 0..8 {
+                let x = avx._mm256_sub_ps(x, avx._mm256_set1_ps(points[0][i]));
+                let y = avx._mm256_sub_ps(y, avx._mm256_set1_ps(points[1][i]));
+                let z = avx._mm256_sub_ps(z, avx._mm256_set1_ps(points[2][i]));
+                row[i] = avx._mm256_cmp_ps::<_CMP_LT_OQ>(square(self, x, y, z), limit);
+            }
+            rows(self, row)
+        }
+
+        #[inline(always)]
         fn boxes_within(
             self,
             lower: [&Eight; 3],
             upper: [&Eight; 3],
-            min: [f32; 3],
-            max: [f32; 3],
+            min: &[Eight; 3],
+            max: &[Eight; 3],
             limit: f32,
-        ) -> u32 {
+        ) -> u64 {
             let avx = self.avx;
-            let axis = |k: usize| {
-                let below = avx._mm256_sub_ps(load(lower[k]), avx._mm256_set1_ps(max[k]));
-                let above = avx._mm256_sub_ps(avx._mm256_set1_ps(min[k]), load(upper[k]));
-                avx._mm256_max_ps(avx._mm256_max_ps(below, above), avx._mm256_set1_ps(0.0))
-            };
-            let (x, y, z) = (axis(0), axis(1), axis(2));
-            let d = avx._mm256_mul_ps(x, x);
-            let d = self.fma._mm256_fmadd_ps(y, y, d);
-            let d = self.fma._mm256_fmadd_ps(z, z, d);
-            bits(
-                self,
-                avx._mm256_cmp_ps::<_CMP_LE_OQ>(d, avx._mm256_set1_ps(limit)),
-            )
+            let lower = [load(lower[0]), load(lower[1]), load(lower[2])];
+            let upper = [load(upper[0]), load(upper[1]), load(upper[2])];
+            let (limit, nothing) = (avx._mm256_set1_ps(limit), avx._mm256_set1_ps(0.0));
+            let mut row = [limit; 8];
+            for i in 0..8 {
+                let mut gap = [nothing; 3];
+                for k in 0..3 {
+                    let below = avx._mm256_sub_ps(lower[k], avx._mm256_set1_ps(max[k][i]));
+                    let above = avx._mm256_sub_ps(avx._mm256_set1_ps(min[k][i]), upper[k]);
+                    gap[k] = avx._mm256_max_ps(avx._mm256_max_ps(below, above), nothing);
+                }
+                let [x, y, z] = gap;
+                row[i] = avx._mm256_cmp_ps::<_CMP_LE_OQ>(square(self, x, y, z), limit);
+            }
+            rows(self, row)
+        }
+
+        #[inline(always)]
+        fn columns(self, rows: &[[f32; 4]; 8]) -> [Eight; 3] {
+            let avx = self.avx;
+            // rows i and i + 4 side by side: the columns of four such pairs are whole columns of eight
+            let pair: [__m256; 4] = [
+                pulp::cast([rows[0], rows[4]]),
+                pulp::cast([rows[1], rows[5]]),
+                pulp::cast([rows[2], rows[6]]),
+                pulp::cast([rows[3], rows[7]]),
+            ];
+            let (low, high) = (
+                avx._mm256_unpacklo_ps(pair[0], pair[1]),
+                avx._mm256_unpacklo_ps(pair[2], pair[3]),
+            );
+            let (low_z, high_z) = (
+                avx._mm256_unpackhi_ps(pair[0], pair[1]),
+                avx._mm256_unpackhi_ps(pair[2], pair[3]),
+            );
+            [
+                pulp::cast(avx._mm256_shuffle_ps::<0x44>(low, high)),
+                pulp::cast(avx._mm256_shuffle_ps::<0xee>(low, high)),
+                pulp::cast(avx._mm256_shuffle_ps::<0x44>(low_z, high_z)),
+            ]
         }
 
         #[inline(always)]
@@ -332,5 +422,85 @@ mod avx2 {
             *min = pulp::cast(self.sse._mm_min_ps(point, pulp::cast(*min)));
             *max = pulp::cast(self.sse._mm_max_ps(point, pulp::cast(*max)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Eight, Lanes, Portable, Work, dispatch};
+
+    /// Numbers between -1 and 1 that look random.
+    fn numbers(seed: u64) -> impl FnMut() -> f32 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            (state >> 40) as f32 / (1_u64 << 23) as f32 - 1.0
+        }
+    }
+
+    fn three(mut number: impl FnMut() -> f32) -> [Eight; 3] {
+        std::array::from_fn(|_| std::array::from_fn(|_| number()))
+    }
+
+    struct AllAtOnce {
+        a: [Eight; 3],
+        b: [Eight; 3],
+    }
+
+    impl Work for AllAtOnce {
+        type Output = (u64, u64, [Eight; 3], u32, u32);
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+            let Self { a, b } = self;
+            let of = |c: &[Eight; 3], pick: fn(f32) -> f32| c.map(|axis| axis.map(pick));
+            let (lower, upper) = (of(&b, |c| c - 0.1), of(&b, |c| c + 0.2));
+            let (min, max) = (of(&a, |c| c - 0.2), of(&a, |c| c + 0.1));
+            let rows = std::array::from_fn(|i| [a[0][i], a[1][i], a[2][i], b[0][i]]);
+            (
+                lanes.all_closer([&b[0], &b[1], &b[2]], &a, 0.5),
+                lanes.boxes_within(
+                    [&lower[0], &lower[1], &lower[2]],
+                    [&upper[0], &upper[1], &upper[2]],
+                    &min,
+                    &max,
+                    0.2,
+                ),
+                lanes.columns(&rows),
+                lanes.closer([&b[0], &b[1], &b[2]], [0.1, 0.2, 0.3], 0.5),
+                lanes.inside([&b[0], &b[1], &b[2]], [-0.7; 3], [0.6; 3]),
+            )
+        }
+    }
+
+    #[test]
+    fn every_unit_says_what_plain_arithmetic_says() {
+        let mut number = numbers(7);
+        let (mut near, mut boxes_near) = (0, 0);
+        for _ in 0..500 {
+            let (a, b) = (three(&mut number), three(&mut number));
+            let all = dispatch(AllAtOnce { a, b });
+            assert_eq!(all, AllAtOnce { a, b }.run(Portable));
+            let (points, boxes, columns, ..) = all;
+            assert_eq!(columns, a);
+            for i in 0..8 {
+                for j in 0..8 {
+                    let way: [f64; 3] = std::array::from_fn(|k| f64::from(a[k][i]) - f64::from(b[k][j]));
+                    let square: f64 = way.iter().map(|d| d * d).sum();
+                    // a's box ends .2 below and .1 above its point, b's .1 below and .2 above
+                    let reach = |d: &f64| if *d > 0.0 { d - 0.4 } else { -d - 0.2 };
+                    let gap: f64 = way.iter().map(|d| reach(d).max(0.0).powi(2)).sum();
+                    let bit = |mask: u64| mask >> (8 * i + j) & 1 == 1;
+                    assert!((square - 0.5).abs() < 1e-5 || bit(points) == (square < 0.5));
+                    assert!((gap - 0.2).abs() < 1e-5 || bit(boxes) == (gap <= 0.2));
+                    near += u32::from(bit(points));
+                    boxes_near += u32::from(bit(boxes));
+                }
+            }
+        }
+        assert!(
+            (1000..31_000).contains(&near) && (1000..31_000).contains(&boxes_near),
+            "both answers occur"
+        );
     }
 }

@@ -17,6 +17,10 @@ use crate::Placement;
 pub(crate) struct Relative {
     matrix: [[f32; 3]; 3],
     shift: [f32; 3],
+    /// The absolute values of the matrix.
+    absolute: [[f32; 3]; 3],
+    /// Whether this changes nothing.
+    same: bool,
     turned: bool,
     /// One over the scale of the matrix.
     inverse: f32,
@@ -75,8 +79,11 @@ impl Relative {
         // beyond this f32 squares could overflow: let everything pass to the exact decision
         let sane = c < power_of_two(55) && scaled < power_of_two(55) && error.is_finite();
         let error = if sane { error } else { f64::INFINITY };
+        let matrix = matrix.map(|row| row.map(|m| (m * ratio) as f32));
         let relative = Self {
-            matrix: matrix.map(|row| row.map(|m| (m * ratio) as f32)),
+            matrix,
+            absolute: matrix.map(|row| row.map(f32::abs)),
+            same: false,
             shift: if sane { shift.map(|s| s as f32) } else { [0.0; 3] },
             turned,
             // a matrix of denormal numbers says nothing about directions
@@ -93,6 +100,8 @@ impl Relative {
     pub(crate) fn same() -> Self {
         Self {
             matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            absolute: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            same: true,
             shift: [0.0; 3],
             turned: false,
             inverse: 1.0,
@@ -123,45 +132,79 @@ impl Relative {
         })
     }
 
-    /// Eight points, one a lane.
+    /// Eight points, one a lane; `room` is for the answer, where it differs from the question.
     #[inline(always)]
-    pub(crate) fn points(&self, c: &[Eight; 3]) -> [Eight; 3] {
+    pub(crate) fn points<'r>(&self, c: &'r [Eight; 3], room: &'r mut [Eight; 3]) -> &'r [Eight; 3] {
+        if self.same {
+            return c;
+        }
         if self.turned {
-            std::array::from_fn(|i| {
-                let m = self.matrix[i];
-                std::array::from_fn(|l| m[0] * c[0][l] + m[1] * c[1][l] + m[2] * c[2][l] + self.shift[i])
-            })
+            turn(&self.matrix, c, room);
+            shift(room, self.shift);
         } else {
-            self.moved(c)
+            self.moved(c, room);
+        }
+        room
+    }
+
+    #[inline(always)]
+    fn moved(&self, c: &[Eight; 3], to: &mut [Eight; 3]) {
+        for i in 0..3 {
+            for l in 0..8 {
+                to[i][l] = self.matrix[i][i] * c[i][l] + self.shift[i];
+            }
         }
     }
 
+    /// Boxes around eight boxes; `room` is for the answer, where it differs from the question.
     #[inline(always)]
-    fn moved(&self, c: &[Eight; 3]) -> [Eight; 3] {
-        std::array::from_fn(|i| std::array::from_fn(|l| self.matrix[i][i] * c[i][l] + self.shift[i]))
-    }
-
-    /// Boxes around eight boxes.
-    #[inline(always)]
-    pub(crate) fn boxes(&self, of: &Group) -> Group {
+    pub(crate) fn boxes<'r>(&self, of: &'r Group, room: &'r mut Group) -> &'r Group {
+        if self.same {
+            return of;
+        }
         if !self.turned {
-            return Group {
-                lower: self.moved(&of.lower),
-                upper: self.moved(&of.upper),
-            };
+            self.moved(&of.lower, &mut room.lower);
+            self.moved(&of.upper, &mut room.upper);
+            return room;
         }
-        let centre: [Eight; 3] =
-            std::array::from_fn(|k| std::array::from_fn(|l| 0.5 * (of.lower[k][l] + of.upper[k][l])));
-        let half: [Eight; 3] =
-            std::array::from_fn(|k| std::array::from_fn(|l| 0.5 * (of.upper[k][l] - of.lower[k][l])));
-        let centre = self.points(&centre);
-        let half: [Eight; 3] = std::array::from_fn(|i| {
-            let m = self.matrix[i].map(f32::abs);
-            std::array::from_fn(|l| m[0] * half[0][l] + m[1] * half[1][l] + m[2] * half[2][l])
-        });
-        Group {
-            lower: std::array::from_fn(|i| std::array::from_fn(|l| centre[i][l] - half[i][l])),
-            upper: std::array::from_fn(|i| std::array::from_fn(|l| centre[i][l] + half[i][l])),
+        let (mut centre, mut half) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
+        for k in 0..3 {
+            for l in 0..8 {
+                centre[k][l] = 0.5 * (of.lower[k][l] + of.upper[k][l]);
+                half[k][l] = 0.5 * (of.upper[k][l] - of.lower[k][l]);
+            }
+        }
+        let (mut turned_centre, mut turned_half) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
+        turn(&self.matrix, &centre, &mut turned_centre);
+        shift(&mut turned_centre, self.shift);
+        turn(&self.absolute, &half, &mut turned_half);
+        for i in 0..3 {
+            for l in 0..8 {
+                room.lower[i][l] = turned_centre[i][l] - turned_half[i][l];
+                room.upper[i][l] = turned_centre[i][l] + turned_half[i][l];
+            }
+        }
+        room
+    }
+}
+
+// Loops rather than closures, which are compiled for the vector unit only where the compiler chooses to inline them.
+
+#[inline(always)]
+fn turn(matrix: &[[f32; 3]; 3], c: &[Eight; 3], to: &mut [Eight; 3]) {
+    for i in 0..3 {
+        let m = matrix[i];
+        for l in 0..8 {
+            to[i][l] = m[0] * c[0][l] + m[1] * c[1][l] + m[2] * c[2][l];
+        }
+    }
+}
+
+#[inline(always)]
+fn shift(c: &mut [Eight; 3], by: [f32; 3]) {
+    for (axis, by) in c.iter_mut().zip(by) {
+        for c in axis {
+            *c += by;
         }
     }
 }

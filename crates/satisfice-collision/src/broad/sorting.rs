@@ -7,11 +7,13 @@ use super::pair::Pair;
 const FEW: usize = 400;
 /// Pairs of a bucket: with its copy it fills the first-level cache, or the second-level one where one bucket does.
 const BUCKET: usize = 1 << 11;
-const ONE_BUCKET: usize = 1 << 15;
+const ONE_BUCKET: usize = 1 << 16;
 /// Leading bits by which pairs are dealt out to buckets, at most: so many places are written to in turn.
 const DEALT_BITS: u32 = 11;
-/// Bits of a digit, at most: the counts stay in the first-level cache.
-const DIGIT_BITS: u32 = 12;
+/// Bits of a digit, at most: the counts of all digits stay in the first-level cache.
+const DIGIT_BITS: u32 = 11;
+/// Digits of a short key, at most.
+const DIGITS: u32 = u32::BITS.div_ceil(DIGIT_BITS);
 
 /// Sorts pairs. Keeps its memory from call to call.
 #[derive(Debug, Default)]
@@ -20,7 +22,14 @@ pub(crate) struct Sorter {
     dealt: Vec<Dealt>,
     /// Where each bucket ends.
     ends: Vec<usize>,
-    scratch: Vec<Pair>,
+    scratch: Scratch,
+}
+
+/// What sorting a bucket needs room for: pairs, or short keys twice.
+#[derive(Debug, Default)]
+struct Scratch {
+    pairs: Vec<Pair>,
+    keys: [Vec<u32>; 2],
 }
 
 /// The pairs of one task, those of a bucket side by side.
@@ -74,7 +83,7 @@ impl Sorter {
             .extend((0..keys.buckets()).map(|at| dealt.iter().map(|dealt| dealt.ends[at]).sum::<usize>()));
         let buckets: Vec<_> = buckets(&self.ends, out).collect();
         buckets.into_par_iter().enumerate().with_min_len(8).for_each_init(
-            Vec::new,
+            Scratch::default,
             |scratch, (at, bucket)| {
                 let mut rest = &mut *bucket;
                 for dealt in &*dealt {
@@ -151,6 +160,16 @@ impl Keys {
         u64::from(pair.a - self.least) << self.width_b | u64::from(pair.b)
     }
 
+    /// The pair of a key that fits into 32 bits.
+    #[inline(always)]
+    fn pair(self, key: u32) -> Pair {
+        let key = u64::from(key);
+        Pair {
+            a: self.least + (key >> self.width_b) as u32,
+            b: (key & ((1 << self.width_b) - 1)) as u32,
+        }
+    }
+
     #[inline(always)]
     fn bucket(self, pair: Pair) -> usize {
         (self.key(pair) >> self.shift) as usize
@@ -191,7 +210,7 @@ fn starts(counts: &mut [usize]) {
 }
 
 /// Sorts pairs in place.
-fn sort(pairs: &mut [Pair], scratch: &mut Vec<Pair>) {
+fn sort(pairs: &mut [Pair], scratch: &mut Scratch) {
     let n = pairs.len();
     if n < FEW {
         pairs.sort_unstable_by_key(|pair| u64::from(pair.a) << 32 | u64::from(pair.b));
@@ -199,7 +218,60 @@ fn sort(pairs: &mut [Pair], scratch: &mut Vec<Pair>) {
     }
     let keys = Keys::of(std::iter::once(&*pairs));
     // a table much longer than the pairs costs more than another pass
-    let passes = keys.width.div_ceil((n.ilog2() + 1).min(DIGIT_BITS)).max(1);
+    let digit = (n.ilog2() + 1).min(DIGIT_BITS);
+    if keys.width.div_ceil(digit) <= DIGITS && u32::try_from(n).is_ok() {
+        sort_short(pairs, keys, digit, &mut scratch.keys);
+    } else {
+        sort_long(pairs, keys, digit, &mut scratch.pairs);
+    }
+}
+
+/// Sorts pairs whose keys have so few digits that those of all are counted at once.
+fn sort_short(pairs: &mut [Pair], keys: Keys, digit: u32, [one, two]: &mut [Vec<u32>; 2]) {
+    let n = pairs.len();
+    let passes = keys.width.div_ceil(digit).max(1);
+    let width = keys.width.div_ceil(passes);
+    let mask = (1 << width) - 1;
+    for room in [&mut *one, &mut *two] {
+        if room.len() < n {
+            room.resize(n, 0);
+        }
+    }
+    let (mut from, mut to) = (&mut one[..n], &mut two[..n]);
+    let mut tables = [[0_u32; 1 << DIGIT_BITS]; DIGITS as usize];
+    for (key, &pair) in from.iter_mut().zip(&*pairs) {
+        *key = keys.key(pair) as u32;
+        for (pass, table) in (0..passes).zip(&mut tables) {
+            table[(*key >> (pass * width)) as usize & mask] += 1;
+        }
+    }
+    for (pass, table) in (0..passes).zip(&mut tables) {
+        let mut sum = 0;
+        for count in &mut table[..=mask] {
+            sum += std::mem::replace(count, sum);
+        }
+        let digit = |key: u32| (key >> (pass * width)) as usize & mask;
+        if pass + 1 == passes {
+            for &key in &*from {
+                let at = &mut table[digit(key)];
+                pairs[*at as usize] = keys.pair(key);
+                *at += 1;
+            }
+        } else {
+            for &key in &*from {
+                let at = &mut table[digit(key)];
+                to[*at as usize] = key;
+                *at += 1;
+            }
+        }
+        std::mem::swap(&mut from, &mut to);
+    }
+}
+
+/// Sorts pairs digit by digit.
+fn sort_long(pairs: &mut [Pair], keys: Keys, digit: u32, scratch: &mut Vec<Pair>) {
+    let n = pairs.len();
+    let passes = keys.width.div_ceil(digit);
     let width = keys.width.div_ceil(passes);
     let mut table = [0; 1 << DIGIT_BITS];
     let table = &mut table[..1 << width];

@@ -1,8 +1,10 @@
 //! Two box trees, or one with itself, descended together: which items can be within the threshold.
 
+use std::cmp::Ordering;
+
 use super::boxes::{BoxTree, Group, Moved};
 use super::frame::Filter;
-use super::lanes::{Lanes, Work};
+use super::lanes::{Eight, Lanes, Work};
 use super::relative::Relative;
 
 /// A group of one tree against a group of the other.
@@ -42,18 +44,38 @@ pub(crate) struct Trees<'a> {
 impl Trees<'_> {
     /// Where a traversal starts; nothing if a tree is empty.
     pub(crate) fn start(&self, to: &mut Vec<Visit>) {
-        let (Some(level_a), Some(level_b)) = (
-            self.a.levels.len().checked_sub(1),
-            self.b.levels.len().checked_sub(1),
-        ) else {
-            return;
-        };
-        to.push(Visit {
-            level_a: level_a as u8,
-            level_b: level_b as u8,
-            a: 0,
-            b: 0,
-        });
+        if let (Some(level_a), Some(level_b)) = (self.a.root(), self.b.root()) {
+            to.push(Visit {
+                level_a,
+                level_b,
+                a: 0,
+                b: 0,
+            });
+        }
+    }
+
+    /// Which pairs of the lanes of two groups count: bit `8 i + j` speaks of lane `i` of the first and `j` of the second.
+    #[inline(always)]
+    fn wanted(&self, at: Visit) -> u64 {
+        let (lanes_a, lanes_b) = (self.a.lanes(at.level_a, at.a), self.b.lanes(at.level_b, at.b));
+        let row = 0xff >> (8 - lanes_b);
+        let mut wanted = (row * 0x0101_0101_0101_0101) & (u64::MAX >> (64 - 8 * lanes_a));
+        if self.one_body && at.a == at.b && at.level_a == at.level_b {
+            // each pair of children once, and a child with itself for its descendants; but no item with itself
+            wanted &= if at.level_a == 0 {
+                0x0080_c0e0_f0f8_fcfe
+            } else {
+                0x80c0_e0f0_f8fc_feff
+            };
+        }
+        let moved_a = self.a.moved(self.moved[0], at.level_a, at.a);
+        if moved_a != 0xff {
+            let moved_b = self.b.moved(self.moved[1], at.level_b, at.b);
+            for i in (0..8).filter(|i| moved_a >> i & 1 == 0) {
+                wanted &= !(0xff << (8 * i)) | u64::from(moved_b) << (8 * i);
+            }
+        }
+        wanted
     }
 }
 
@@ -71,78 +93,55 @@ impl<C: Candidates> Work for Descend<'_, C> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> u64 {
-        let Trees {
-            a,
-            b,
-            relative,
-            filter,
-            one_body,
-            moved,
-            ..
-        } = self.trees;
         let mut visits = 0;
         while visits < self.most as u64
             && !self.visit.enough()
             && let Some(at) = self.stack.pop()
         {
             visits += 1;
-            let group_a = &a.levels[at.level_a as usize][at.a as usize];
-            let group_b = &b.levels[at.level_b as usize][at.b as usize];
-            let same = one_body && at.a == at.b && at.level_a == at.level_b;
-            let lanes_a = (level_len(a, at.level_a) - at.a as usize * 8).min(8);
-            let moved_a = a.moved(moved[0], at.level_a, at.a);
-            let moved_b = b.moved(moved[1], at.level_b, at.b);
             if at.level_a == 0 && at.level_b == 0 {
-                leaf(lanes, self.trees, at, group_a, group_b, lanes_a, same, self.visit);
+                leaf(lanes, self.trees, at, self.visit);
                 continue;
             }
-            let turned = relative.boxes(group_a);
-            let mut any = 0;
-            for i in 0..lanes_a {
-                let (min, max) = lane(&turned, i);
-                let mut mask = lanes.boxes_within(lower(group_b), upper(group_b), min, max, filter.limit);
-                if same {
-                    mask &= !((1 << i) - 1);
+            let mut near = boxes_within(lanes, self.trees, at) & self.trees.wanted(at);
+            // the taller tree alone, if their heights differ
+            match at.level_a.cmp(&at.level_b) {
+                Ordering::Equal => {
+                    while near != 0 {
+                        let (i, j) = next(&mut near);
+                        let below = Visit {
+                            level_a: at.level_a - 1,
+                            level_b: at.level_b - 1,
+                            a: at.a * 8 + i as u32,
+                            b: at.b * 8 + j as u32,
+                        };
+                        // leaves at once, without the way over the stack
+                        if below.level_a == 0 && !self.visit.enough() {
+                            visits += 1;
+                            leaf(lanes, self.trees, below, self.visit);
+                        } else {
+                            self.stack.push(below);
+                        }
+                    }
                 }
-                if moved_a >> i & 1 == 0 {
-                    mask &= moved_b;
-                }
-                any |= mask;
-                if at.level_b > at.level_a {
-                    continue;
-                }
-                // the taller tree alone, if their heights differ
-                let child_a = at.a * 8 + i as u32;
-                if at.level_a > at.level_b {
-                    if mask != 0 {
+                Ordering::Greater => {
+                    for i in (0..8).filter(|i| near >> (8 * i) & 0xff != 0) {
                         self.stack.push(Visit {
                             level_a: at.level_a - 1,
-                            a: child_a,
+                            a: at.a * 8 + i,
                             ..at
                         });
                     }
-                    continue;
                 }
-                while mask != 0 {
-                    let child_b = at.b * 8 + mask.trailing_zeros();
-                    mask &= mask - 1;
-                    self.stack.push(Visit {
-                        level_a: at.level_a - 1,
-                        level_b: at.level_b - 1,
-                        a: child_a,
-                        b: child_b,
-                    });
-                }
-            }
-            if at.level_b > at.level_a {
-                while any != 0 {
-                    let b = at.b * 8 + any.trailing_zeros();
-                    any &= any - 1;
-                    self.stack.push(Visit {
-                        level_b: at.level_b - 1,
-                        b,
-                        ..at
-                    });
+                Ordering::Less => {
+                    let any = near.to_le_bytes().iter().fold(0, |any, row| any | row);
+                    for j in (0..8).filter(|j| any >> j & 1 != 0) {
+                        self.stack.push(Visit {
+                            level_b: at.level_b - 1,
+                            b: at.b * 8 + j,
+                            ..at
+                        });
+                    }
                 }
             }
         }
@@ -150,86 +149,58 @@ impl<C: Candidates> Work for Descend<'_, C> {
     }
 }
 
-fn level_len(tree: &BoxTree, level: u8) -> usize {
-    match level {
-        0 => tree.len(),
-        _ => tree.levels[level as usize - 1].len(),
+/// The next pair of lanes of a mask that is not 0, which loses it.
+#[inline(always)]
+fn next(mask: &mut u64) -> (usize, usize) {
+    let at = mask.trailing_zeros() as usize & 63;
+    *mask &= *mask - 1;
+    (at >> 3, at & 7)
+}
+
+#[inline(always)]
+fn columns(of: &[Eight; 3]) -> [&Eight; 3] {
+    [&of[0], &of[1], &of[2]]
+}
+
+#[inline(always)]
+fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
+    let mut rooms = [Group::EMPTY; 3];
+    let [room_a, room_b, room] = &mut rooms;
+    let a = trees
+        .relative
+        .boxes(trees.a.group(at.level_a, at.a, room_a), room);
+    let b = trees.b.group(at.level_b, at.b, room_b);
+    let (lower, upper) = (columns(&b.lower), columns(&b.upper));
+    lanes.boxes_within(lower, upper, &a.lower, &a.upper, trees.filter.limit)
+}
+
+#[inline(always)]
+fn leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit, visit: &mut C) {
+    let Trees { a, b, filter, .. } = trees;
+    let mut room = [[0.0; 8]; 3];
+    let (points_a, points_b) = if C::POINTS {
+        (trees.relative.points(a.points(at.a), &mut room), b.points(at.b))
+    } else {
+        (&room, &[[0.0; 8]; 3])
+    };
+    let mut near = if C::POINTS {
+        lanes.all_closer(columns(points_b), points_a, filter.limit)
+    } else {
+        boxes_within(lanes, trees, at)
+    };
+    if near != 0 {
+        near &= trees.wanted(at);
     }
-}
-
-#[inline(always)]
-fn lane(of: &Group, lane: usize) -> ([f32; 3], [f32; 3]) {
-    (
-        std::array::from_fn(|k| of.lower[k][lane]),
-        std::array::from_fn(|k| of.upper[k][lane]),
-    )
-}
-
-#[inline(always)]
-fn lower(of: &Group) -> [&[f32; 8]; 3] {
-    [&of.lower[0], &of.lower[1], &of.lower[2]]
-}
-
-#[inline(always)]
-fn upper(of: &Group) -> [&[f32; 8]; 3] {
-    [&of.upper[0], &of.upper[1], &of.upper[2]]
-}
-
-#[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one call, inlined")]
-fn leaf<L: Lanes, C: Candidates>(
-    lanes: L,
-    trees: Trees<'_>,
-    at: Visit,
-    group_a: &Group,
-    group_b: &Group,
-    lanes_a: usize,
-    same: bool,
-    visit: &mut C,
-) {
-    let Trees {
-        a,
-        b,
-        relative,
-        filter,
-        moved,
-        ..
-    } = trees;
-    let moved_a = a.moved(moved[0], 0, at.a);
-    let moved_b = b.moved(moved[1], 0, at.b);
+    if near == 0 {
+        return;
+    }
     let (ids_a, ids_b) = (&a.order[at.a as usize * 8..], &b.order[at.b as usize * 8..]);
-    let points = if C::POINTS {
-        relative.points(&group_a.lower)
-    } else {
-        [[0.0; 8]; 3]
-    };
-    let turned = if C::POINTS {
-        *group_a
-    } else {
-        relative.boxes(group_a)
-    };
-    for i in 0..lanes_a {
-        let q: [f32; 3] = std::array::from_fn(|k| points[k][i]);
-        let mut mask = if C::POINTS {
-            lanes.closer(lower(group_b), q, filter.limit)
-        } else {
-            let (min, max) = lane(&turned, i);
-            lanes.boxes_within(lower(group_b), upper(group_b), min, max, filter.limit)
+    while near != 0 {
+        let (i, j) = next(&mut near);
+        let sure = C::POINTS && {
+            let d: [f32; 3] = std::array::from_fn(|k| points_b[k][j] - points_a[k][i]);
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < filter.sure
         };
-        if same {
-            mask &= !1 << i;
-        }
-        if moved_a >> i & 1 == 0 {
-            mask &= moved_b;
-        }
-        while mask != 0 {
-            let j = mask.trailing_zeros() as usize & 7;
-            mask &= mask - 1;
-            let sure = C::POINTS && {
-                let d: [f32; 3] = std::array::from_fn(|k| group_b.lower[k][j] - q[k]);
-                d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < filter.sure
-            };
-            visit.candidate(ids_a[i], ids_b[j], sure);
-        }
+        visit.candidate(ids_a[i], ids_b[j], sure);
     }
 }
