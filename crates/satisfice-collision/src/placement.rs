@@ -109,6 +109,20 @@ impl Placement {
         Self::from_quaternion(product)?.moved(next.apply(self.translation))
     }
 
+    /// The placement that takes every point back, up to rounding; a translation exactly.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the translation overflows.
+    pub fn inverse(&self) -> Result<Self, Error> {
+        let [w, x, y, z] = self.quaternion;
+        let back = if self.rotation == Self::IDENTITY.rotation {
+            Self::IDENTITY
+        } else {
+            Self::from_quaternion([w, -x, -y, -z])?
+        };
+        back.moved(back.apply(self.translation).map(|c| -c))
+    }
+
     /// The unit quaternion `[w, x, y, z]`.
     #[must_use]
     pub fn quaternion(&self) -> [f64; 4] {

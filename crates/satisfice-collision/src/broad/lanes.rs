@@ -7,6 +7,8 @@ pub(crate) type Eight = [f32; 8];
 pub(crate) trait Lanes: Copy + Send + Sync {
     /// Lanes whose squared distance from `p` is below `limit`. NaN and infinity are never below.
     fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32;
+    /// Lanes in which two points are closer than the root of `limit`.
+    fn each_closer(self, a: &[Eight; 3], b: &[Eight; 3], limit: f32) -> u32;
     /// Lanes inside the closed box `min..=max`.
     fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32;
     /// `closer` for each of eight points: bit `8 i + j` speaks of point `i` and lane `j`.
@@ -80,6 +82,14 @@ impl Lanes for Portable {
     fn closer(self, c: [&Eight; 3], p: [f32; 3], limit: f32) -> u32 {
         mask(|i| {
             let (x, y, z) = (c[0][i] - p[0], c[1][i] - p[1], c[2][i] - p[2]);
+            x * x + y * y + z * z < limit
+        })
+    }
+
+    #[inline(always)]
+    fn each_closer(self, a: &[Eight; 3], b: &[Eight; 3], limit: f32) -> u32 {
+        mask(|i| {
+            let (x, y, z) = (a[0][i] - b[0][i], a[1][i] - b[1][i], a[2][i] - b[2][i]);
             x * x + y * y + z * z < limit
         })
     }
@@ -279,6 +289,19 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn each_closer(self, a: &[Eight; 3], b: &[Eight; 3], limit: f32) -> u32 {
+            let avx = self.avx;
+            let x = avx._mm256_sub_ps(load(&a[0]), load(&b[0]));
+            let y = avx._mm256_sub_ps(load(&a[1]), load(&b[1]));
+            let z = avx._mm256_sub_ps(load(&a[2]), load(&b[2]));
+            let limit = avx._mm256_set1_ps(limit);
+            bits(
+                self,
+                avx._mm256_cmp_ps::<_CMP_LT_OQ>(square(self, x, y, z), limit),
+            )
+        }
+
+        #[inline(always)]
         fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32 {
             let avx = self.avx;
             let axis = |k: usize| {
@@ -448,7 +471,7 @@ mod tests {
     }
 
     impl Work for AllAtOnce {
-        type Output = (u64, u64, [Eight; 3], u32, u32);
+        type Output = (u64, u64, [Eight; 3], u32, u32, u32);
 
         #[inline(always)]
         fn run<L: Lanes>(self, lanes: L) -> Self::Output {
@@ -469,6 +492,7 @@ mod tests {
                 lanes.columns(&rows),
                 lanes.closer([&b[0], &b[1], &b[2]], [0.1, 0.2, 0.3], 0.5),
                 lanes.inside([&b[0], &b[1], &b[2]], [-0.7; 3], [0.6; 3]),
+                lanes.each_closer(&a, &b, 0.5),
             )
         }
     }
@@ -476,6 +500,7 @@ mod tests {
     #[test]
     fn every_unit_says_what_plain_arithmetic_says() {
         let mut number = numbers(7);
+        let point = |c: &[Eight; 3], lane: usize| c.map(|axis| f64::from(axis[lane]));
         let (mut near, mut boxes_near) = (0, 0);
         for _ in 0..500 {
             let (a, b) = (three(&mut number), three(&mut number));
@@ -483,9 +508,12 @@ mod tests {
             assert_eq!(all, AllAtOnce { a, b }.run(Portable));
             let (points, boxes, columns, ..) = all;
             assert_eq!(columns, a);
+            let diagonal = (0..8).map(|i| (points >> (9 * i) & 1) << i).sum::<u64>();
+            assert_eq!(diagonal, u64::from(all.5));
             for i in 0..8 {
                 for j in 0..8 {
-                    let way: [f64; 3] = std::array::from_fn(|k| f64::from(a[k][i]) - f64::from(b[k][j]));
+                    let (p, q) = (point(&a, i), point(&b, j));
+                    let way: [f64; 3] = std::array::from_fn(|k| p[k] - q[k]);
                     let square: f64 = way.iter().map(|d| d * d).sum();
                     // a's box ends .2 below and .1 above its point, b's .1 below and .2 above
                     let reach = |d: &f64| if *d > 0.0 { d - 0.4 } else { -d - 0.2 };

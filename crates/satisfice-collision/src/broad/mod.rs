@@ -21,6 +21,7 @@ mod sorting;
 mod traverse;
 mod trees;
 mod watch;
+mod witnesses;
 
 #[cfg(test)]
 mod tests;
@@ -37,6 +38,7 @@ pub(crate) use sorting::Sorter;
 pub(crate) use traverse::Visit;
 pub use trees::{TreeJoin, TreeWork};
 pub(crate) use watch::Watch;
+pub(crate) use witnesses::Witnesses;
 
 /// How pairs are enumerated. No method changes an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

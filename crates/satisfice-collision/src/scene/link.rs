@@ -6,12 +6,12 @@ use super::body::Motion;
 use super::kept::Kept;
 use super::state::State;
 use super::{Contact, Scene, Skips};
-use crate::Error;
-use crate::broad::{Couple, FeatureKind, Method, Moved, Pair, Watch, inflate, intersection};
+use crate::broad::{Couple, FeatureKind, Method, Moved, Pair, Watch, Witnesses, inflate, intersection};
 use crate::distance::{
     PairKind, Point, Proximity, Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
     vertex_triangle, vertex_vertex,
 };
+use crate::{Error, Placement};
 
 /// A list is made with a margin of so many frames' motion.
 const FRAMES: f64 = 6.0;
@@ -32,10 +32,12 @@ pub(super) struct Link {
     measured: Measured,
 }
 
-/// How far below the threshold the distances of a link's pairs were at a frame, rounded down.
+/// How far below the threshold the distances of a link's pairs are expected to be in the frame after `frame`, rounded down.
 #[derive(Default)]
 struct Measured {
     frame: Option<u64>,
+    /// Where the bodies are expected then; `None` if one deforms, of which what is expected is that it stays.
+    places: Option<[Placement; 2]>,
     /// In the order of the pairs.
     slack: Vec<f32>,
     /// The pairs in the order of falling slack, and their slacks.
@@ -43,7 +45,7 @@ struct Measured {
     falling: Vec<f32>,
     /// Of rigid bodies the closest points of the likely pairs, in the bodies' own coordinates: wherever the bodies go, the
     /// distance of these points is one that the features do not exceed.
-    witnesses: Vec<[Point; 2]>,
+    witnesses: Witnesses,
 }
 
 /// Every pair that was within the threshold plus a margin; complete while the bodies have not used the margin up.
@@ -81,28 +83,23 @@ impl Link {
         self.seen = Some(frame);
     }
 
-    /// The pairs of frame `at` in the order of falling slack, if they were measured and are still those of that frame.
-    pub(super) fn likely(&self, at: Option<u64>) -> Option<&[Contact]> {
-        (at.is_some() && self.measured.frame == at && self.seen == at).then_some(&self.measured.likely)
-    }
-
-    /// How many of `likely` are closer than the bodies have moved, and so hold without a look.
-    pub(super) fn holding(&self, motion: f64) -> usize {
+    /// How many of the likely pairs are closer than their bodies are from where they were expected, and so hold without a look.
+    pub(super) fn holding(&self, drift: f64) -> usize {
         self.measured
             .falling
-            .partition_point(|&slack| f64::from(slack) > motion)
+            .partition_point(|&slack| f64::from(slack) > drift)
     }
 
     /// Closest points of the likely pairs, where bodies move as a whole.
-    pub(super) fn witnesses(&self) -> &[[Point; 2]] {
+    pub(super) fn witnesses(&self) -> &Witnesses {
         &self.measured.witnesses
     }
 
     /// Those pairs in the order of the pairs.
-    pub(super) fn held(&self, motion: f64) -> impl Iterator<Item = Pair> {
+    pub(super) fn held(&self, drift: f64) -> impl Iterator<Item = Pair> {
         let slacks = self.pairs.iter().zip(&self.measured.slack);
         slacks
-            .filter(move |(_, slack)| f64::from(**slack) > motion)
+            .filter(move |(_, slack)| f64::from(**slack) > drift)
             .map(|(pair, _)| *pair)
     }
 }
@@ -333,7 +330,8 @@ impl Scene {
     }
 
     /// Measures the distance of every known contact, so that the next pass can tell from the bodies' motion alone which of them
-    /// still hold. For the time between frames: an answer does not change by it. Cost: one distance a contact.
+    /// still hold: of rigid bodies as it will be if they go on as they do, so that a steady motion costs nothing. For the time
+    /// between frames: an answer does not change by it. Cost: one distance a contact.
     pub fn measure_contacts(&mut self) {
         let delta = self.threshold.get();
         for at in 0..self.links.len() {
@@ -346,17 +344,20 @@ impl Scene {
             let link = &self.links[at];
             let slack = &mut measured.slack;
             slack.clear();
-            let whole = [link.a, link.b]
-                .iter()
-                .all(|&body| self.states[body].body.motion != Motion::Deforming);
+            measured.places = self
+                .are_whole(link)
+                .then(|| [link.a, link.b].map(|body| *self.states[body].forecast.expected()));
             let mut witnesses = Vec::new();
             slack.extend(link.pairs.iter().map(|&pair| {
                 let nearest = self.proximity_of(link.contact(pair));
-                if whole {
-                    witnesses.push(self.witness(link, pair, &nearest));
-                }
+                let (delta, distance) = if let Some(places) = &measured.places {
+                    let points = self.witness(link, pair, &nearest);
+                    witnesses.push(points);
+                    (self.reach(link, places), expected_distance(points, places))
+                } else {
+                    (delta, nearest.distance)
+                };
                 // a distance is within one unit in the last place; the cast may round up by half of one of f32
-                let distance = nearest.distance;
                 ((delta - distance * (1.0 + 1e-12)) * (1.0 - 1e-12)).max(0.0) as f32
             }));
             slack
@@ -373,9 +374,9 @@ impl Scene {
             let contacts = order.iter().map(|key| link.contact(link.pairs[place(key)]));
             measured.likely.extend(contacts);
             measured.witnesses.clear();
-            if whole {
-                let falling = order.iter().map(|key| witnesses[place(key)]);
-                measured.witnesses.extend(falling);
+            if measured.places.is_some() {
+                let falling: Vec<_> = order.iter().map(|key| witnesses[place(key)]).collect();
+                measured.witnesses.set(&falling);
             }
             measured.falling.clear();
             measured.falling.extend(order.iter().map(|key| slack[place(key)]));
@@ -386,9 +387,10 @@ impl Scene {
         let first = self.order().first().copied();
         self.laid_out.clear();
         if let Some(first) = first
-            && let Some(likely) = self.links[first].likely(Some(self.frame))
+            && self.links[first].measured.frame == Some(self.frame)
         {
-            self.laid_out.extend_from_slice(likely);
+            self.laid_out
+                .extend_from_slice(&self.links[first].measured.likely);
         }
     }
 
@@ -402,24 +404,35 @@ impl Scene {
         .map(|(body, kind, feature, weights)| self.states[body].own_point(kind, feature, weights))
     }
 
-    /// How near the closest points of a link's likely pairs, posed anew, have to be for their features to be within the threshold
-    /// for certain: posing and weighing round in proportion to the lengths involved.
-    pub(super) fn reach(&self, link: &Link) -> f64 {
-        let sizes = self.states[link.a].extent() + self.states[link.b].extent();
-        self.threshold.get() - 1e-12 * sizes
+    /// Whether both bodies of a link move as wholes, if at all.
+    fn are_whole(&self, link: &Link) -> bool {
+        [link.a, link.b]
+            .iter()
+            .all(|&body| self.states[body].body.motion != Motion::Deforming)
     }
 
-    /// Whether the closest points of a likely pair, wherever its bodies are now, are nearer than `reach`.
-    #[inline]
-    pub(super) fn still_near(&self, link: &Link, [p, q]: &[Point; 2], reach: f64) -> bool {
-        let (p, q) = (
-            self.states[link.a].posed_point(*p),
-            self.states[link.b].posed_point(*q),
-        );
-        let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        // where squares vanish, nothing is certain
-        let square = x * x + y * y + z * z;
-        reach > 1e-150 && square * (1.0 + 1e-15) < reach * reach
+    /// The pairs of the last frame in the order of falling slack, if they were measured then and for what was expected of the
+    /// present frame.
+    pub(super) fn likely<'l>(&self, link: &'l Link) -> Option<&'l [Contact]> {
+        let last = self.frame.checked_sub(1);
+        let foreseen = [link.a, link.b].map(|body| self.states[body].forecast.foreseen().0);
+        let measured = &link.measured;
+        let is_known = last.is_some() && measured.frame == last && link.seen == last;
+        let as_expected = measured.places.as_ref().is_none_or(|[a, b]| foreseen == [a, b]);
+        (is_known && as_expected).then_some(&measured.likely)
+    }
+
+    /// How near the closest points of a link's likely pairs, with the bodies in these places, have to be for their features to be
+    /// within the threshold for certain: posing and weighing round in proportion to the lengths involved.
+    pub(super) fn reach(&self, link: &Link, places: &[Placement; 2]) -> f64 {
+        let largest = |place: &Placement| {
+            place
+                .translation()
+                .iter()
+                .fold(0.0_f64, |most, c| most.max(c.abs()))
+        };
+        let sizes = self.states[link.a].extent() + self.states[link.b].extent();
+        self.threshold.get() - 1e-12 * (sizes + largest(&places[0]) + largest(&places[1]))
     }
 
     /// The links, those with most pairs first.
@@ -429,10 +442,17 @@ impl Scene {
         order
     }
 
-    /// How much the distance of two features of a link can have changed since the last frame.
-    pub(super) fn motion(&self, link: &Link) -> f64 {
-        let (a, b) = (self.states[link.a].motion, self.states[link.b].motion);
-        if link.a == link.b { 2.0 * a } else { a + b }
+    /// By how much the distance of two features of a link can exceed what was expected of the present frame: that the bodies go on
+    /// as they did, or, if one of them deforms, that they stay.
+    pub(super) fn drift(&self, link: &Link) -> f64 {
+        let (a, b) = (&self.states[link.a], &self.states[link.b]);
+        if self.are_whole(link) {
+            a.forecast.foreseen().1 + b.forecast.foreseen().1
+        } else if link.a == link.b {
+            2.0 * a.motion
+        } else {
+            a.motion + b.motion
+        }
     }
 
     /// Whether a pair of features is within the threshold now: the exact decision.
@@ -467,6 +487,19 @@ impl Scene {
             PairKind::EdgeTriangle => edge_triangle::proximity(&a.segment(i), &b.triangle(j)),
             PairKind::TriangleTriangle => triangle_triangle::proximity(&a.triangle(i), &b.triangle(j)),
         }
+    }
+}
+
+/// How far two points are from each other with their bodies in these places; infinite where a square overflows or vanishes.
+fn expected_distance([p, q]: [Point; 2], [a, b]: &[Placement; 2]) -> f64 {
+    let (p, q) = (a.apply(p), b.apply(q));
+    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let square = x * x + y * y + z * z;
+    let vanishes = square < 1e-290 && [x, y, z] != [0.0; 3];
+    if vanishes || !square.is_finite() {
+        f64::INFINITY
+    } else {
+        square.sqrt()
     }
 }
 

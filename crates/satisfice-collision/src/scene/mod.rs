@@ -18,6 +18,7 @@
 //! ```
 
 mod body;
+mod forecast;
 mod kept;
 mod link;
 mod near;

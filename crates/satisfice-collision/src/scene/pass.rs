@@ -7,6 +7,8 @@ use crate::broad::{Couple, Pair, Visit};
 
 /// Pairs verified between two questions to the budget.
 const STRIDE: usize = 128;
+/// Groups of eight closest points looked at between two questions to the budget.
+const GROUPS: usize = 32;
 /// Pairs of groups of eight boxes visited between two questions to the budget.
 const VISITS: usize = 16;
 
@@ -16,9 +18,9 @@ const PARTS: usize = 16;
 const VISITS_OF_PART: usize = 256;
 
 /// A frame that is being enumerated piece by piece. First come the contacts of the last frame that hold whatever moved (see
-/// [`Scene::measure_contacts`]), at no cost: they were laid out between the frames. Then the others are verified, the closest
-/// of the last frame first, those of the bodies with most contacts first of all; then the bodies are searched in the same
-/// order.
+/// [`Scene::measure_contacts`]), at no cost: they were laid out between the frames. Then come those whose closest points of then
+/// are still near where rigid bodies have gone, and then the others are verified, the closest of the last frame first, those of
+/// the bodies with most contacts first of all; then the bodies are searched in the same order.
 pub struct Pass {
     frame: u64,
     order: Vec<usize>,
@@ -37,6 +39,9 @@ struct Progress {
     held: usize,
     /// Whether these are all that hold so.
     held_all: bool,
+    /// Which of the likely contacts are delivered since their closest points of the last frame are near, eight in a mask, beginning
+    /// with the group of the first that is not held.
+    near: Vec<u8>,
     /// The other pairs delivered.
     others: Vec<Pair>,
     /// All pairs delivered before the search, sorted.
@@ -60,12 +65,44 @@ impl Delivered {
         }
         self.count += 1;
     }
+
+    /// Those of a group of eight likely contacts, or fewer, that a mask names. If they `lie_there` already, they are moved up.
+    fn push_some(&mut self, likely: &[Contact], group: usize, mask: u8, lie_there: bool) {
+        let places = group * 8..likely.len().min(group * 8 + 8);
+        let end = self.count + places.len();
+        if self.contacts.len() < end {
+            self.contacts.resize(end, likely[places.start]);
+        }
+        // always written, kept by moving the end
+        for (lane, at) in places.enumerate() {
+            let contact = if lie_there { self.contacts[at] } else { likely[at] };
+            self.contacts[self.count] = contact;
+            self.count += usize::from(mask >> lane & 1);
+        }
+    }
+}
+
+impl Progress {
+    /// Whether a likely contact has been delivered already.
+    fn is_delivered(&self, likely: usize) -> bool {
+        let group = likely / 8 - (self.held / 8).min(likely / 8);
+        likely < self.held
+            || self
+                .near
+                .get(group)
+                .is_some_and(|mask| mask >> (likely % 8) & 1 == 1)
+    }
 }
 
 enum Phase {
     /// Taking over the contacts that hold by the bound of motion, of the link at `turn` of the order.
     Held {
         turn: usize,
+    },
+    /// Taking over those of the others whose closest points are near, from the group `next` on.
+    Near {
+        turn: usize,
+        next: usize,
     },
     /// Verifying the others, from the likely one `next` on.
     Verify {
@@ -124,8 +161,7 @@ impl Scene {
     pub fn pass(&mut self) -> Pass {
         self.settle();
         let order = self.order();
-        let last = self.frame.checked_sub(1);
-        let likely = order.first().and_then(|&at| self.links[at].likely(last));
+        let likely = order.first().and_then(|&at| self.likely(&self.links[at]));
         let laid_out = likely.map_or(0, <[Contact]>::len);
         let usable = laid_out > 0 && self.laid_out.len() == laid_out;
         Pass {
@@ -204,15 +240,23 @@ impl Scene {
             return link.pairs[..progress.held].to_vec();
         }
         let mut others = std::mem::take(&mut progress.others);
+        if progress.verified.is_empty() {
+            let likely = self.likely(link).unwrap_or_default();
+            let near = (progress.held..likely.len()).filter(|&at| progress.is_delivered(at));
+            others.extend(near.map(|at| Pair {
+                a: likely[at].a,
+                b: likely[at].b,
+            }));
+        }
         others.sort_unstable();
         let others = merged(progress.verified.iter().copied(), others);
         if !progress.verified.is_empty() {
             return others;
         }
         if progress.held_all {
-            merged(link.held(self.motion(link)), others)
+            merged(link.held(self.drift(link)), others)
         } else {
-            let likely = link.likely(self.frame.checked_sub(1)).unwrap_or_default();
+            let likely = self.likely(link).unwrap_or_default();
             let held = likely[..progress.held].iter().map(|contact| Pair {
                 a: contact.a,
                 b: contact.b,
@@ -224,11 +268,10 @@ impl Scene {
     }
 
     fn piece(&mut self, pass: &mut Pass) -> Result<(), Error> {
-        let last = self.frame.checked_sub(1);
         match &mut pass.phase {
             Phase::Held { turn } => {
                 let Some(&at) = pass.order.get(*turn) else {
-                    pass.phase = Phase::Verify { turn: 0, next: 0 };
+                    pass.phase = Phase::Near { turn: 0, next: 0 };
                     return Ok(());
                 };
                 let link = &self.links[at];
@@ -246,11 +289,11 @@ impl Scene {
                     }
                     return Ok(());
                 }
-                let likely = link.likely(last).unwrap_or_default();
+                let likely = self.likely(link).unwrap_or_default();
                 let holding = if likely.is_empty() {
                     0
                 } else {
-                    link.holding(self.motion(link))
+                    link.holding(self.drift(link))
                 };
                 let end = holding.min(progress.held + 16 * STRIDE);
                 let lie_there = *turn == 0 && end <= pass.delivered.laid_out;
@@ -268,6 +311,40 @@ impl Scene {
                     *turn += 1;
                 }
             }
+            Phase::Near { turn, next } => {
+                let Some(&at) = pass.order.get(*turn) else {
+                    pass.phase = Phase::Verify { turn: 0, next: 0 };
+                    return Ok(());
+                };
+                let link = &self.links[at];
+                let progress = &mut pass.links[at];
+                let likely = self.likely(link).unwrap_or_default();
+                let groups = link.witnesses().groups();
+                let first = (*next).max(progress.held / 8);
+                let end = groups.min(first + GROUPS);
+                if progress.at_rest || likely.is_empty() || first >= end {
+                    (*turn, *next) = (*turn + 1, 0);
+                    return Ok(());
+                }
+                let places = [link.a, link.b].map(|body| self.states[body].placement);
+                let known = progress.near.len();
+                link.witnesses().near(
+                    first..end,
+                    [&places[0], &places[1]],
+                    self.reach(link, &places),
+                    &mut progress.near,
+                );
+                // no more was delivered than lay there, so that what follows has not been written over
+                let lie_there = *turn == 0 && likely.len() == pass.delivered.laid_out;
+                let count = pass.delivered.count;
+                for (group, mask) in (first..end).zip(&mut progress.near[known..]) {
+                    let held = progress.held.saturating_sub(group * 8).min(8);
+                    *mask &= !((1_u16 << held) - 1) as u8;
+                    pass.delivered.push_some(likely, group, *mask, lie_there);
+                }
+                pass.skips.held_by_motion += (pass.delivered.count - count) as u64;
+                *next = end;
+            }
             Phase::Verify { turn, next } => {
                 let Some(&at) = pass.order.get(*turn) else {
                     pass.phase = Phase::Search {
@@ -283,24 +360,19 @@ impl Scene {
                     (*turn, *next) = (*turn + 1, 0);
                     return Ok(());
                 }
-                let likely = link.likely(last);
+                let likely = self.likely(link);
                 *next = (*next).max(progress.held);
                 let end = link.pairs.len().min(*next + STRIDE);
-                let reach = self.reach(link);
-                let witnesses = if likely.is_some() { link.witnesses() } else { &[] };
                 for i in *next..end {
                     let pair = match likely {
+                        Some(_) if progress.is_delivered(i) => continue,
                         Some(likely) => Pair {
                             a: likely[i].a,
                             b: likely[i].b,
                         },
                         None => link.pairs[i],
                     };
-                    let near = witnesses
-                        .get(i)
-                        .is_some_and(|points| self.still_near(link, points, reach));
-                    pass.skips.held_by_motion += u64::from(near);
-                    if near || self.decide(link, pair) {
+                    if self.decide(link, pair) {
                         progress.others.push(pair);
                         pass.delivered.push(link.contact(pair));
                     }

@@ -1,6 +1,7 @@
 //! A body inside a scene: where it is, what of it moved, and the trees kept over it.
 
 use super::body::{Body, Motion};
+use super::forecast::Forecast;
 use crate::broad::{FeatureKind, FeatureTree, Moved, Runs};
 use crate::distance::{Point, Segment, Triangle};
 use crate::{Aabb, Adjacency, Error, Placement};
@@ -19,6 +20,7 @@ pub(super) struct State {
     runs: Runs,
     runs_are_current: bool,
     next_placement: Option<Placement>,
+    pub(super) forecast: Forecast,
     /// What moved between the last two frames.
     pub(super) moved: Moved,
     /// Share of the vertices that moved.
@@ -61,6 +63,7 @@ impl State {
             runs: Runs::default(),
             runs_are_current: false,
             next_placement: None,
+            forecast: Forecast::new(placement),
             moved: Moved::All,
             share: 1.0,
             motion: f64::INFINITY,
@@ -134,10 +137,13 @@ impl State {
     /// Goes to the next frame.
     pub(super) fn settle(&mut self) {
         (self.moved, self.share, self.motion, self.agitation) = (Moved::None, 0.0, 0.0, 0.0);
-        if let Some(placement) = self.next_placement.take()
-            && placement != self.placement
-        {
-            self.motion = self.motion_to(&placement);
+        let placement = self.next_placement.take().unwrap_or(self.placement);
+        let (corners, local) = (self.corners(), self.local);
+        self.forecast.settle(&self.placement, &placement, |one, two| {
+            apart(&corners, &local, one, two)
+        });
+        if placement != self.placement {
+            self.motion = apart(&corners, &local, &self.placement, &placement);
             (self.moved, self.share) = (Moved::All, 1.0);
             self.placement = placement;
             self.rests = placement == Placement::IDENTITY;
@@ -273,16 +279,6 @@ impl State {
         std::array::from_fn(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
     }
 
-    /// Where a point of the body is in the world.
-    #[inline]
-    pub(super) fn posed_point(&self, point: Point) -> Point {
-        if self.rests {
-            point
-        } else {
-            self.placement.apply(point)
-        }
-    }
-
     /// No coordinate of the body, before or after its placement, is larger.
     pub(super) fn extent(&self) -> f64 {
         let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
@@ -316,24 +312,25 @@ impl State {
         self.corners()
             .iter()
             .for_each(|&corner| bounds.include(placement.apply(corner)));
-        let slack = self.rounding(placement);
+        let slack = rounding(&self.local, placement);
         Aabb {
             min: bounds.min.map(|c| c - slack),
             max: bounds.max.map(|c| c + slack),
         }
     }
+}
 
-    fn rounding(&self, placement: &Placement) -> f64 {
-        let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-        1e-14 * (largest(&self.local.min) + largest(&self.local.max) + largest(&placement.translation()))
-    }
+fn rounding(local: &Aabb, placement: &Placement) -> f64 {
+    let largest = |v: &[f64; 3]| v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    1e-14 * (largest(&local.min) + largest(&local.max) + largest(&placement.translation()))
+}
 
-    /// The displacement between two placements is an affine function of the point, so its length is largest at a corner.
-    fn motion_to(&self, next: &Placement) -> f64 {
-        let square = self.corners().iter().fold(0.0_f64, |most, &corner| {
-            let (old, new) = (self.placement.apply(corner), next.apply(corner));
-            most.max((0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum())
-        });
-        square.sqrt() * (1.0 + 1e-12) + 4.0 * (self.rounding(&self.placement) + self.rounding(next)) + 1e-153
-    }
+/// How far no point of a box is from itself in two placements: the way is an affine function of the point, so that it is
+/// longest at a corner.
+fn apart(corners: &[Point; 8], local: &Aabb, one: &Placement, two: &Placement) -> f64 {
+    let square = corners.iter().fold(0.0_f64, |most, &corner| {
+        let (old, new) = (one.apply(corner), two.apply(corner));
+        most.max((0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum())
+    });
+    square.sqrt() * (1.0 + 1e-12) + 4.0 * (rounding(local, one) + rounding(local, two)) + 1e-153
 }

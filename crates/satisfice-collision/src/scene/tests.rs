@@ -9,6 +9,7 @@ use crate::distance::{
 use crate::{Error, Mesh, Placement, generate, oracle};
 
 mod kept;
+mod steady;
 
 const KINDS: [PairKind; 4] = [
     PairKind::VertexVertex,
