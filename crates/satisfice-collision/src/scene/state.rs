@@ -16,6 +16,7 @@ pub(super) struct State {
     rests: bool,
     next_vertices: Vec<Point>,
     has_next: bool,
+    step: Step,
     /// The boxes of the vertices given last, and whether these are the present ones.
     runs: Runs,
     runs_are_current: bool,
@@ -39,6 +40,33 @@ pub(super) struct State {
     pub(super) rings: Option<Adjacency>,
 }
 
+/// How the vertices move to the next frame.
+#[derive(Default)]
+struct Step {
+    /// How many of them do.
+    count: usize,
+    /// The square of the longest way.
+    square: f64,
+    sum: Point,
+    squares: f64,
+}
+
+impl Step {
+    fn between(old: &[Point], new: &[Point]) -> Self {
+        let mut step = Self::default();
+        for (old, new) in old.iter().zip(new) {
+            let [x, y, z] = [new[0] - old[0], new[1] - old[1], new[2] - old[2]];
+            let square = x * x + y * y + z * z;
+            let [sum_x, sum_y, sum_z] = step.sum;
+            step.sum = [sum_x + x, sum_y + y, sum_z + z];
+            step.squares += square;
+            step.count += usize::from((x != 0.0) | (y != 0.0) | (z != 0.0));
+            step.square = if square > step.square { square } else { step.square };
+        }
+        step
+    }
+}
+
 struct Kept {
     tree: FeatureTree,
     current: bool,
@@ -60,6 +88,7 @@ impl State {
             rests: placement == Placement::IDENTITY,
             next_vertices: Vec::new(),
             has_next: false,
+            step: Step::default(),
             runs: Runs::default(),
             runs_are_current: false,
             next_placement: None,
@@ -99,6 +128,7 @@ impl State {
         self.runs.measure(vertices, 1)?;
         self.next_vertices.clear();
         self.next_vertices.extend_from_slice(vertices);
+        self.step = Step::between(&self.vertices, vertices);
         self.has_next = true;
         Ok(())
     }
@@ -152,24 +182,15 @@ impl State {
         }
         if std::mem::take(&mut self.has_next) {
             self.runs_are_current = true;
-            let (mut count, mut square, mut sum, mut squares) = (0, 0.0, [0.0; 3], 0.0);
-            for (old, new) in self.vertices.iter().zip(&self.next_vertices) {
-                let step: Point = std::array::from_fn(|k| new[k] - old[k]);
-                let d: f64 = step.iter().map(|c| c * c).sum();
-                (0..3).for_each(|k| sum[k] += step[k]);
-                squares += d;
-                count += usize::from(old != new);
-                square = if d > square { d } else { square };
-            }
-            if count > 0 {
+            if self.step.count > 0 {
                 std::mem::swap(&mut self.vertices, &mut self.next_vertices);
                 self.moved = Moved::Marked;
-                self.share = count as f64 / self.vertices.len() as f64;
-                // rounded up; squares that underflow belong to motions below 1e-153
-                self.motion = square.sqrt() * (1.0 + 1e-12) + 1e-153;
                 let n = self.vertices.len() as f64;
-                let mean: f64 = sum.iter().map(|c| (c / n) * (c / n)).sum();
-                self.agitation = (squares / n - mean).max(0.0).sqrt();
+                self.share = self.step.count as f64 / n;
+                // rounded up; squares that underflow belong to motions below 1e-153
+                self.motion = self.step.square.sqrt() * (1.0 + 1e-12) + 1e-153;
+                let mean: f64 = self.step.sum.iter().map(|c| (c / n) * (c / n)).sum();
+                self.agitation = (self.step.squares / n - mean).max(0.0).sqrt();
                 if let Some(bounds) = self.runs.whole() {
                     (self.local, self.bounds) = (bounds, bounds);
                 }
