@@ -9,7 +9,8 @@ use super::separate::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
 use super::trees::TreeWork;
 use crate::distance::{
-    Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge, vertex_triangle, vertex_vertex,
+    Threshold, Triangle, TriangleBatch, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
+    vertex_triangle, vertex_vertex,
 };
 use crate::{Error, Placement};
 
@@ -135,20 +136,10 @@ impl Couple<'_> {
     ) -> TreeWork {
         self.lay(|trees, flip| {
             let mut visit = Visitor::<POINTS> {
-                couple: self,
-                flip,
-                found,
-                glance: self.glance(&trees, flip),
                 enough,
-                work: TreeWork::default(),
+                ..Visitor::new(self, flip, found, self.glance(&trees, flip))
             };
-            let visits = dispatch(Descend {
-                trees,
-                stack,
-                most,
-                visit: &mut visit,
-            });
-            TreeWork { visits, ..visit.work }
+            visit.descend(trees, stack, most)
         })
     }
 
@@ -191,9 +182,20 @@ impl Couple<'_> {
                 edge_triangle::within(&b.segment(j).map(at_b), &a.triangle(i).map(at_a), threshold)
             }
             (FeatureKind::Triangle, FeatureKind::Triangle) => {
-                triangle_triangle::within(&a.triangle(i).map(at_a), &b.triangle(j).map(at_b), threshold)
+                let (p, q) = self.triangles(i, j);
+                triangle_triangle::within(&p, &q, threshold)
             }
         }
+    }
+
+    /// Triangle `i` of `a` and triangle `j` of `b` in the world.
+    #[inline]
+    fn triangles(&self, i: u32, j: u32) -> (Triangle, Triangle) {
+        let ((a, pose_a), (b, pose_b)) = (self.a, self.b);
+        (
+            a.triangle(i).map(|p| pose_a.apply(p)),
+            b.triangle(j).map(|p| pose_b.apply(p)),
+        )
     }
 }
 
@@ -208,15 +210,50 @@ pub(crate) struct Glance<'a> {
 
 /// Decides the candidates of a descent.
 pub(crate) struct Visitor<'a, const POINTS: bool> {
-    pub(crate) couple: &'a Couple<'a>,
+    couple: &'a Couple<'a>,
     /// Whether the first tree of the descent is `b`.
-    pub(crate) flip: bool,
-    pub(crate) found: &'a mut Vec<Pair>,
+    flip: bool,
+    found: &'a mut Vec<Pair>,
     /// How to see that two triangles are far apart, if that is what the pairs are.
-    pub(crate) glance: Option<Glance<'a>>,
+    glance: Option<Glance<'a>>,
+    /// Triangles that wait to be decided with others.
+    waiting: TriangleBatch<Pair>,
     /// Pairs after which the descent pauses.
-    pub(crate) enough: usize,
-    pub(crate) work: TreeWork,
+    enough: usize,
+    work: TreeWork,
+}
+
+impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
+    /// Pairs are appended to `found`.
+    pub(crate) fn new(
+        couple: &'a Couple<'a>,
+        flip: bool,
+        found: &'a mut Vec<Pair>,
+        glance: Option<Glance<'a>>,
+    ) -> Self {
+        Self {
+            couple,
+            flip,
+            found,
+            glance,
+            waiting: TriangleBatch::new(couple.threshold),
+            enough: usize::MAX,
+            work: TreeWork::default(),
+        }
+    }
+
+    /// Goes on with a descent: at most about `most` visits.
+    pub(crate) fn descend(&mut self, trees: Trees<'_>, stack: &mut Vec<Visit>, most: usize) -> TreeWork {
+        let visits = dispatch(Descend {
+            trees,
+            stack,
+            most,
+            visit: self,
+        });
+        let Self { waiting, found, .. } = self;
+        waiting.finish(|pair, decision| found.extend(decision.within.then_some(pair)));
+        TreeWork { visits, ..self.work }
+    }
 }
 
 impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
@@ -239,14 +276,19 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
         if !self.couple.keeps(a, b) {
             return;
         }
-        if !sure {
-            if let Some(glance) = &self.glance
-                && glance
-                    .first
-                    .apart(first, &glance.second, second, glance.relative, glance.apart)
-            {
-                return;
+        if let Some(glance) = &self.glance {
+            let (one, two) = (&glance.first, &glance.second);
+            if !one.apart(first, two, second, glance.relative, glance.apart) {
+                self.work.decisions += 1;
+                let (p, q) = self.couple.triangles(a, b);
+                let found = &mut *self.found;
+                self.waiting.push(&p, &q, Pair { a, b }, |pair, decision| {
+                    found.extend(decision.within.then_some(pair));
+                });
             }
+            return;
+        }
+        if !sure {
             self.work.decisions += 1;
             if !self.couple.within(a, b) {
                 return;

@@ -3,10 +3,9 @@
 use super::boxes::{BoxTree, Moved};
 use super::couple::{Couple, Keep, Visitor};
 use super::features::FeatureTree;
-use super::lanes::dispatch;
 use super::pair::Pair;
 use super::sorting::Sorter;
-use super::traverse::{Descend, Trees, Visit};
+use super::traverse::{Trees, Visit};
 use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Error, Placement};
@@ -179,22 +178,11 @@ impl TreeJoin {
         let glance = couple.glance(&trees, flip);
         let go = |task: &mut Task, most: usize| {
             let Task { stack, found, work } = task;
-            let mut visit = Visitor::<POINTS> {
-                couple,
-                flip,
-                found,
-                glance,
-                enough: usize::MAX,
-                work: *work,
-            };
-            let visits = dispatch(Descend {
-                trees,
-                stack,
-                most,
-                visit: &mut visit,
-            });
-            *work = visit.work;
-            work.visits += visits;
+            let mut visit = Visitor::<POINTS>::new(couple, flip, found, glance);
+            let more = visit.descend(trees, stack, most);
+            work.visits += more.visits;
+            work.candidates += more.candidates;
+            work.decisions += more.decisions;
         };
         let go_on = |task: &mut Task| {
             let mut told = task.found.len();

@@ -1,30 +1,16 @@
 //! Many triangle pairs at once: eight lanes, AVX2 where the machine has it (chosen at run time), one answer for all.
 //!
-//! Each lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point nearest to 0 of the hull of the differences
-//! `a_i - b_j`: a step goes to the best point between v and the difference w lowest in direction v, which takes no
-//! branch. The certificates of `frame` stop it; what they leave open after [`STEPS`] steps is decided pair by pair.
-//!
-//! What the steps and the normals of both planes leave open is mostly within: the vertices over the faces and the nine pairs of
-//! edges then offer a v each.
-//!
-//! **Error of v**, in units of `u rho` a component: 12.2 at the start (two centroids: data 2, products and sums
-//! `2 * 3.01`, weights 1/3 rounded 2.02, difference 2.01); a step `v + t (w - v)` adds at most 2.1 to the greater of the
-//! error so far and of 12.2 (w: 4.01; w - v and its product by t: `2 * 4.1`). Eight steps: 29, in norm 51, below the 64 of `SPAN_ERROR`.
-//! A point of an edge, `p + s (p1 - p)` with s from 0 to 1: data 1, the difference and its product by s 2.01 each, the sum 1.01; two
-//! of them and their difference, `2 * 6.1 + 2.02`: 15. A foot `x f + y g + z h` with x, y, z >= 0 and x = fl(fl(1 - y) - z), a sum
-//! of weights within 2u of 1: data 1, products and sums 3.03, the weights 2.01; with the vertex and the difference, 10.
+//! First in single precision, in coordinates local to each pair and scaled by a power of two so that delta is between 1 and 2:
+//! next to no pair is so close to delta that this leaves it open. Pairs of a size for which it is not made go through the same
+//! filter in double precision; what that leaves open is decided pair by pair.
 
-use super::frame::{ABOVE_ONE, GAP_ERROR, GREATEST_RHO, LEAST_GAP, LEAST_RHO, SPAN_ERROR};
-use super::lanes::{Unit, Work, dispatch};
+use super::kernel::{Kernel, Limits, Vector, Verdicts};
+use super::lanes::{Unit, Work, dispatch, dispatch_single};
+use super::vector::{exponent, ldexp};
 use super::{DecidedBy, Decision, Threshold, Triangle, triangle_triangle};
 
 /// Lanes of a batch.
 const LANES: usize = 8;
-/// Steps of the method; the error bound allows 8.
-const STEPS: usize = 8;
-
-/// `[vertex][axis]`, a lane a pair.
-type Points = [[[f64; LANES]; 3]; 3];
 
 /// Collects triangle pairs and decides eight at a time whether they are within a threshold.
 ///
@@ -47,8 +33,9 @@ type Points = [[[f64; LANES]; 3]; 3];
 #[derive(Debug, Clone)]
 pub struct TriangleBatch<T> {
     threshold: Threshold,
-    a: Points,
-    b: Points,
+    single: Option<Scaled>,
+    a: [Triangle; LANES],
+    b: [Triangle; LANES],
     tags: [T; LANES],
     len: usize,
 }
@@ -56,9 +43,10 @@ pub struct TriangleBatch<T> {
 impl<T: Copy + Default> TriangleBatch<T> {
     /// An empty batch.
     pub fn new(threshold: Threshold) -> Self {
-        let none = [[[0.0; LANES]; 3]; 3];
+        let none = [[[0.0; 3]; 3]; LANES];
         Self {
             threshold,
+            single: Scaled::new(threshold),
             a: none,
             b: none,
             tags: [T::default(); LANES],
@@ -70,12 +58,8 @@ impl<T: Copy + Default> TriangleBatch<T> {
     #[inline]
     pub fn push(&mut self, a: &Triangle, b: &Triangle, tag: T, answer: impl FnMut(T, Decision)) {
         let lane = self.len;
-        for vertex in 0..3 {
-            for axis in 0..3 {
-                self.a[vertex][axis][lane] = a[vertex][axis];
-                self.b[vertex][axis][lane] = b[vertex][axis];
-            }
-        }
+        self.a[lane] = *a;
+        self.b[lane] = *b;
         self.tags[lane] = tag;
         self.len += 1;
         if self.len == LANES {
@@ -88,11 +72,7 @@ impl<T: Copy + Default> TriangleBatch<T> {
         if self.len == 0 {
             return;
         }
-        let (within, apart) = dispatch(Filter {
-            a: &self.a,
-            b: &self.b,
-            threshold: self.threshold,
-        });
+        let Verdicts { within, apart, .. } = self.filter();
         for lane in 0..self.len {
             let decision = if within >> lane & 1 == 1 {
                 Decision {
@@ -105,284 +85,135 @@ impl<T: Copy + Default> TriangleBatch<T> {
                     by: DecidedBy::Filter,
                 }
             } else {
-                let of = |points: &Points| points.map(|p| p.map(|x| x[lane]));
-                triangle_triangle::decide(&of(&self.a), &of(&self.b), self.threshold)
+                triangle_triangle::decide(&self.a[lane], &self.b[lane], self.threshold)
             };
             answer(self.tags[lane], decision);
         }
         self.len = 0;
     }
+
+    fn filter(&self) -> Verdicts {
+        let (a, b) = (&self.a, &self.b);
+        let mut verdicts = match self.single {
+            Some(scaled) => dispatch_single(InSingle { a, b, scaled }),
+            None => Verdicts::default(),
+        };
+        let all = (1 << self.len) - 1;
+        if verdicts.in_range & all != all {
+            let double = dispatch(InDouble {
+                a,
+                b,
+                threshold: self.threshold,
+            });
+            verdicts.within |= double.within;
+            verdicts.apart |= double.apart;
+        }
+        verdicts
+    }
 }
 
-/// The lanes proved within and the lanes proved apart, as bits.
-struct Filter<'p> {
-    a: &'p Points,
-    b: &'p Points,
+/// How single precision sees a threshold: times a power of two, between 1 and 2.
+#[derive(Debug, Clone, Copy)]
+struct Scaled {
+    scale: f64,
+    limits: Limits,
+}
+
+impl Scaled {
+    /// `None` for a threshold that no power of two brings there.
+    fn new(threshold: Threshold) -> Option<Self> {
+        let scale = ldexp(1.0, -exponent(threshold.get()).clamp(-1000, 1000));
+        let delta = threshold.get() * scale;
+        let limits = Limits {
+            below: f64::from((delta as f32).next_down()),
+            squared_above: f64::from(((delta * delta).next_up() as f32).next_up()),
+        };
+        (1.0..2.0).contains(&delta).then_some(Self { scale, limits })
+    }
+}
+
+/// The filter in single precision, all pairs at once.
+struct InSingle<'p> {
+    a: &'p [Triangle; LANES],
+    b: &'p [Triangle; LANES],
+    scaled: Scaled,
+}
+
+impl Work<[f32; 8]> for InSingle<'_> {
+    type Output = Verdicts;
+
+    #[inline(always)]
+    fn run<U: Unit<Lanes = [f32; 8]>>(self, unit: U) -> Verdicts {
+        let Scaled { scale, limits } = self.scaled;
+        // [triangle][vertex][axis][pair]
+        let mut local = [[[[0.0_f32; LANES]; 3]; 3]; 2];
+        for (lane, (a, b)) in self.a.iter().zip(self.b).enumerate() {
+            for vertex in 0..3 {
+                for axis in 0..3 {
+                    local[0][vertex][axis][lane] = ((a[vertex][axis] - a[0][axis]) * scale) as f32;
+                    local[1][vertex][axis][lane] = ((b[vertex][axis] - a[0][axis]) * scale) as f32;
+                }
+            }
+        }
+        let point = |of: &[[f32; LANES]; 3]| -> Vector<U> {
+            [unit.load(&of[0]), unit.load(&of[1]), unit.load(&of[2])]
+        };
+        let triangle = |of: &[[[f32; LANES]; 3]; 3]| [point(&of[0]), point(&of[1]), point(&of[2])];
+        Kernel { unit }.filter(triangle(&local[0]), triangle(&local[1]), limits)
+    }
+}
+
+/// The filter in double precision, half of the pairs at a time.
+struct InDouble<'p> {
+    a: &'p [Triangle; LANES],
+    b: &'p [Triangle; LANES],
     threshold: Threshold,
 }
 
-impl Work for Filter<'_> {
-    type Output = (u32, u32);
+impl Work<[f64; 4]> for InDouble<'_> {
+    type Output = Verdicts;
 
     #[inline(always)]
-    fn run<U: Unit>(self, unit: U) -> (u32, u32) {
-        let (mut within, mut apart) = (0, 0);
+    fn run<U: Unit<Lanes = [f64; 4]>>(self, unit: U) -> Verdicts {
+        let mut all = Verdicts::default();
+        let limits = Limits {
+            below: self.threshold.get(),
+            squared_above: self.threshold.squared_above(),
+        };
         for half in 0..LANES / 4 {
-            let four = Kernel { unit, half };
-            let (w, a) = four.filter(self.a, self.b, self.threshold);
-            within |= w << (4 * half);
-            apart |= a << (4 * half);
-        }
-        (within, apart)
-    }
-}
-
-/// The filter for four lanes.
-struct Kernel<U> {
-    unit: U,
-    half: usize,
-}
-
-/// Points of four pairs, in registers.
-type Vector<U> = [<U as Unit>::Number; 3];
-
-impl<U: Unit> Kernel<U> {
-    #[inline(always)]
-    fn load(&self, point: &[[f64; LANES]; 3]) -> Vector<U> {
-        let four = |axis: usize| {
-            let x = &point[axis];
-            let k = 4 * self.half;
-            self.unit.load(&[x[k], x[k + 1], x[k + 2], x[k + 3]])
-        };
-        [four(0), four(1), four(2)]
-    }
-
-    #[inline(always)]
-    fn sub(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
-        let u = self.unit;
-        [u.sub(p[0], q[0]), u.sub(p[1], q[1]), u.sub(p[2], q[2])]
-    }
-
-    #[inline(always)]
-    fn dot(&self, p: Vector<U>, q: Vector<U>) -> U::Number {
-        let u = self.unit;
-        u.add(u.add(u.mul(p[0], q[0]), u.mul(p[1], q[1])), u.mul(p[2], q[2]))
-    }
-
-    #[inline(always)]
-    fn third(&self, p: Vector<U>, q: Vector<U>, r: Vector<U>) -> Vector<U> {
-        let u = self.unit;
-        let third = u.splat(1.0 / 3.0);
-        let mean = |k: usize| u.add(u.add(u.mul(p[k], third), u.mul(q[k], third)), u.mul(r[k], third));
-        [mean(0), mean(1), mean(2)]
-    }
-
-    /// The greatest component, in absolute value, of a point and `rho`.
-    #[inline(always)]
-    fn extent(&self, rho: U::Number, p: Vector<U>) -> U::Number {
-        let u = self.unit;
-        u.greatest(u.greatest(u.abs(p[0]), u.abs(p[1])), u.greatest(u.abs(p[2]), rho))
-    }
-
-    /// The first of three points whose height is `height`.
-    #[inline(always)]
-    fn at(&self, height: U::Number, heights: [U::Number; 2], points: [Vector<U>; 3]) -> Vector<U> {
-        let u = self.unit;
-        let pick = |k: usize| {
-            let rest = u.if_equal(heights[1], height, points[1][k], points[2][k]);
-            u.if_equal(heights[0], height, points[0][k], rest)
-        };
-        [pick(0), pick(1), pick(2)]
-    }
-
-    #[inline(always)]
-    fn filter(&self, a: &Points, b: &Points, threshold: Threshold) -> (u32, u32) {
-        let u = self.unit;
-        let zero = u.splat(0.0);
-        let origin = self.load(&a[0]);
-        let a0 = self.sub(origin, origin);
-        let (a1, a2) = (
-            self.sub(self.load(&a[1]), origin),
-            self.sub(self.load(&a[2]), origin),
-        );
-        let b0 = self.sub(self.load(&b[0]), origin);
-        let (b1, b2) = (
-            self.sub(self.load(&b[1]), origin),
-            self.sub(self.load(&b[2]), origin),
-        );
-        let of_a = self.extent(self.extent(zero, a1), a2);
-        let of_b = self.extent(self.extent(self.extent(zero, b0), b1), b2);
-        let rho = u.greatest(of_a, of_b);
-        let mut v = self.sub(self.third(a0, a1, a2), self.third(b0, b1, b2));
-        let squared = self.dot(v, v);
-        // The last term asks for NaN.
-        let in_range = u.at_most(u.splat(LEAST_RHO), rho)
-            & u.at_most(rho, u.splat(GREATEST_RHO))
-            & u.at_most(squared, squared);
-
-        let margin = u.sub(u.splat(threshold.get()), u.mul(rho, u.splat(SPAN_ERROR)));
-        // Where the margin is not above 0 its square is replaced by 0, which no square is below.
-        let margin = u.greatest(margin, zero);
-        let reach = u.mul(margin, margin);
-        let gap_error = u.mul(rho, u.splat(GAP_ERROR));
-        let limit = u.splat(threshold.squared_above());
-
-        let (mut within, mut apart) = (0, 0);
-        for _ in 0..STEPS {
-            let squared = self.dot(v, v);
-            within |= u.below(u.mul(squared, u.splat(ABOVE_ONE)), reach);
-            let heights_a = [self.dot(v, a0), self.dot(v, a1), self.dot(v, a2)];
-            let heights_b = [self.dot(v, b0), self.dot(v, b1), self.dot(v, b2)];
-            let height_a = u.least(u.least(heights_a[0], heights_a[1]), heights_a[2]);
-            let height_b = u.greatest(u.greatest(heights_b[0], heights_b[1]), heights_b[2]);
-            let gap = u.sub(height_a, height_b);
-            apart |= self.apart(v, squared, gap, gap_error, limit);
-            if (within | apart) & in_range == in_range {
-                break;
-            }
-            let w = self.sub(
-                self.at(height_a, [heights_a[0], heights_a[1]], [a0, a1, a2]),
-                self.at(height_b, [heights_b[0], heights_b[1]], [b0, b1, b2]),
-            );
-            let e = self.sub(w, v);
-            let t = u.div(u.sub(zero, self.dot(v, e)), self.dot(e, e));
-            // In this order a NaN (0 / 0: v is w) becomes 0.
-            let t = u.least(u.greatest(t, zero), u.splat(1.0));
-            v = [
-                u.add(v[0], u.mul(t, e[0])),
-                u.add(v[1], u.mul(t, e[1])),
-                u.add(v[2], u.mul(t, e[2])),
-            ];
-        }
-        // What is left mostly faces a plane of one of the triangles: the planes' normals, in both senses.
-        let of_a = self.cross(a1, a2);
-        let of_b = self.cross(self.sub(b1, b0), self.sub(b2, b0));
-        for n in [of_a, of_b] {
-            if (within | apart) & in_range == in_range {
-                break;
-            }
-            let squared = self.dot(n, n);
-            let heights_a = [self.dot(n, a0), self.dot(n, a1), self.dot(n, a2)];
-            let heights_b = [self.dot(n, b0), self.dot(n, b1), self.dot(n, b2)];
-            let least_a = u.least(u.least(heights_a[0], heights_a[1]), heights_a[2]);
-            let greatest_a = u.greatest(u.greatest(heights_a[0], heights_a[1]), heights_a[2]);
-            let least_b = u.least(u.least(heights_b[0], heights_b[1]), heights_b[2]);
-            let greatest_b = u.greatest(u.greatest(heights_b[0], heights_b[1]), heights_b[2]);
-            let gap = u.greatest(u.sub(least_a, greatest_b), u.sub(least_b, greatest_a));
-            apart |= self.apart(n, squared, gap, gap_error, limit);
-        }
-        // Most of the rest are within: where triangles do not meet, two edges are closest or a vertex and a face.
-        let (a, b) = ([a0, a1, a2], [b0, b1, b2]);
-        if (within | apart) & in_range != in_range {
-            within |= self.faces(a, b, of_a, zero, reach) | self.faces(b, a, of_b, zero, reach);
-        }
-        for i in 0..3 {
-            if (within | apart) & in_range == in_range {
-                break;
-            }
-            for j in 0..3 {
-                let v = self.edges([a[i], a[(i + 1) % 3]], [b[j], b[(j + 1) % 3]]);
-                within |= u.below(u.mul(self.dot(v, v), u.splat(ABOVE_ONE)), reach);
-            }
-        }
-        (within & in_range, apart & in_range & !within)
-    }
-
-    /// The difference of the points closest to each other of two edges; of some two points where rounding misleads, as on edges
-    /// that are parallel.
-    #[inline(always)]
-    fn edges(&self, [p, p1]: [Vector<U>; 2], [q, q1]: [Vector<U>; 2]) -> Vector<U> {
-        let u = self.unit;
-        let (d, e, r) = (self.sub(p1, p), self.sub(q1, q), self.sub(p, q));
-        let (dd, ee, de) = (self.dot(d, d), self.dot(e, e), self.dot(d, e));
-        let (dr, er) = (self.dot(d, r), self.dot(e, r));
-        let s = self.share(
-            u.sub(u.mul(de, er), u.mul(dr, ee)),
-            u.sub(u.mul(dd, ee), u.mul(de, de)),
-        );
-        let t = self.share(u.add(u.mul(de, s), er), ee);
-        let s = self.share(u.sub(u.mul(de, t), dr), dd);
-        let along = |from: Vector<U>, by: Vector<U>, share: U::Number| {
-            let to = |k: usize| u.add(from[k], u.mul(share, by[k]));
-            [to(0), to(1), to(2)]
-        };
-        self.sub(along(p, d, s), along(q, e, t))
-    }
-
-    /// A quotient brought into 0 to 1; NaN becomes 0.
-    #[inline(always)]
-    fn share(&self, x: U::Number, y: U::Number) -> U::Number {
-        let u = self.unit;
-        u.least(u.greatest(u.div(x, y), u.splat(0.0)), u.splat(1.0))
-    }
-
-    /// Lanes that a vertex of `points` and its foot on `face`, whose normal is `n`, prove within.
-    #[inline(always)]
-    fn faces(
-        &self,
-        face: [Vector<U>; 3],
-        points: [Vector<U>; 3],
-        n: Vector<U>,
-        zero: U::Number,
-        reach: U::Number,
-    ) -> u32 {
-        let u = self.unit;
-        let (d, e) = (self.sub(face[1], face[0]), self.sub(face[2], face[0]));
-        let inverse = u.div(u.splat(1.0), self.dot(n, n));
-        let mut within = 0;
-        for p in points {
-            let r = self.sub(p, face[0]);
-            let y = u.mul(self.dot(self.cross(r, e), n), inverse);
-            let z = u.mul(self.dot(self.cross(d, r), n), inverse);
-            let x = u.sub(u.sub(u.splat(1.0), y), z);
-            let inside = u.at_most(zero, x) & u.at_most(zero, y) & u.at_most(zero, z);
-            let foot = |k: usize| {
-                let sum = u.add(u.mul(x, face[0][k]), u.mul(y, face[1][k]));
-                u.add(sum, u.mul(z, face[2][k]))
+            let kernel = Kernel { unit };
+            let load = |of: &[Triangle; LANES], vertex: usize| -> Vector<U> {
+                let axis = |axis: usize| {
+                    let lane = |lane: usize| of[4 * half + lane][vertex][axis];
+                    unit.load(&[lane(0), lane(1), lane(2), lane(3)])
+                };
+                [axis(0), axis(1), axis(2)]
             };
-            let v = self.sub([foot(0), foot(1), foot(2)], p);
-            within |= inside & u.below(u.mul(self.dot(v, v), u.splat(ABOVE_ONE)), reach);
+            let origin = load(self.a, 0);
+            let local = |of, vertex| kernel.sub(load(of, vertex), origin);
+            let a = [local(self.a, 0), local(self.a, 1), local(self.a, 2)];
+            let b = [local(self.b, 0), local(self.b, 1), local(self.b, 2)];
+            let verdicts = kernel.filter(a, b, limits);
+            all.within |= verdicts.within << (4 * half);
+            all.apart |= verdicts.apart << (4 * half);
+            all.in_range |= verdicts.in_range << (4 * half);
         }
-        within
-    }
-
-    /// Lanes that a gap in direction `v` proves apart.
-    #[inline(always)]
-    fn apart(
-        &self,
-        v: Vector<U>,
-        squared: U::Number,
-        gap: U::Number,
-        gap_error: U::Number,
-        limit: U::Number,
-    ) -> u32 {
-        let u = self.unit;
-        let taxicab = u.add(u.add(u.abs(v[0]), u.abs(v[1])), u.abs(v[2]));
-        let g = u.sub(gap, u.mul(gap_error, taxicab));
-        let needed = u.mul(u.mul(limit, squared), u.splat(ABOVE_ONE));
-        u.below(u.splat(LEAST_GAP), g) & u.at_most(needed, u.mul(g, g))
-    }
-
-    #[inline(always)]
-    fn cross(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
-        let u = self.unit;
-        let minor = |k: usize, l: usize| u.sub(u.mul(p[k], q[l]), u.mul(p[l], q[k]));
-        [minor(1, 2), minor(2, 0), minor(0, 1)]
+        all
     }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::lanes::Portable;
+    use super::super::lanes::{Portable, Single};
     use super::*;
 
-    /// Machines with and without AVX2 give the same bits.
+    /// Machines with and without AVX2 give the same bits, and single precision says nothing that double precision denies.
     #[test]
-    fn the_vector_unit_does_not_change_an_answer() {
-        let (mut a, mut b) = ([[[0.0; LANES]; 3]; 3], [[[0.0; LANES]; 3]; 3]);
+    fn neither_the_vector_unit_nor_the_precision_changes_an_answer() {
+        let (mut a, mut b) = ([[[0.0; 3]; 3]; LANES], [[[0.0; 3]; 3]; LANES]);
         let mut state = 1_u64;
-        let mut open = 0;
+        let (mut open, mut single_open) = (0, 0);
         for round in 0..500 {
             for x in a.iter_mut().chain(&mut b).flatten().flatten() {
                 state = state
@@ -395,16 +226,28 @@ mod tests {
                 };
             }
             let threshold = Threshold::new(0.02 + 0.0005 * f64::from(round)).unwrap();
-            let filter = || Filter {
-                a: &a,
-                b: &b,
-                threshold,
-            };
-            let (within, apart) = dispatch(filter());
-            assert_eq!((within, apart), filter().run(Portable));
-            assert_eq!(within & apart, 0);
-            open += (!(within | apart) & 0xff).count_ones();
+            let (a, b) = (&a, &b);
+            let double = || InDouble { a, b, threshold };
+            let scaled = Scaled::new(threshold).unwrap();
+            let single = || InSingle { a, b, scaled };
+            let in_double = dispatch(double());
+            assert_eq!(in_double, double().run(Portable));
+            let in_single = dispatch_single(single());
+            assert_eq!(in_single, single().run(Single(Portable)));
+            assert_eq!(in_single.in_range, in_double.in_range);
+            for verdicts in [in_single, in_double] {
+                assert_eq!(verdicts.within & verdicts.apart, 0);
+                assert_eq!((verdicts.within | verdicts.apart) & !verdicts.in_range, 0);
+            }
+            assert_eq!(in_single.within & in_double.apart, 0);
+            assert_eq!(in_single.apart & in_double.within, 0);
+            let left = |verdicts: Verdicts| (!(verdicts.within | verdicts.apart) & 0xff).count_ones();
+            open += left(in_double);
+            single_open += left(in_single);
         }
-        assert!(open < 800, "{open} of 4000 left open");
+        assert!(
+            open < 800 && single_open < 800,
+            "{open} and {single_open} of 4000 left open"
+        );
     }
 }

@@ -1,15 +1,61 @@
-//! Four `f64` lanes: AVX2 where the machine has it, plain arrays elsewhere, chosen when the program runs.
+//! Vector units: four `f64` lanes or eight `f32` lanes of AVX2 where the machine has it, plain arrays elsewhere, chosen when the
+//! program runs.
 //!
-//! Both compute the same bits: only operations that IEEE 754 defines are used, none of them fused.
+//! With and without AVX2 the bits are the same: only operations that IEEE 754 defines are used, none of them fused.
 
-/// Four numbers side by side.
-pub(super) type Four = [f64; 4];
+use super::frame::{ABOVE_ONE, GAP_ERROR, GREATEST_RHO, LEAST_GAP, LEAST_RHO, SPAN_ERROR};
+
+/// What the proofs in `frame` need to know of a precision, with its unit roundoff u.
+pub(super) struct Bounds {
+    /// 1 + 8u.
+    pub(super) above_one: f64,
+    /// 16u: the error of a gap in units of `rho |v|_1`.
+    pub(super) gap_error: f64,
+    /// 64u: the error of an upper bound in units of `rho`.
+    pub(super) span_error: f64,
+    /// The least gap that is believed.
+    pub(super) least_gap: f64,
+    /// The range of `rho` for which this holds.
+    pub(super) least_rho: f64,
+    pub(super) greatest_rho: f64,
+}
+
+/// The bounds of `frame`.
+const DOUBLE: Bounds = Bounds {
+    above_one: ABOVE_ONE,
+    gap_error: GAP_ERROR,
+    span_error: SPAN_ERROR,
+    least_gap: LEAST_GAP,
+    least_rho: LEAST_RHO,
+    greatest_rho: GREATEST_RHO,
+};
+
+const U_SINGLE: f64 = 1.0 / (1_u64 << 24) as f64;
+
+/// Of single precision, u = 2^-24. The proofs in `frame` hold word for word, but for these ranges of what vanishes and
+/// overflows: a coordinate, a difference in double precision times a power of two, rounded, is wrong by less than
+/// `(1 + 2^-28) u rho + 2^-150`, and `u rho >= 2^-44`. A gap of at least 2^-40 gives `|v|_1 >= 2^-54`, hence `v.v >= 2^-110` is
+/// normal, and the slack `3.9 u rho |v|_1 >= 2^-97` dwarfs every 2^-149. With `rho <= 2^12` a normal is below 2^28 and a gap
+/// along it below 2^43, so that no square overflows. Underflow in `v^.v^` moves `|v^|` by less than 2^-73, the slack of
+/// `24 u rho` is at least 2^-40. Delta is between 1 and 2.
+const SINGLE: Bounds = Bounds {
+    above_one: 1.0 + 8.0 * U_SINGLE,
+    gap_error: 16.0 * U_SINGLE,
+    span_error: 64.0 * U_SINGLE,
+    least_gap: 1.0 / (1_u64 << 40) as f64,
+    least_rho: 1.0 / (1_u64 << 20) as f64,
+    greatest_rho: (1_u64 << 12) as f64,
+};
 
 /// A vector unit. Masks are bits, lane `i` in bit `i`.
 pub(super) trait Unit: Copy {
-    /// Four numbers in registers.
+    /// As many numbers side by side as there are lanes.
+    type Lanes;
+    /// The same in registers.
     type Number: Copy;
-    fn load(self, x: &Four) -> Self::Number;
+    const BOUNDS: Bounds;
+    fn load(self, x: &Self::Lanes) -> Self::Number;
+    /// `x`, which the precision of the unit has to hold.
     fn splat(self, x: f64) -> Self::Number;
     fn add(self, x: Self::Number, y: Self::Number) -> Self::Number;
     fn sub(self, x: Self::Number, y: Self::Number) -> Self::Number;
@@ -35,101 +81,120 @@ pub(super) trait Unit: Copy {
 }
 
 /// A piece of work that runs inside a function compiled for the vector unit found.
-pub(super) trait Work {
+pub(super) trait Work<L> {
     type Output;
     /// Has to be `#[inline(always)]` to be compiled for the unit.
-    fn run<U: Unit>(self, unit: U) -> Self::Output;
+    fn run<U: Unit<Lanes = L>>(self, unit: U) -> Self::Output;
 }
 
-/// Runs `work` on the best unit of this machine.
+/// Runs `work` in double precision on the best unit of this machine.
 #[inline(always)]
-pub(super) fn dispatch<W: Work>(work: W) -> W::Output {
+pub(super) fn dispatch<W: Work<[f64; 4]>>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(unit) = pulp::x86::V3::try_new() {
-        return unit.vectorize(avx2::OnAvx2(unit, work));
+        return unit.vectorize(avx2::Double(unit, work));
     }
     work.run(Portable)
+}
+
+/// The same in single precision.
+#[inline(always)]
+pub(super) fn dispatch_single<W: Work<[f32; 8]>>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(unit) = pulp::x86::V3::try_new() {
+        return unit.vectorize(avx2::OfSingle(unit, work));
+    }
+    work.run(Single(Portable))
 }
 
 /// Plain arrays.
 #[derive(Clone, Copy)]
 pub(super) struct Portable;
 
-macro_rules! each {
-    ($k:ident, $value:expr) => {{
-        let mut lanes = [0.0; 4];
-        for ($k, lane) in lanes.iter_mut().enumerate() {
-            *lane = $value;
+/// A unit in single precision.
+#[derive(Clone, Copy)]
+pub(super) struct Single<U>(pub(super) U);
+
+macro_rules! plain {
+    ($unit:ty, $real:ty, $lanes:literal, $bounds:expr) => {
+        impl Unit for $unit {
+            type Lanes = [$real; $lanes];
+            type Number = [$real; $lanes];
+            const BOUNDS: Bounds = $bounds;
+
+            #[inline(always)]
+            fn load(self, x: &Self::Lanes) -> Self::Number {
+                *x
+            }
+            #[inline(always)]
+            fn splat(self, x: f64) -> Self::Number {
+                [x as $real; $lanes]
+            }
+            #[inline(always)]
+            fn add(self, x: Self::Number, y: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| x[k] + y[k])
+            }
+            #[inline(always)]
+            fn sub(self, x: Self::Number, y: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| x[k] - y[k])
+            }
+            #[inline(always)]
+            fn mul(self, x: Self::Number, y: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| x[k] * y[k])
+            }
+            #[inline(always)]
+            fn div(self, x: Self::Number, y: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| x[k] / y[k])
+            }
+            #[inline(always)]
+            fn least(self, x: Self::Number, y: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| if x[k] < y[k] { x[k] } else { y[k] })
+            }
+            #[inline(always)]
+            fn greatest(self, x: Self::Number, y: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| if x[k] > y[k] { x[k] } else { y[k] })
+            }
+            #[inline(always)]
+            fn abs(self, x: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| x[k].abs())
+            }
+            #[inline(always)]
+            fn if_equal(
+                self,
+                x: Self::Number,
+                y: Self::Number,
+                then: Self::Number,
+                other: Self::Number,
+            ) -> Self::Number {
+                std::array::from_fn(|k| if x[k] == y[k] { then[k] } else { other[k] })
+            }
+            #[inline(always)]
+            fn below(self, x: Self::Number, y: Self::Number) -> u32 {
+                (0..$lanes).fold(0, |bits, k| bits | u32::from(x[k] < y[k]) << k)
+            }
+            #[inline(always)]
+            fn at_most(self, x: Self::Number, y: Self::Number) -> u32 {
+                (0..$lanes).fold(0, |bits, k| bits | u32::from(x[k] <= y[k]) << k)
+            }
         }
-        lanes
-    }};
+    };
 }
 
-impl Unit for Portable {
-    type Number = Four;
-
-    #[inline(always)]
-    fn load(self, x: &Four) -> Four {
-        *x
-    }
-    #[inline(always)]
-    fn splat(self, x: f64) -> Four {
-        [x; 4]
-    }
-    #[inline(always)]
-    fn add(self, x: Four, y: Four) -> Four {
-        each!(k, x[k] + y[k])
-    }
-    #[inline(always)]
-    fn sub(self, x: Four, y: Four) -> Four {
-        each!(k, x[k] - y[k])
-    }
-    #[inline(always)]
-    fn mul(self, x: Four, y: Four) -> Four {
-        each!(k, x[k] * y[k])
-    }
-    #[inline(always)]
-    fn div(self, x: Four, y: Four) -> Four {
-        each!(k, x[k] / y[k])
-    }
-    #[inline(always)]
-    fn least(self, x: Four, y: Four) -> Four {
-        each!(k, if x[k] < y[k] { x[k] } else { y[k] })
-    }
-    #[inline(always)]
-    fn greatest(self, x: Four, y: Four) -> Four {
-        each!(k, if x[k] > y[k] { x[k] } else { y[k] })
-    }
-    #[inline(always)]
-    fn abs(self, x: Four) -> Four {
-        each!(k, x[k].abs())
-    }
-    #[inline(always)]
-    fn if_equal(self, x: Four, y: Four, then: Four, other: Four) -> Four {
-        each!(k, if x[k] == y[k] { then[k] } else { other[k] })
-    }
-    #[inline(always)]
-    fn below(self, x: Four, y: Four) -> u32 {
-        (0..4).fold(0, |bits, k| bits | u32::from(x[k] < y[k]) << k)
-    }
-    #[inline(always)]
-    fn at_most(self, x: Four, y: Four) -> u32 {
-        (0..4).fold(0, |bits, k| bits | u32::from(x[k] <= y[k]) << k)
-    }
-}
+plain!(Portable, f64, 4, DOUBLE);
+plain!(Single<Portable>, f32, 8, SINGLE);
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use std::arch::x86_64::{__m256d, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
+    use std::arch::x86_64::{__m256, __m256d, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
 
     use pulp::NullaryFnOnce;
     use pulp::x86::V3;
 
-    use super::{Four, Unit, Work};
+    use super::{Bounds, DOUBLE, SINGLE, Single, Unit, Work};
 
-    pub(super) struct OnAvx2<W>(pub(super) V3, pub(super) W);
+    pub(super) struct Double<W>(pub(super) V3, pub(super) W);
 
-    impl<W: Work> NullaryFnOnce for OnAvx2<W> {
+    impl<W: Work<[f64; 4]>> NullaryFnOnce for Double<W> {
         type Output = W::Output;
 
         #[inline(always)]
@@ -138,11 +203,24 @@ mod avx2 {
         }
     }
 
-    impl Unit for V3 {
-        type Number = __m256d;
+    pub(super) struct OfSingle<W>(pub(super) V3, pub(super) W);
+
+    impl<W: Work<[f32; 8]>> NullaryFnOnce for OfSingle<W> {
+        type Output = W::Output;
 
         #[inline(always)]
-        fn load(self, x: &Four) -> __m256d {
+        fn call(self) -> W::Output {
+            self.1.run(Single(self.0))
+        }
+    }
+
+    impl Unit for V3 {
+        type Lanes = [f64; 4];
+        type Number = __m256d;
+        const BOUNDS: Bounds = DOUBLE;
+
+        #[inline(always)]
+        fn load(self, x: &[f64; 4]) -> __m256d {
             pulp::cast(*x)
         }
         #[inline(always)]
@@ -191,6 +269,67 @@ mod avx2 {
         fn at_most(self, x: __m256d, y: __m256d) -> u32 {
             self.avx
                 ._mm256_movemask_pd(self.avx._mm256_cmp_pd::<_CMP_LE_OQ>(x, y)) as u32
+        }
+    }
+
+    impl Unit for Single<V3> {
+        type Lanes = [f32; 8];
+        type Number = __m256;
+        const BOUNDS: Bounds = SINGLE;
+
+        #[inline(always)]
+        fn load(self, x: &[f32; 8]) -> __m256 {
+            pulp::cast(*x)
+        }
+        #[inline(always)]
+        fn splat(self, x: f64) -> __m256 {
+            self.0.avx._mm256_set1_ps(x as f32)
+        }
+        #[inline(always)]
+        fn add(self, x: __m256, y: __m256) -> __m256 {
+            self.0.avx._mm256_add_ps(x, y)
+        }
+        #[inline(always)]
+        fn sub(self, x: __m256, y: __m256) -> __m256 {
+            self.0.avx._mm256_sub_ps(x, y)
+        }
+        #[inline(always)]
+        fn mul(self, x: __m256, y: __m256) -> __m256 {
+            self.0.avx._mm256_mul_ps(x, y)
+        }
+        #[inline(always)]
+        fn div(self, x: __m256, y: __m256) -> __m256 {
+            self.0.avx._mm256_div_ps(x, y)
+        }
+        #[inline(always)]
+        fn least(self, x: __m256, y: __m256) -> __m256 {
+            self.0.avx._mm256_min_ps(x, y)
+        }
+        #[inline(always)]
+        fn greatest(self, x: __m256, y: __m256) -> __m256 {
+            self.0.avx._mm256_max_ps(x, y)
+        }
+        #[inline(always)]
+        fn abs(self, x: __m256) -> __m256 {
+            self.0.avx._mm256_andnot_ps(self.0.avx._mm256_set1_ps(-0.0), x)
+        }
+        #[inline(always)]
+        fn if_equal(self, x: __m256, y: __m256, then: __m256, other: __m256) -> __m256 {
+            self.0
+                .avx
+                ._mm256_blendv_ps(other, then, self.0.avx._mm256_cmp_ps::<_CMP_EQ_OQ>(x, y))
+        }
+        #[inline(always)]
+        fn below(self, x: __m256, y: __m256) -> u32 {
+            self.0
+                .avx
+                ._mm256_movemask_ps(self.0.avx._mm256_cmp_ps::<_CMP_LT_OQ>(x, y)) as u32
+        }
+        #[inline(always)]
+        fn at_most(self, x: __m256, y: __m256) -> u32 {
+            self.0
+                .avx
+                ._mm256_movemask_ps(self.0.avx._mm256_cmp_ps::<_CMP_LE_OQ>(x, y)) as u32
         }
     }
 }

@@ -32,6 +32,7 @@ mod exact;
 mod extended;
 mod frame;
 mod gjk;
+mod kernel;
 mod kind;
 mod lanes;
 pub mod measure;

@@ -1,0 +1,262 @@
+//! The filter for triangle pairs side by side, one a lane, in the precision of the unit.
+//!
+//! Each lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point nearest to 0 of the hull of the differences
+//! `a_i - b_j`: a step goes to the best point between v and the difference w lowest in direction v, which takes no
+//! branch. The certificates of `frame` stop it; what they leave open after [`STEPS`] steps is decided pair by pair.
+//!
+//! What the steps and the normals of both planes leave open is mostly within: the vertices over the faces and the nine pairs of
+//! edges then offer a v each.
+//!
+//! **Error of v**, in units of `u rho` a component: 12.2 at the start (two centroids: data 2, products and sums
+//! `2 * 3.01`, weights 1/3 rounded 2.02, difference 2.01); a step `v + t (w - v)` adds at most 2.1 to the greater of the
+//! error so far and of 12.2 (w: 4.01; w - v and its product by t: `2 * 4.1`). Eight steps: 29, in norm 51, below the 64 of `SPAN_ERROR`.
+//! A point of an edge, `p + s (p1 - p)` with s from 0 to 1: data 1, the difference and its product by s 2.01 each, the sum 1.01; two
+//! of them and their difference, `2 * 6.1 + 2.02`: 15. A foot `x f + y g + z h` with x, y, z >= 0 and x = fl(fl(1 - y) - z), a sum
+//! of weights within 2u of 1: data 1, products and sums 3.03, the weights 2.01; with the vertex and the difference, 10.
+
+use super::lanes::Unit;
+
+/// Steps of the method; the error bound allows 8.
+const STEPS: usize = 8;
+
+/// Both certificates for the pairs in the lanes of a unit, in its precision.
+pub(super) struct Kernel<U> {
+    pub(super) unit: U,
+}
+
+/// Points of as many pairs as a unit has lanes, in registers.
+pub(super) type Vector<U> = [<U as Unit>::Number; 3];
+
+/// Delta in the unit of the coordinates, in the precision of a unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// At most delta.
+    pub(super) below: f64,
+    /// At least delta squared.
+    pub(super) squared_above: f64,
+}
+
+/// Lanes, as bits.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Verdicts {
+    /// Proved within.
+    pub(super) within: u32,
+    /// Proved apart.
+    pub(super) apart: u32,
+    /// Of which anything can be proved: neither NaN nor too large or too small.
+    pub(super) in_range: u32,
+}
+
+impl<U: Unit> Kernel<U> {
+    #[inline(always)]
+    pub(super) fn sub(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
+        let u = self.unit;
+        [u.sub(p[0], q[0]), u.sub(p[1], q[1]), u.sub(p[2], q[2])]
+    }
+
+    #[inline(always)]
+    fn dot(&self, p: Vector<U>, q: Vector<U>) -> U::Number {
+        let u = self.unit;
+        u.add(u.add(u.mul(p[0], q[0]), u.mul(p[1], q[1])), u.mul(p[2], q[2]))
+    }
+
+    #[inline(always)]
+    fn third(&self, p: Vector<U>, q: Vector<U>, r: Vector<U>) -> Vector<U> {
+        let u = self.unit;
+        let third = u.splat(1.0 / 3.0);
+        let mean = |k: usize| u.add(u.add(u.mul(p[k], third), u.mul(q[k], third)), u.mul(r[k], third));
+        [mean(0), mean(1), mean(2)]
+    }
+
+    /// The greatest component, in absolute value, of a point and `rho`.
+    #[inline(always)]
+    fn extent(&self, rho: U::Number, p: Vector<U>) -> U::Number {
+        let u = self.unit;
+        u.greatest(u.greatest(u.abs(p[0]), u.abs(p[1])), u.greatest(u.abs(p[2]), rho))
+    }
+
+    /// The first of three points whose height is `height`.
+    #[inline(always)]
+    fn at(&self, height: U::Number, heights: [U::Number; 2], points: [Vector<U>; 3]) -> Vector<U> {
+        let u = self.unit;
+        let pick = |k: usize| {
+            let rest = u.if_equal(heights[1], height, points[1][k], points[2][k]);
+            u.if_equal(heights[0], height, points[0][k], rest)
+        };
+        [pick(0), pick(1), pick(2)]
+    }
+
+    /// Local coordinates: the first point of `a` is 0.
+    #[inline(always)]
+    pub(super) fn filter(
+        &self,
+        [a0, a1, a2]: [Vector<U>; 3],
+        [b0, b1, b2]: [Vector<U>; 3],
+        limits: Limits,
+    ) -> Verdicts {
+        let u = self.unit;
+        let zero = u.splat(0.0);
+        let of_a = self.extent(self.extent(zero, a1), a2);
+        let of_b = self.extent(self.extent(self.extent(zero, b0), b1), b2);
+        let rho = u.greatest(of_a, of_b);
+        let mut v = self.sub(self.third(a0, a1, a2), self.third(b0, b1, b2));
+        let squared = self.dot(v, v);
+        // The last term asks for NaN.
+        let in_range = u.at_most(u.splat(U::BOUNDS.least_rho), rho)
+            & u.at_most(rho, u.splat(U::BOUNDS.greatest_rho))
+            & u.at_most(squared, squared);
+
+        let margin = u.sub(u.splat(limits.below), u.mul(rho, u.splat(U::BOUNDS.span_error)));
+        // Where the margin is not above 0 its square is replaced by 0, which no square is below.
+        let margin = u.greatest(margin, zero);
+        let reach = u.mul(margin, margin);
+        let gap_error = u.mul(rho, u.splat(U::BOUNDS.gap_error));
+        let limit = u.splat(limits.squared_above);
+
+        let (mut within, mut apart) = (0, 0);
+        for _ in 0..STEPS {
+            let squared = self.dot(v, v);
+            within |= u.below(u.mul(squared, u.splat(U::BOUNDS.above_one)), reach);
+            let heights_a = [self.dot(v, a0), self.dot(v, a1), self.dot(v, a2)];
+            let heights_b = [self.dot(v, b0), self.dot(v, b1), self.dot(v, b2)];
+            let height_a = u.least(u.least(heights_a[0], heights_a[1]), heights_a[2]);
+            let height_b = u.greatest(u.greatest(heights_b[0], heights_b[1]), heights_b[2]);
+            let gap = u.sub(height_a, height_b);
+            apart |= self.apart(v, squared, gap, gap_error, limit);
+            if (within | apart) & in_range == in_range {
+                break;
+            }
+            let w = self.sub(
+                self.at(height_a, [heights_a[0], heights_a[1]], [a0, a1, a2]),
+                self.at(height_b, [heights_b[0], heights_b[1]], [b0, b1, b2]),
+            );
+            let e = self.sub(w, v);
+            let t = u.div(u.sub(zero, self.dot(v, e)), self.dot(e, e));
+            // In this order a NaN (0 / 0: v is w) becomes 0.
+            let t = u.least(u.greatest(t, zero), u.splat(1.0));
+            v = [
+                u.add(v[0], u.mul(t, e[0])),
+                u.add(v[1], u.mul(t, e[1])),
+                u.add(v[2], u.mul(t, e[2])),
+            ];
+        }
+        // What is left mostly faces a plane of one of the triangles: the planes' normals, in both senses.
+        let of_a = self.cross(a1, a2);
+        let of_b = self.cross(self.sub(b1, b0), self.sub(b2, b0));
+        for n in [of_a, of_b] {
+            if (within | apart) & in_range == in_range {
+                break;
+            }
+            let squared = self.dot(n, n);
+            let heights_a = [self.dot(n, a0), self.dot(n, a1), self.dot(n, a2)];
+            let heights_b = [self.dot(n, b0), self.dot(n, b1), self.dot(n, b2)];
+            let least_a = u.least(u.least(heights_a[0], heights_a[1]), heights_a[2]);
+            let greatest_a = u.greatest(u.greatest(heights_a[0], heights_a[1]), heights_a[2]);
+            let least_b = u.least(u.least(heights_b[0], heights_b[1]), heights_b[2]);
+            let greatest_b = u.greatest(u.greatest(heights_b[0], heights_b[1]), heights_b[2]);
+            let gap = u.greatest(u.sub(least_a, greatest_b), u.sub(least_b, greatest_a));
+            apart |= self.apart(n, squared, gap, gap_error, limit);
+        }
+        // Most of the rest are within: where triangles do not meet, two edges are closest or a vertex and a face.
+        let (a, b) = ([a0, a1, a2], [b0, b1, b2]);
+        if (within | apart) & in_range != in_range {
+            within |= self.faces(a, b, of_a, zero, reach) | self.faces(b, a, of_b, zero, reach);
+        }
+        for i in 0..3 {
+            if (within | apart) & in_range == in_range {
+                break;
+            }
+            for j in 0..3 {
+                let v = self.edges([a[i], a[(i + 1) % 3]], [b[j], b[(j + 1) % 3]]);
+                within |= u.below(u.mul(self.dot(v, v), u.splat(U::BOUNDS.above_one)), reach);
+            }
+        }
+        Verdicts {
+            within: within & in_range,
+            apart: apart & in_range & !within,
+            in_range,
+        }
+    }
+
+    /// The difference of the points closest to each other of two edges; of some two points where rounding misleads, as on edges
+    /// that are parallel.
+    #[inline(always)]
+    fn edges(&self, [p, p1]: [Vector<U>; 2], [q, q1]: [Vector<U>; 2]) -> Vector<U> {
+        let u = self.unit;
+        let (d, e, r) = (self.sub(p1, p), self.sub(q1, q), self.sub(p, q));
+        let (dd, ee, de) = (self.dot(d, d), self.dot(e, e), self.dot(d, e));
+        let (dr, er) = (self.dot(d, r), self.dot(e, r));
+        let s = self.share(
+            u.sub(u.mul(de, er), u.mul(dr, ee)),
+            u.sub(u.mul(dd, ee), u.mul(de, de)),
+        );
+        let t = self.share(u.add(u.mul(de, s), er), ee);
+        let s = self.share(u.sub(u.mul(de, t), dr), dd);
+        let along = |from: Vector<U>, by: Vector<U>, share: U::Number| {
+            let to = |k: usize| u.add(from[k], u.mul(share, by[k]));
+            [to(0), to(1), to(2)]
+        };
+        self.sub(along(p, d, s), along(q, e, t))
+    }
+
+    /// A quotient brought into 0 to 1; NaN becomes 0.
+    #[inline(always)]
+    fn share(&self, x: U::Number, y: U::Number) -> U::Number {
+        let u = self.unit;
+        u.least(u.greatest(u.div(x, y), u.splat(0.0)), u.splat(1.0))
+    }
+
+    /// Lanes that a vertex of `points` and its foot on `face`, whose normal is `n`, prove within.
+    #[inline(always)]
+    fn faces(
+        &self,
+        face: [Vector<U>; 3],
+        points: [Vector<U>; 3],
+        n: Vector<U>,
+        zero: U::Number,
+        reach: U::Number,
+    ) -> u32 {
+        let u = self.unit;
+        let (d, e) = (self.sub(face[1], face[0]), self.sub(face[2], face[0]));
+        let inverse = u.div(u.splat(1.0), self.dot(n, n));
+        let mut within = 0;
+        for p in points {
+            let r = self.sub(p, face[0]);
+            let y = u.mul(self.dot(self.cross(r, e), n), inverse);
+            let z = u.mul(self.dot(self.cross(d, r), n), inverse);
+            let x = u.sub(u.sub(u.splat(1.0), y), z);
+            let inside = u.at_most(zero, x) & u.at_most(zero, y) & u.at_most(zero, z);
+            let foot = |k: usize| {
+                let sum = u.add(u.mul(x, face[0][k]), u.mul(y, face[1][k]));
+                u.add(sum, u.mul(z, face[2][k]))
+            };
+            let v = self.sub([foot(0), foot(1), foot(2)], p);
+            within |= inside & u.below(u.mul(self.dot(v, v), u.splat(U::BOUNDS.above_one)), reach);
+        }
+        within
+    }
+
+    /// Lanes that a gap in direction `v` proves apart.
+    #[inline(always)]
+    fn apart(
+        &self,
+        v: Vector<U>,
+        squared: U::Number,
+        gap: U::Number,
+        gap_error: U::Number,
+        limit: U::Number,
+    ) -> u32 {
+        let u = self.unit;
+        let taxicab = u.add(u.add(u.abs(v[0]), u.abs(v[1])), u.abs(v[2]));
+        let g = u.sub(gap, u.mul(gap_error, taxicab));
+        let needed = u.mul(u.mul(limit, squared), u.splat(U::BOUNDS.above_one));
+        u.below(u.splat(U::BOUNDS.least_gap), g) & u.at_most(needed, u.mul(g, g))
+    }
+
+    #[inline(always)]
+    fn cross(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
+        let u = self.unit;
+        let minor = |k: usize, l: usize| u.sub(u.mul(p[k], q[l]), u.mul(p[l], q[k]));
+        [minor(1, 2), minor(2, 0), minor(0, 1)]
+    }
+}
