@@ -219,7 +219,7 @@ fn sort(pairs: &mut [Pair], scratch: &mut Scratch) {
     let keys = Keys::of(std::iter::once(&*pairs));
     // a table much longer than the pairs costs more than another pass
     let digit = (n.ilog2() + 1).min(DIGIT_BITS);
-    if keys.width.div_ceil(digit) <= DIGITS && u32::try_from(n).is_ok() {
+    if keys.width <= u32::BITS && keys.width.div_ceil(digit) <= DIGITS && u32::try_from(n).is_ok() {
         sort_short(pairs, keys, digit, &mut scratch.keys);
     } else {
         sort_long(pairs, keys, digit, &mut scratch.pairs);
@@ -323,6 +323,9 @@ mod tests {
                 [1_000_000, 3],
                 [1, 1],
                 [70_000, 70_000],
+                // keys of 32 and of 33 bits: the longest short ones and the shortest long ones
+                [1 << 16, 1 << 16],
+                [1 << 17, 1 << 16],
             ] {
                 let (mut a, mut b) = (numbers(limits[0], 1), numbers(limits[1], 2));
                 let mut pair = |at: usize| Pair {
