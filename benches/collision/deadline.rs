@@ -12,7 +12,10 @@ use crate::{scenes, triangles};
 const LOOK: usize = 64;
 /// Upper ends of the bands of likelihood: distances of centres, in units of the farthest at which the triangles can be within
 /// delta.
-const BANDS: [f32; 4] = [0.28, 0.4, 0.55, f32::INFINITY];
+const BANDS: [f32; 5] = [0.2, 0.28, 0.4, 0.55, f32::INFINITY];
+
+/// Candidates whose likelihood is looked at together.
+const BLOCK: usize = 2048;
 
 /// What is there when the clock starts.
 struct Culled {
@@ -102,38 +105,31 @@ impl Culled {
         found
     }
 
-    /// Eight at once, those first whose centres are close to each other: they are decided as they are met, the others put
-    /// aside by band.
+    /// Eight at once, those first whose centres are close to each other: band by band. To read the distances again for each
+    /// band takes a millisecond, less than to put candidates aside.
     fn likely_first(&self, time: Duration) -> Pairs {
-        let mut aside: [Vec<u32>; BANDS.len()] = Default::default();
-        for band in &mut aside {
-            band.reserve(self.candidates.len());
-        }
         let mut clock = Clock::start(time);
         let mut found = Pairs::new();
         let mut batch = TriangleBatch::new(self.threshold);
-        let mut over = false;
-        for (at, &apart) in self.apart.iter().enumerate() {
-            let band = BANDS[..BANDS.len() - 1]
-                .iter()
-                .filter(|&&end| apart > end * end)
-                .count();
-            if band == 0 {
-                self.push(&mut batch, self.candidates[at], &mut found);
-            } else {
-                aside[band].push(at as u32);
+        let mut start = f32::NEG_INFINITY;
+        'bands: for end in BANDS {
+            let (low, high) = (start, end * end);
+            for (block, apart) in self.apart.chunks(BLOCK).enumerate() {
+                // always written, kept by moving the end: which of them are wanted cannot be foreseen
+                let (mut wanted, mut count) = ([0_u32; BLOCK], 0);
+                for (at, &apart) in apart.iter().enumerate() {
+                    wanted[count] = at as u32;
+                    count += usize::from((apart > low) & (apart <= high));
+                }
+                for &at in &wanted[..count] {
+                    let pair = self.candidates[block * BLOCK + at as usize];
+                    self.push(&mut batch, pair, &mut found);
+                    if clock.is_over() {
+                        break 'bands;
+                    }
+                }
             }
-            if clock.is_over() {
-                over = true;
-                break;
-            }
-        }
-        for &at in aside.iter().flatten() {
-            if over {
-                break;
-            }
-            self.push(&mut batch, self.candidates[at as usize], &mut found);
-            over = clock.is_over();
+            start = high;
         }
         batch.finish(|pair, decision| found.extend(decision.within.then_some(pair)));
         found

@@ -181,6 +181,17 @@ impl BoxTree {
         }
     }
 
+    /// The sum of all sides of the boxes of level 1: the larger, the more boxes overlap. 0 if there is no such level.
+    pub(crate) fn girth(&self) -> f64 {
+        let sides = |group: &Group| {
+            let sides = group.lower.as_flattened().iter().zip(group.upper.as_flattened());
+            // an empty box has none
+            sides.map(|(low, high)| (high - low).max(0.0)).sum::<f32>()
+        };
+        let groups = self.levels.get(1).map_or(&[][..], Vec::as_slice);
+        groups.iter().map(|group| f64::from(sides(group))).sum()
+    }
+
     /// How many items there are.
     pub(crate) fn len(&self) -> usize {
         self.order.len()

@@ -71,7 +71,12 @@ pub struct FeatureTree {
     /// Whether each vertex moved at the last refit.
     moved: Vec<bool>,
     pub(crate) tree: BoxTree,
+    /// Of the tree when it was built, in the unit of the coordinates.
+    girth: f64,
 }
+
+/// A tree whose boxes have grown by this factor since it was built is worth building anew.
+const LOOSE: f64 = 1.5;
 
 /// What a refit saw.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -147,6 +152,7 @@ impl FeatureTree {
             directions: Vec::new(),
             moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
+            girth: 0.0,
         };
         tree.measure(mesh.vertices());
         let points: Vec<Box32>;
@@ -164,7 +170,13 @@ impl FeatureTree {
         };
         tree.tree = BoxTree::order(boxes, kind == FeatureKind::Vertex, rayon::current_num_threads());
         tree.fit(mesh.vertices());
+        tree.girth = tree.tree.girth() / tree.frame.scale;
         tree
+    }
+
+    /// Whether the body has deformed so far since the tree was built that neighbours in it are no longer near each other.
+    pub(crate) fn is_loose(&self) -> bool {
+        self.tree.girth() / self.frame.scale > LOOSE * self.girth
     }
 
     /// Moves the vertices and measures the boxes anew; which features are siblings stays. Cost: O(n), no allocation.

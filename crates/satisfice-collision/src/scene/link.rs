@@ -17,7 +17,7 @@ use crate::{Error, Placement};
 const FRAMES: f64 = 6.0;
 /// Up to so many pairs, deciding all of them is cheaper than any structure (2 ns to 200 ns a pair).
 const FEW: usize = 256;
-/// From this share of moved vertices on, a new grid beats a refitted tree (measured on a cloth: 2.0 against 2.6 ms).
+/// From this share of moved vertices on, a new grid beats a tree that has to be built for it.
 const MOST_MOVED: f64 = 0.3;
 
 /// A pair of bodies, or a body with itself.
@@ -253,7 +253,11 @@ impl Scene {
         watch: &Watch<'_>,
     ) -> Result<Vec<Pair>, Error> {
         let (a, b) = (self.links[at].a, self.links[at].b);
-        let method = self.choose(at);
+        let of_one = a == b && self.method == Method::Auto;
+        let method = match self.choose(at) {
+            Method::Grid if of_one && self.links[at].kept.wants_tree() => Method::Tree,
+            chosen => chosen,
+        };
         let near = Near::default();
         if method == Method::Grid {
             self.states[a].pose();
@@ -266,6 +270,7 @@ impl Scene {
                 self.grid
                     .between_until(one.posed(), two.posed(), threshold, watch)?
             };
+            self.links[at].kept.found(pairs.len(), one.vertices.len());
             let pairs = if filters(one, two, a == b) {
                 let keeps = |pair: &Pair| keeps(self.kind, one, two, a == b, *pair, &near);
                 pairs.iter().copied().filter(keeps).collect()
@@ -294,6 +299,9 @@ impl Scene {
         } else {
             self.join.all(&couple, watch).to_vec()
         };
+        if of_one && pairs.len() > one.vertices.len() {
+            self.links[at].kept.found(pairs.len(), one.vertices.len());
+        }
         if partial {
             let found = pairs.len();
             let at_rest = |pair: &Pair| !has_moved(one, kind_a, pair.a) && !has_moved(two, kind_b, pair.b);
@@ -305,8 +313,9 @@ impl Scene {
         Ok(pairs)
     }
 
-    /// The cost model. A grid costs 20 to 60 ns a vertex each time; a tree 200 ns a feature once, 15 ns a refit, and then only
-    /// what is near. So: a grid for a first look and for vertices most of which moved, a tree for everything that stays.
+    /// The cost model. A grid costs 20 to 60 ns a vertex each time; a tree 200 ns a feature once, 8 to 15 ns a refit, and then only
+    /// what is near. So: a grid for a first look and for vertices most of which moved, a tree for everything that stays; and for
+    /// a body with itself as [`Kept::wants_tree`] says.
     pub(super) fn choose(&self, at: usize) -> Method {
         let Link { a, b, seen, .. } = self.links[at];
         let (one, two) = (&self.states[a], &self.states[b]);

@@ -202,27 +202,27 @@ impl State {
         }
     }
 
-    /// The tree over features of this kind, refitted if the vertices have moved since.
+    /// The tree over features of this kind, refitted if the vertices have moved since, and built anew if they have moved far.
     pub(super) fn ready(&mut self, kind: FeatureKind) -> Result<(), Error> {
         let slot = &mut self.trees[kind as usize];
-        match slot {
-            Some(kept) if kept.current => {}
-            Some(kept) => {
+        if let Some(kept) = slot {
+            if !kept.current {
                 kept.tree.refit(&self.vertices)?;
                 kept.current = true;
             }
-            None => {
-                let mesh = if self.body.motion == Motion::Deforming {
-                    &self.body.mesh.with_vertices(self.vertices.clone())?
-                } else {
-                    &self.body.mesh
-                };
-                *slot = Some(Kept {
-                    tree: FeatureTree::new(mesh, kind),
-                    current: true,
-                });
+            if !kept.tree.is_loose() {
+                return Ok(());
             }
         }
+        let mesh = if self.body.motion == Motion::Deforming {
+            &self.body.mesh.with_vertices(self.vertices.clone())?
+        } else {
+            &self.body.mesh
+        };
+        *slot = Some(Kept {
+            tree: FeatureTree::new(mesh, kind),
+            current: true,
+        });
         Ok(())
     }
 

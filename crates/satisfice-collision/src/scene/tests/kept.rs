@@ -1,6 +1,7 @@
 //! What is kept of a deforming body from frame to frame, against brute force over all pairs.
 
 use super::*;
+use crate::broad::FeatureKind;
 
 /// A sheet that falls, ripples, folds over itself and jumps, over a ball that stays: what is kept from frame to frame against
 /// brute force over all pairs.
@@ -74,4 +75,49 @@ fn what_follows_a_deforming_body_misses_nothing() {
             "{total} contacts, {lists} lists"
         );
     }
+}
+
+/// A sheet that churns: after some frames a tree takes the place of the grids, and is built anew when the sheet is crumpled.
+#[test]
+fn a_tree_follows_a_churning_body_and_is_built_anew_when_it_is_loose() {
+    let sheet = generate::cloth(2.0, 2.0, 30, 30).unwrap();
+    let threshold = Threshold::new(0.06).unwrap();
+    let excluded = sheet.adjacency().rings(1);
+    let mut scene = Scene::new(PairKind::VertexVertex, threshold);
+    let cloth = scene.add(Body::deforming(sheet.clone()).beyond_ring(1));
+    let mut total = 0;
+    for frame in 0..12 {
+        let t = f64::from(frame);
+        // a wave of half the threshold a frame; from frame 8 on every vertex is somewhere else altogether
+        let moved: Vec<Point> = (0..)
+            .zip(sheet.vertices())
+            .map(|(i, &[x, y, _])| match frame {
+                0..8 => [x, y.abs(), 0.1 * (5.0 * x + t).sin() + 0.02 * y.signum()],
+                _ => {
+                    let k = f64::from(i * 7 % 900);
+                    [(k * 0.618 + 0.01 * t).fract(), (k * 0.414).fract(), 0.001 * k]
+                }
+            })
+            .collect();
+        scene.deform(cloth, &moved).unwrap();
+        let answer = scene.contacts().unwrap();
+        let own = oracle::pairs_within(&moved, &excluded, threshold);
+        let expected: Vec<[u32; 2]> = own.into_iter().collect();
+        let found: Vec<[u32; 2]> = answer
+            .contacts
+            .iter()
+            .map(|contact| [contact.a, contact.b])
+            .collect();
+        assert!(
+            found == expected,
+            "frame {frame}: {} of {}",
+            found.len(),
+            expected.len()
+        );
+        let tree = scene.states[cloth].tree(FeatureKind::Vertex);
+        assert_eq!(tree.is_some(), frame >= 3, "frame {frame}");
+        assert!(tree.is_none_or(|tree| !tree.is_loose()), "frame {frame}");
+        total += found.len();
+    }
+    assert!(total > 500, "{total}");
 }
