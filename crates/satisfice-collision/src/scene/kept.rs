@@ -22,8 +22,10 @@ pub(super) struct Kept {
     /// Frames until a list is tried again, and how long it was left alone last.
     pause: u32,
     last_pause: u32,
-    /// Frames in a row that a new grid has enumerated with few pairs among many vertices.
+    /// Frames in a row that a new grid has enumerated with few pairs among many vertices, and after how many more than usual a
+    /// tree is made.
     sparse: u32,
+    patience: u32,
 }
 
 /// After so many frames in which a new grid found fewer pairs than there are vertices a tree is made: it takes the time of some
@@ -42,7 +44,13 @@ impl Kept {
 
     /// Whether a tree pays that is refitted in every frame.
     pub(super) fn wants_tree(&self) -> bool {
-        self.sparse >= SPARSE
+        self.sparse >= SPARSE + self.patience
+    }
+
+    /// The tree had to be built anew again and again: it is not tried for some time, each time longer.
+    pub(super) fn does_without_tree(&mut self) {
+        self.sparse = 0;
+        self.patience = (2 * self.patience).clamp(PAUSES[0], PAUSES[1]);
     }
 }
 

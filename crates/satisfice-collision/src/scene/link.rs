@@ -110,6 +110,7 @@ impl Scene {
         let old = std::mem::take(&mut self.links);
         self.filtered = 0;
         self.linked = true;
+        self.answers += 1;
         let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
         for a in 0..self.states.len() {
             for b in 0..self.states.len() {
@@ -162,6 +163,7 @@ impl Scene {
     /// Brings the pairs of a link up to the present frame; some of them, if the watch stops it.
     pub(super) fn enumerate(&mut self, at: usize, skips: &mut Skips, watch: &Watch<'_>) -> Result<(), Error> {
         let frame = self.frame;
+        self.answers += 1;
         let at_rest = self.is_at_rest(&self.links[at]);
         let link = &mut self.links[at];
         let (a, b) = (&self.states[link.a], &self.states[link.b]);
@@ -255,7 +257,14 @@ impl Scene {
         let (a, b) = (self.links[at].a, self.links[at].b);
         let of_one = a == b && self.method == Method::Auto;
         let method = match self.choose(at) {
-            Method::Grid if of_one && self.links[at].kept.wants_tree() => Method::Tree,
+            Method::Grid if of_one && self.links[at].kept.wants_tree() => {
+                if self.states[a].was_shaken() {
+                    self.links[at].kept.does_without_tree();
+                    Method::Grid
+                } else {
+                    Method::Tree
+                }
+            }
             chosen => chosen,
         };
         let near = Near::default();
@@ -286,13 +295,14 @@ impl Scene {
         self.ready(a, b)?;
         let (one, two) = (&self.states[a], &self.states[b]);
         let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
-        let partial = last && method == Method::Tree && (one.moved != Moved::All || two.moved != Moved::All);
+        let moved = [one.marks(kind_a), two.marks(kind_b)];
+        let partial = last && method == Method::Tree && moved != [Moved::All; 2];
         let keep = |i: u32, j: u32| keeps(self.kind, one, two, a == b, Pair { a: i, b: j }, &near);
         let Some(mut couple) = couple(self.kind, one, two, a == b, threshold, &keep) else {
             return Ok(Vec::new());
         };
         if partial {
-            couple.moved = [one.moved, two.moved];
+            couple.moved = moved;
         }
         let mut pairs = if method == Method::BruteForce {
             self.join.brute_force(&couple, watch).to_vec()
@@ -343,6 +353,7 @@ impl Scene {
     /// between frames: an answer does not change by it. Cost: one distance a contact.
     pub fn measure_contacts(&mut self) {
         let delta = self.threshold.get();
+        self.answers += 1;
         for at in 0..self.links.len() {
             let link = &self.links[at];
             let seen = link.seen;
@@ -395,11 +406,13 @@ impl Scene {
         // The next pass begins with the link of most pairs: its contacts are laid out here, so that it need not copy them.
         let first = self.order().first().copied();
         self.laid_out.clear();
+        self.laid_out_of = None;
         if let Some(first) = first
             && self.links[first].measured.frame == Some(self.frame)
         {
-            self.laid_out
-                .extend_from_slice(&self.links[first].measured.likely);
+            let Link { a, b, measured, .. } = &self.links[first];
+            self.laid_out.extend_from_slice(&measured.likely);
+            self.laid_out_of = Some((*a, *b, self.frame));
         }
     }
 
@@ -533,7 +546,7 @@ pub(super) fn couple<'a>(
 }
 
 fn has_moved(state: &State, kind: FeatureKind, feature: u32) -> bool {
-    match state.moved {
+    match state.marks(kind) {
         Moved::None => false,
         Moved::All => true,
         Moved::Marked => state.tree(kind).is_none_or(|tree| tree.has_moved(feature)),

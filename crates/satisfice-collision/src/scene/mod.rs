@@ -98,8 +98,12 @@ pub struct Scene {
     grid: PointGrid,
     join: TreeJoin,
     parallel: bool,
-    /// What the next pass may deliver first, in its order.
+    /// What the next pass may deliver first, in its order...
     laid_out: Vec<Contact>,
+    /// ...of which bodies, and in which frame they were measured.
+    laid_out_of: Option<(usize, usize, u64)>,
+    /// Counts what changes the known pairs within a frame: a pass that began before is of no more use.
+    answers: u64,
     /// For sorting.
     found: Found,
     sorter: Sorter,
@@ -123,6 +127,8 @@ impl Scene {
             join: TreeJoin::new(),
             parallel: false,
             laid_out: Vec::new(),
+            laid_out_of: None,
+            answers: 0,
             found: Found::default(),
             sorter: Sorter::default(),
         }

@@ -23,6 +23,8 @@ const VISITS_OF_PART: usize = 256;
 /// the bodies with most contacts first of all; then the bodies are searched in the same order.
 pub struct Pass {
     frame: u64,
+    /// What was known when it began.
+    answers: u64,
     order: Vec<usize>,
     links: Vec<Progress>,
     delivered: Delivered,
@@ -66,16 +68,14 @@ impl Delivered {
         self.count += 1;
     }
 
-    /// Those of a group of eight likely contacts, or fewer, that a mask names. If they `lie_there` already, they are moved up.
-    fn push_some(&mut self, likely: &[Contact], group: usize, mask: u8, lie_there: bool) {
-        let places = group * 8..likely.len().min(group * 8 + 8);
-        let end = self.count + places.len();
+    /// Those of eight contacts, or fewer, that a mask names.
+    fn push_some(&mut self, eight: &[Contact], mask: u8) {
+        let end = self.count + eight.len();
         if self.contacts.len() < end {
-            self.contacts.resize(end, likely[places.start]);
+            self.contacts.resize(end, eight[0]);
         }
         // always written, kept by moving the end
-        for (lane, at) in places.enumerate() {
-            let contact = if lie_there { self.contacts[at] } else { likely[at] };
+        for (lane, &contact) in eight.iter().enumerate() {
             self.contacts[self.count] = contact;
             self.count += usize::from(mask >> lane & 1);
         }
@@ -161,11 +161,15 @@ impl Scene {
     pub fn pass(&mut self) -> Pass {
         self.settle();
         let order = self.order();
-        let likely = order.first().and_then(|&at| self.likely(&self.links[at]));
+        let first = order.first().map(|&at| &self.links[at]);
+        let likely = first.and_then(|link| self.likely(link));
         let laid_out = likely.map_or(0, <[Contact]>::len);
-        let usable = laid_out > 0 && self.laid_out.len() == laid_out;
+        let of = first.zip(self.frame.checked_sub(1));
+        let of = of.map(|(link, frame)| (link.a, link.b, frame));
+        let usable = laid_out > 0 && self.laid_out.len() == laid_out && self.laid_out_of == of;
         Pass {
             frame: self.frame,
+            answers: self.answers,
             order,
             links: self.links.iter().map(|_| Progress::default()).collect(),
             delivered: if usable {
@@ -187,17 +191,17 @@ impl Scene {
     /// a pass delivers the same contacts in the same order. What it delivered is what the next pass tries first.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the scene has moved since the pass began.
+    /// [`Error::Parameter`] if the scene has moved since the pass began, or was asked for an answer: it knows other contacts then.
     pub fn advance(
         &mut self,
         pass: &mut Pass,
         stop: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Completeness, Error> {
-        if pass.frame != self.frame || !self.linked || pass.links.len() != self.links.len() {
+        if !self.is_current(pass) {
             return Err(Error::parameter(
                 "pass",
                 pass.frame,
-                "a pass of the present frame",
+                "a pass of the present frame that began after the last other answer",
             ));
         }
         while !matches!(pass.phase, Phase::Done) && !stop(pass.delivered.count) {
@@ -208,9 +212,10 @@ impl Scene {
 
     /// Ends a pass: its contacts are what the next frame starts from, complete or not. Cost: linear in them.
     pub fn finish(&mut self, mut pass: Pass) -> Frame {
-        if pass.frame != self.frame || pass.links.len() != self.links.len() {
+        if !self.is_current(&pass) {
             return pass.into_frame();
         }
+        self.answers += 1;
         let (completeness, skips) = (pass.completeness(), pass.skips);
         let mut contacts = pass.delivered.contacts;
         contacts.clear();
@@ -231,6 +236,11 @@ impl Scene {
             completeness,
             skips,
         }
+    }
+
+    /// Whether nothing has changed since a pass began.
+    fn is_current(&self, pass: &Pass) -> bool {
+        pass.frame == self.frame && pass.answers == self.answers && self.linked
     }
 
     /// All pairs that a pass has delivered of a link, sorted.
@@ -334,13 +344,12 @@ impl Scene {
                     self.reach(link, &places),
                     &mut progress.near,
                 );
-                // no more was delivered than lay there, so that what follows has not been written over
-                let lie_there = *turn == 0 && likely.len() == pass.delivered.laid_out;
                 let count = pass.delivered.count;
                 for (group, mask) in (first..end).zip(&mut progress.near[known..]) {
                     let held = progress.held.saturating_sub(group * 8).min(8);
                     *mask &= !((1_u16 << held) - 1) as u8;
-                    pass.delivered.push_some(likely, group, *mask, lie_there);
+                    let eight = &likely[group * 8..likely.len().min(group * 8 + 8)];
+                    pass.delivered.push_some(eight, *mask);
                 }
                 pass.skips.held_by_motion += (pass.delivered.count - count) as u64;
                 *next = end;

@@ -17,9 +17,11 @@ pub(super) struct State {
     next_vertices: Vec<Point>,
     has_next: bool,
     step: Step,
-    /// The boxes of the vertices given last, and whether these are the present ones.
+    /// The boxes of the present vertices, if they are known.
     runs: Runs,
     runs_are_current: bool,
+    /// Those of the next vertices, and room to measure others that may be refused.
+    next_runs: [Runs; 2],
     next_placement: Option<Placement>,
     pub(super) forecast: Forecast,
     /// What moved between the last two frames.
@@ -70,6 +72,10 @@ impl Step {
 struct Kept {
     tree: FeatureTree,
     current: bool,
+    /// Whether it was current in the frame before: then what a refit marks is what moved since that frame.
+    was_current: bool,
+    /// How many refits in a row ended in a new tree.
+    rebuilt: u32,
 }
 
 impl State {
@@ -91,6 +97,7 @@ impl State {
             step: Step::default(),
             runs: Runs::default(),
             runs_are_current: false,
+            next_runs: [Runs::default(), Runs::default()],
             next_placement: None,
             forecast: Forecast::new(placement),
             moved: Moved::All,
@@ -124,8 +131,9 @@ impl State {
                 "a frame has as many vertices as its body",
             ));
         }
-        self.runs_are_current = false;
-        self.runs.measure(vertices, 1)?;
+        let [next, room] = &mut self.next_runs;
+        room.measure(vertices, 1)?;
+        std::mem::swap(next, room);
         self.next_vertices.clear();
         self.next_vertices.extend_from_slice(vertices);
         self.step = Step::between(&self.vertices, vertices);
@@ -167,6 +175,9 @@ impl State {
     /// Goes to the next frame.
     pub(super) fn settle(&mut self) {
         (self.moved, self.share, self.motion, self.agitation) = (Moved::None, 0.0, 0.0, 0.0);
+        for kept in self.trees.iter_mut().flatten() {
+            kept.was_current = kept.current;
+        }
         let placement = self.next_placement.take().unwrap_or(self.placement);
         let (corners, local) = (self.corners(), self.local);
         self.forecast.settle(&self.placement, &placement, |one, two| {
@@ -181,6 +192,7 @@ impl State {
             self.bounds = self.posed_bounds(&placement);
         }
         if std::mem::take(&mut self.has_next) {
+            std::mem::swap(&mut self.runs, &mut self.next_runs[0]);
             self.runs_are_current = true;
             if self.step.count > 0 {
                 std::mem::swap(&mut self.vertices, &mut self.next_vertices);
@@ -205,14 +217,18 @@ impl State {
     /// The tree over features of this kind, refitted if the vertices have moved since, and built anew if they have moved far.
     pub(super) fn ready(&mut self, kind: FeatureKind) -> Result<(), Error> {
         let slot = &mut self.trees[kind as usize];
+        let mut rebuilt = 0;
         if let Some(kept) = slot {
-            if !kept.current {
-                kept.tree.refit(&self.vertices)?;
-                kept.current = true;
-            }
-            if !kept.tree.is_loose() {
+            if kept.current {
                 return Ok(());
             }
+            kept.tree.refit(&self.vertices)?;
+            kept.current = true;
+            if !kept.tree.is_loose() {
+                kept.rebuilt = 0;
+                return Ok(());
+            }
+            rebuilt = kept.rebuilt + 1;
         }
         let mesh = if self.body.motion == Motion::Deforming {
             &self.body.mesh.with_vertices(self.vertices.clone())?
@@ -222,8 +238,30 @@ impl State {
         *slot = Some(Kept {
             tree: FeatureTree::new(mesh, kind),
             current: true,
+            was_current: false,
+            rebuilt,
         });
         Ok(())
+    }
+
+    /// What counts as moved since the last frame in the tree over features of this kind.
+    pub(super) fn marks(&self, kind: FeatureKind) -> Moved {
+        match (self.moved, &self.trees[kind as usize]) {
+            (Moved::Marked, Some(kept)) if kept.was_current => Moved::Marked,
+            (Moved::Marked, _) => Moved::All,
+            (moved, _) => moved,
+        }
+    }
+
+    /// Whether the tree over the vertices had to be built anew in each of the last frames that it was refitted in. That is
+    /// forgotten then.
+    pub(super) fn was_shaken(&mut self) -> bool {
+        let kept = self.trees[FeatureKind::Vertex as usize].as_mut();
+        kept.is_some_and(|kept| {
+            let shaken = kept.rebuilt > 2;
+            kept.rebuilt = if shaken { 0 } else { kept.rebuilt };
+            shaken
+        })
     }
 
     /// The tree; `ready` has to come first.

@@ -31,7 +31,10 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
                 .unwrap();
             let at_once = pass.contacts().len();
             scene.advance(&mut pass, &mut |_| false).unwrap();
+            let mut delivered = pass.contacts().to_vec();
+            delivered.sort_unstable();
             let answer = scene.finish(pass);
+            assert!(delivered == answer.contacts, "each once, {kind} frame {frame}");
             assert_eq!(answer.completeness, Completeness::Proved);
             let posed = [turn(0.3, [1.0, 0.0, 0.0]), place].map(|place| Posed {
                 mesh: place.place(&ball).unwrap(),
@@ -60,4 +63,107 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
             "{turning:?} {steady:?}"
         );
     }
+}
+
+/// Balls in a row that sway, so that some contacts hold by the bound of motion and others have to be looked at again: whatever
+/// is delivered is delivered once, of however many pairs of bodies.
+#[test]
+fn a_pass_delivers_every_contact_once() {
+    let ball = generate::icosphere(1.0, 3).unwrap();
+    for bodies in [2, 4] {
+        let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(0.15).unwrap());
+        let place = |body: usize, t: f64| {
+            let sway = 0.01 * (t + body as f64).sin();
+            turn(
+                0.02 * (2.0 * t).sin(),
+                [1.95 * body as f64 + sway, 0.5 * sway, 0.0],
+            )
+        };
+        for body in 0..bodies {
+            scene.add(Body::rigid(ball.clone()).at(place(body, 0.0)));
+        }
+        let mut total = 0;
+        for frame in 0..14 {
+            let t = f64::from(frame);
+            // some of them rest now and then
+            for body in (0..bodies).filter(|body| (frame as usize + body) % 3 > 0) {
+                scene.place(body, place(body, t)).unwrap();
+            }
+            let mut pass = scene.pass();
+            scene.advance(&mut pass, &mut |_| false).unwrap();
+            let mut delivered = pass.contacts().to_vec();
+            delivered.sort_unstable();
+            let answer = scene.finish(pass);
+            assert!(delivered == answer.contacts, "{bodies} bodies, frame {frame}");
+            assert_eq!(scene.contacts().unwrap().contacts, answer.contacts);
+            if frame % 4 != 3 {
+                scene.measure_contacts();
+            }
+            total += delivered.len();
+        }
+        assert!(total > 300, "{total}");
+    }
+}
+
+/// What was laid out for a pass is of no use when its bodies are not asked for any more.
+#[test]
+fn a_pass_after_an_exclusion_delivers_nothing_of_it() {
+    let ball = generate::icosphere(1.0, 2).unwrap();
+    let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(0.4).unwrap());
+    for x in [0.0, 1.9, 3.8] {
+        scene.add(Body::rigid(ball.clone()).at(turn(0.0, [x, 0.0, 0.0])));
+    }
+    assert!(!scene.contacts().unwrap().contacts.is_empty());
+    scene.measure_contacts();
+    scene.exclude(0, 1).unwrap();
+    scene.place(2, turn(0.0, [3.79, 0.0, 0.0])).unwrap();
+    let mut pass = scene.pass();
+    scene.advance(&mut pass, &mut |_| false).unwrap();
+    assert!(!pass.contacts().is_empty());
+    assert!(pass.contacts().iter().all(|contact| contact.body_a == 1));
+    // an answer in between makes it useless, which is said
+    let mut pass = scene.pass();
+    scene.contacts().unwrap();
+    assert!(matches!(
+        scene.advance(&mut pass, &mut |_| false),
+        Err(Error::Parameter { .. })
+    ));
+}
+
+/// A sheet that leaves a ball and comes back to the bit, and one whose next frame is refused after another was taken.
+#[test]
+fn frames_in_which_nothing_was_refitted_are_not_taken_for_frames_at_rest() {
+    let ball = generate::icosphere(1.0, 3).unwrap();
+    let sheet = generate::cloth(2.0, 2.0, 12, 12).unwrap();
+    let at = |z: f64| -> Vec<Point> { sheet.vertices().iter().map(|&[x, y, _]| [x, y, z]).collect() };
+    for kind in [PairKind::TriangleTriangle, PairKind::VertexTriangle] {
+        let mut scene = Scene::new(kind, Threshold::new(0.1).unwrap());
+        let cloth = scene.add(Body::deforming(sheet.clone()));
+        scene.add(Body::fixed(ball.clone()));
+        let mut counts = Vec::new();
+        for z in [1.0, 1.0, 50.0, 1.0, 0.99, 50.0, 0.99] {
+            scene.deform(cloth, &at(z)).unwrap();
+            let mut bad = at(3.0);
+            bad[7][1] = f64::NAN;
+            assert!(scene.deform(cloth, &bad).is_err());
+            counts.push(scene.contacts().unwrap().contacts.len());
+        }
+        assert!(counts[0] > 50, "{counts:?}");
+        assert_eq!(
+            (counts[1], counts[2], counts[3]),
+            (counts[0], 0, counts[0]),
+            "{kind}"
+        );
+        assert_eq!((counts[5], counts[6]), (0, counts[4]), "{kind}");
+    }
+    // self-pairs of vertices by a grid, whose boxes a refused frame must leave alone
+    let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(0.3).unwrap());
+    let cloth = scene.add(Body::deforming(sheet.clone()).beyond_ring(1));
+    scene.deform(cloth, &at(1.0)).unwrap();
+    let all = scene.contacts().unwrap().contacts;
+    scene.deform(cloth, &at(2.0)).unwrap();
+    let mut bad = at(3.0);
+    bad[7][1] = f64::INFINITY;
+    assert!(scene.deform(cloth, &bad).is_err());
+    assert!(!all.is_empty() && scene.contacts().unwrap().contacts == all);
 }
