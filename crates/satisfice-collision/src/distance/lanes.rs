@@ -36,8 +36,8 @@ const U_SINGLE: f64 = 1.0 / (1_u64 << 24) as f64;
 /// overflows: a coordinate, a difference in double precision times a power of two, rounded, is wrong by less than
 /// `(1 + 2^-28) u rho + 2^-150`, and `u rho >= 2^-44`. A gap of at least 2^-40 gives `|v|_1 >= 2^-54`, hence `v.v >= 2^-110` is
 /// normal, and the slack `3.9 u rho |v|_1 >= 2^-97` dwarfs every 2^-149. With `rho <= 2^12` a normal is below 2^28 and a gap
-/// along it below 2^43, so that no square overflows. Underflow in `v^.v^` moves `|v^|` by less than 2^-73, the slack of
-/// `24 u rho` is at least 2^-40. Delta is between 1 and 2.
+/// along it below 2^43, so that no square overflows. Underflow in `v^.v^` moves `|v^|` by less than 2^-73; the slack, `13 u rho`
+/// where `kernel` has used up 51 of 64, is at least 2^-41. Delta is between 1 and 2.
 const SINGLE: Bounds = Bounds {
     above_one: 1.0 + 8.0 * U_SINGLE,
     gap_error: 16.0 * U_SINGLE,
@@ -55,7 +55,7 @@ pub(super) trait Unit: Copy {
     type Number: Copy;
     const BOUNDS: Bounds;
     fn load(self, x: &Self::Lanes) -> Self::Number;
-    /// `x`, which the precision of the unit has to hold.
+    /// `x`, rounded to the precision of the unit where that does not hold it, as 1/3.
     fn splat(self, x: f64) -> Self::Number;
     fn add(self, x: Self::Number, y: Self::Number) -> Self::Number;
     fn sub(self, x: Self::Number, y: Self::Number) -> Self::Number;
