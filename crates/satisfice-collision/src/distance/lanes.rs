@@ -214,122 +214,89 @@ mod avx2 {
         }
     }
 
-    impl Unit for V3 {
-        type Lanes = [f64; 4];
-        type Number = __m256d;
-        const BOUNDS: Bounds = DOUBLE;
+    /// A unit: how to reach its instructions, the types, the bounds, and the names of the instructions in its precision.
+    macro_rules! unit {
+        (
+            $unit:ty, |$this:ident| $avx:expr, [$real:ident; $lanes:literal], $number:ident, $bounds:ident,
+            $set:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $andnot:ident $blend:ident $mask:ident
+            $compare:ident
+        ) => {
+            impl Unit for $unit {
+                type Lanes = [$real; $lanes];
+                type Number = $number;
+                const BOUNDS: Bounds = $bounds;
 
-        #[inline(always)]
-        fn load(self, x: &[f64; 4]) -> __m256d {
-            pulp::cast(*x)
-        }
-        #[inline(always)]
-        fn splat(self, x: f64) -> __m256d {
-            self.avx._mm256_set1_pd(x)
-        }
-        #[inline(always)]
-        fn add(self, x: __m256d, y: __m256d) -> __m256d {
-            self.avx._mm256_add_pd(x, y)
-        }
-        #[inline(always)]
-        fn sub(self, x: __m256d, y: __m256d) -> __m256d {
-            self.avx._mm256_sub_pd(x, y)
-        }
-        #[inline(always)]
-        fn mul(self, x: __m256d, y: __m256d) -> __m256d {
-            self.avx._mm256_mul_pd(x, y)
-        }
-        #[inline(always)]
-        fn div(self, x: __m256d, y: __m256d) -> __m256d {
-            self.avx._mm256_div_pd(x, y)
-        }
-        #[inline(always)]
-        fn least(self, x: __m256d, y: __m256d) -> __m256d {
-            self.avx._mm256_min_pd(x, y)
-        }
-        #[inline(always)]
-        fn greatest(self, x: __m256d, y: __m256d) -> __m256d {
-            self.avx._mm256_max_pd(x, y)
-        }
-        #[inline(always)]
-        fn abs(self, x: __m256d) -> __m256d {
-            self.avx._mm256_andnot_pd(self.avx._mm256_set1_pd(-0.0), x)
-        }
-        #[inline(always)]
-        fn if_equal(self, x: __m256d, y: __m256d, then: __m256d, other: __m256d) -> __m256d {
-            self.avx
-                ._mm256_blendv_pd(other, then, self.avx._mm256_cmp_pd::<_CMP_EQ_OQ>(x, y))
-        }
-        #[inline(always)]
-        fn below(self, x: __m256d, y: __m256d) -> u32 {
-            self.avx
-                ._mm256_movemask_pd(self.avx._mm256_cmp_pd::<_CMP_LT_OQ>(x, y)) as u32
-        }
-        #[inline(always)]
-        fn at_most(self, x: __m256d, y: __m256d) -> u32 {
-            self.avx
-                ._mm256_movemask_pd(self.avx._mm256_cmp_pd::<_CMP_LE_OQ>(x, y)) as u32
-        }
+                #[inline(always)]
+                fn load(self, x: &[$real; $lanes]) -> $number {
+                    pulp::cast(*x)
+                }
+                #[inline(always)]
+                fn splat(self, x: f64) -> $number {
+                    let $this = self;
+                    $avx.$set(x as $real)
+                }
+                #[inline(always)]
+                fn add(self, x: $number, y: $number) -> $number {
+                    let $this = self;
+                    $avx.$add(x, y)
+                }
+                #[inline(always)]
+                fn sub(self, x: $number, y: $number) -> $number {
+                    let $this = self;
+                    $avx.$sub(x, y)
+                }
+                #[inline(always)]
+                fn mul(self, x: $number, y: $number) -> $number {
+                    let $this = self;
+                    $avx.$mul(x, y)
+                }
+                #[inline(always)]
+                fn div(self, x: $number, y: $number) -> $number {
+                    let $this = self;
+                    $avx.$div(x, y)
+                }
+                #[inline(always)]
+                fn least(self, x: $number, y: $number) -> $number {
+                    let $this = self;
+                    $avx.$min(x, y)
+                }
+                #[inline(always)]
+                fn greatest(self, x: $number, y: $number) -> $number {
+                    let $this = self;
+                    $avx.$max(x, y)
+                }
+                #[inline(always)]
+                fn abs(self, x: $number) -> $number {
+                    let $this = self;
+                    $avx.$andnot($avx.$set(-0.0), x)
+                }
+                #[inline(always)]
+                fn if_equal(self, x: $number, y: $number, then: $number, other: $number) -> $number {
+                    let $this = self;
+                    $avx.$blend(other, then, $avx.$compare::<_CMP_EQ_OQ>(x, y))
+                }
+                #[inline(always)]
+                fn below(self, x: $number, y: $number) -> u32 {
+                    let $this = self;
+                    $avx.$mask($avx.$compare::<_CMP_LT_OQ>(x, y)) as u32
+                }
+                #[inline(always)]
+                fn at_most(self, x: $number, y: $number) -> u32 {
+                    let $this = self;
+                    $avx.$mask($avx.$compare::<_CMP_LE_OQ>(x, y)) as u32
+                }
+            }
+        };
     }
 
-    impl Unit for Single<V3> {
-        type Lanes = [f32; 8];
-        type Number = __m256;
-        const BOUNDS: Bounds = SINGLE;
-
-        #[inline(always)]
-        fn load(self, x: &[f32; 8]) -> __m256 {
-            pulp::cast(*x)
-        }
-        #[inline(always)]
-        fn splat(self, x: f64) -> __m256 {
-            self.0.avx._mm256_set1_ps(x as f32)
-        }
-        #[inline(always)]
-        fn add(self, x: __m256, y: __m256) -> __m256 {
-            self.0.avx._mm256_add_ps(x, y)
-        }
-        #[inline(always)]
-        fn sub(self, x: __m256, y: __m256) -> __m256 {
-            self.0.avx._mm256_sub_ps(x, y)
-        }
-        #[inline(always)]
-        fn mul(self, x: __m256, y: __m256) -> __m256 {
-            self.0.avx._mm256_mul_ps(x, y)
-        }
-        #[inline(always)]
-        fn div(self, x: __m256, y: __m256) -> __m256 {
-            self.0.avx._mm256_div_ps(x, y)
-        }
-        #[inline(always)]
-        fn least(self, x: __m256, y: __m256) -> __m256 {
-            self.0.avx._mm256_min_ps(x, y)
-        }
-        #[inline(always)]
-        fn greatest(self, x: __m256, y: __m256) -> __m256 {
-            self.0.avx._mm256_max_ps(x, y)
-        }
-        #[inline(always)]
-        fn abs(self, x: __m256) -> __m256 {
-            self.0.avx._mm256_andnot_ps(self.0.avx._mm256_set1_ps(-0.0), x)
-        }
-        #[inline(always)]
-        fn if_equal(self, x: __m256, y: __m256, then: __m256, other: __m256) -> __m256 {
-            self.0
-                .avx
-                ._mm256_blendv_ps(other, then, self.0.avx._mm256_cmp_ps::<_CMP_EQ_OQ>(x, y))
-        }
-        #[inline(always)]
-        fn below(self, x: __m256, y: __m256) -> u32 {
-            self.0
-                .avx
-                ._mm256_movemask_ps(self.0.avx._mm256_cmp_ps::<_CMP_LT_OQ>(x, y)) as u32
-        }
-        #[inline(always)]
-        fn at_most(self, x: __m256, y: __m256) -> u32 {
-            self.0
-                .avx
-                ._mm256_movemask_ps(self.0.avx._mm256_cmp_ps::<_CMP_LE_OQ>(x, y)) as u32
-        }
-    }
+    unit!(
+        V3, |unit| unit.avx, [f64; 4], __m256d, DOUBLE,
+        _mm256_set1_pd _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_min_pd _mm256_max_pd
+        _mm256_andnot_pd _mm256_blendv_pd _mm256_movemask_pd _mm256_cmp_pd
+    );
+    unit!(
+        Single<V3>, |unit| unit.0.avx, [f32; 8], __m256, SINGLE,
+        _mm256_set1_ps _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps _mm256_min_ps _mm256_max_ps
+        _mm256_andnot_ps _mm256_blendv_ps _mm256_movemask_ps _mm256_cmp_ps
+    );
 }

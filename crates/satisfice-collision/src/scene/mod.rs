@@ -21,6 +21,7 @@ mod body;
 mod forecast;
 mod kept;
 mod link;
+mod measured;
 mod near;
 mod pass;
 mod query;
