@@ -30,7 +30,6 @@ pub(crate) struct Clock {
     seen: Duration,
     since: u64,
     interval: u64,
-    cost: Duration,
 }
 
 impl Clock {
@@ -44,7 +43,6 @@ impl Clock {
             seen: before,
             since: 0,
             interval: 1,
-            cost: Duration::ZERO,
         }
     }
 
@@ -75,8 +73,8 @@ impl Clock {
     fn look(&mut self) -> Duration {
         let now = now();
         let passed = now - self.last;
-        self.cost = passed / u32::try_from(self.since.max(1)).unwrap_or(u32::MAX);
-        let fits = LOOK_EVERY.as_nanos() / self.cost.as_nanos().max(1);
+        let cost = passed / u32::try_from(self.since.max(1)).unwrap_or(u32::MAX);
+        let fits = LOOK_EVERY.as_nanos() / cost.as_nanos().max(1);
         self.interval = u64::try_from(fits)
             .unwrap_or(LOOK_AFTER)
             .clamp(1, (2 * self.interval).min(LOOK_AFTER));
@@ -86,16 +84,28 @@ impl Clock {
         self.seen
     }
 
-    /// What an evaluation cost lately, with all that surrounds it: for scheduling, never for results.
-    #[cfg(feature = "rayon")]
-    pub(crate) fn cost(&self) -> Duration {
-        self.cost
-    }
-
     /// The moment at which a limit of time since the start is reached.
     #[cfg(feature = "rayon")]
     pub(crate) fn deadline(&self, limit: Duration) -> Option<Instant> {
         self.start.checked_add(limit.saturating_sub(self.before))
+    }
+}
+
+/// Takes the time of some calls of the fitness, without what surrounds them: for scheduling, never for results.
+#[cfg(feature = "rayon")]
+#[derive(Debug)]
+pub(crate) struct Stopwatch(Instant);
+
+#[cfg(feature = "rayon")]
+impl Stopwatch {
+    pub(crate) fn start() -> Self {
+        Self(now())
+    }
+
+    /// What one call cost, by the time that so many took on so many threads.
+    pub(crate) fn stop(self, calls: usize, threads: usize) -> Duration {
+        let count = |n: usize| u32::try_from(n.max(1)).unwrap_or(u32::MAX);
+        self.0.elapsed().saturating_mul(count(threads.min(calls))) / count(calls)
     }
 }
 

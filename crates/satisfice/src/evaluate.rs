@@ -11,6 +11,8 @@ use crate::archive::{Archive, Entered};
 use crate::batch::Outcome;
 use crate::budget::{Budget, StopReason};
 use crate::candidates::Candidates;
+#[cfg(feature = "rayon")]
+use crate::clock::Stopwatch;
 use crate::clock::{Alarm, Clock};
 use crate::observer::Observer;
 use crate::problem::SatisficingProblem;
@@ -37,6 +39,11 @@ pub(crate) struct Ledger {
     pub(crate) trace: Vec<TracePoint>,
     pub(crate) stop: Option<StopReason>,
     pub(crate) clock: Clock,
+    /// What a call of the fitness cost lately.
+    #[cfg(feature = "rayon")]
+    fitness_cost: Duration,
+    /// Whether the last batch was shared among threads.
+    shared: bool,
     alarm: Option<Alarm>,
     next_count: u64,
     next_time: Duration,
@@ -56,6 +63,9 @@ impl Ledger {
             trace: Vec::new(),
             stop: None,
             clock: Clock::start(Duration::ZERO),
+            #[cfg(feature = "rayon")]
+            fitness_cost: Duration::ZERO,
+            shared: false,
             alarm: budget.time.map(Alarm::set),
             next_count: 1,
             next_time: budget.time.map_or(Duration::MAX, |time| time / 100),
@@ -88,6 +98,9 @@ impl Ledger {
             trace,
             stop,
             clock: Clock::start(elapsed),
+            #[cfg(feature = "rayon")]
+            fitness_cost: Duration::ZERO,
+            shared: false,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             next_count: next,
             next_time: step.saturating_mul(passed.saturating_add(1)),
@@ -184,10 +197,24 @@ impl Ledger {
             self.pass(candidates.outcomes.len() - candidates.live);
         }
         #[cfg(feature = "rayon")]
-        if self.evaluate_in_parallel(problem, candidates, threads) {
+        if threads.count() > 1 {
+            self.evaluate_on(threads, problem, candidates);
             return;
         }
         let _ = threads;
+        self.evaluate_alone(problem, candidates);
+    }
+
+    /// Whether the last batch was worth several threads.
+    pub(crate) fn has_shared(&self) -> bool {
+        self.shared
+    }
+
+    fn evaluate_alone<P: SatisficingProblem>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, P::Solution>,
+    ) {
         while candidates.ready < candidates.live && !self.interrupted() {
             let from = candidates.ready;
             let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
@@ -198,27 +225,29 @@ impl Ledger {
         }
     }
 
-    /// Returns `false` where threads would not pay: then nothing was done.
+    /// The same on several threads, where that pays.
     #[cfg(feature = "rayon")]
-    fn evaluate_in_parallel<P: SatisficingProblem>(
+    fn evaluate_on<P: SatisficingProblem>(
         &mut self,
+        threads: &Threads,
         problem: &P,
         candidates: &mut Candidates<P::Scalar, P::Solution>,
-        threads: &Threads,
-    ) -> bool {
+    ) {
         /// Below this much work, handing it to threads costs more than it saves.
         const WORTH: Duration = Duration::from_micros(30);
 
-        if threads.is_one() {
-            return false;
-        }
-        let live = candidates.live;
+        let calls = candidates.live - candidates.ready;
         let work = self
-            .clock
-            .cost()
-            .saturating_mul(u32::try_from(live).unwrap_or(u32::MAX));
-        if live < 2 || work < WORTH || self.interrupted() {
-            return false;
+            .fitness_cost
+            .saturating_mul(u32::try_from(calls).unwrap_or(u32::MAX));
+        self.shared = calls >= 2 && work >= WORTH && !self.interrupted();
+        if !self.shared {
+            let (ready, stopwatch) = (candidates.ready, Stopwatch::start());
+            self.evaluate_alone(problem, candidates);
+            if candidates.ready > ready {
+                self.fitness_cost = stopwatch.stop(candidates.ready - ready, 1);
+            }
+            return;
         }
         let deadline = self.budget.time.and_then(|limit| self.clock.deadline(limit));
         let cancel = self.budget.cancel.clone();
@@ -228,15 +257,16 @@ impl Ledger {
         };
         let (solutions, fitness, done) = candidates.slots();
         let slots = solutions.iter().zip(fitness).zip(done);
+        let stopwatch = Stopwatch::start();
         threads.for_each(slots, |((solution, fitness), done)| {
             if !*done && !over() {
                 *fitness = problem.fitness(solution);
                 *done = true;
             }
         });
-        self.pass(live);
+        self.fitness_cost = stopwatch.stop(calls, threads.count());
+        self.pass(candidates.live);
         let _ = self.interrupted();
-        true
     }
 
     /// Enters what was computed, in order: counts, hits, trace, limits.

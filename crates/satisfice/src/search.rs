@@ -223,6 +223,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
             }
             self.save_if_due(&mut saving);
             self.settle(problem, observer);
+            if let (Some(slice), Some(pool)) = (&self.slice, &self.pool)
+                && slice.ledger.has_shared()
+            {
+                pool.rouse();
+            }
         }
         if let Some(saving) = saving {
             saving.at_the_end(self);

@@ -41,10 +41,23 @@ impl Threads {
 }
 
 impl Threads {
-    /// Whether only the caller works.
+    /// How many they are, the caller among them.
     #[cfg(feature = "rayon")]
-    pub(crate) fn is_one(&self) -> bool {
-        self.helpers.is_none()
+    pub(crate) fn count(&self) -> usize {
+        1 + self
+            .helpers
+            .as_ref()
+            .map_or(0, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// Wakes the helpers, which takes some tens of microseconds once they sleep: for the next batch, while it is thought out.
+    pub(crate) fn rouse(&self) {
+        #[cfg(feature = "rayon")]
+        if let Some(helpers) = &self.helpers {
+            for _ in 0..helpers.current_num_threads() {
+                helpers.spawn(|| {});
+            }
+        }
     }
 
     /// Does something with each item, on as many threads as there are: whoever is free takes the next one.

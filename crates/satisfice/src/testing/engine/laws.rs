@@ -71,7 +71,7 @@ impl<S: Real> Suite<'_, S> {
     pub(super) fn threads(&mut self) -> Result<(), Error> {
         for mut case in spaces()? {
             // Slow enough to be worth several threads.
-            case.work = 300;
+            case.work = 1000;
             let budget = Budget::evaluations(RUN / 2);
             let one = self.run(&case, &budget)?;
             for threads in [2, 3, 8] {
