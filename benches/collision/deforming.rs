@@ -3,7 +3,7 @@ use satisfice_collision::broad::{FeatureKind, FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 
 use crate::points::plain;
-use crate::table::{Method, Report, all_threads, least};
+use crate::table::{Frame, Method, Report, all_threads, least};
 use crate::{peers, plain_grid, scenes};
 
 /// The structure is built on the first frame; timed is the step to the second.
@@ -39,34 +39,26 @@ pub(crate) fn run(report: &mut Report) {
         );
         let (before, after, r) = (peers::single(first.vertices()), peers::single(next), delta as f32);
         let mut parry = peers::parry_tree(&before, r / 2.0);
-        // to the second frame, which the truth is of, and back again, so that every turn brings coordinates that have changed
+        // only the step to the second frame is timed: the frames differ in what they cost
+        let of = |frame| usize::from(frame == Frame::Before);
         let frames = [next, first.vertices()];
         let single = [&after, &before];
-        let mut turns = [0_usize; 5];
-        let [turn_one, turn_many, turn_tree, turn_plain, turn_parry] = &mut turns;
-        let frame = |turn: &mut usize| std::mem::replace(turn, 1 - *turn);
         let methods = vec![
-            Method::new("ours: grid, rebuilt", || {
-                plain(
-                    one.within(frames[frame(turn_one)], threshold)
-                        .expect("finite points"),
-                )
+            Method::moving("ours: grid, rebuilt", |frame| {
+                plain(one.within(frames[of(frame)], threshold).expect("finite points"))
             }),
-            Method::new("ours: grid, rebuilt, all threads", || {
-                plain(pool.install(|| {
-                    many.within(frames[frame(turn_many)], threshold)
-                        .expect("finite points")
-                }))
+            Method::moving("ours: grid, rebuilt, all threads", |frame| {
+                plain(pool.install(|| many.within(frames[of(frame)], threshold).expect("finite points")))
             }),
-            Method::new("ours: tree, refitted", || {
-                tree.refit(frames[frame(turn_tree)]).expect("finite points");
+            Method::moving("ours: tree, refitted", |frame| {
+                tree.refit(frames[of(frame)]).expect("finite points");
                 plain(join.within(&tree, threshold, None))
             }),
-            Method::new("plain grid f32, rebuilt", || {
-                plain_grid::within(single[frame(turn_plain)], r)
+            Method::moving("plain grid f32, rebuilt", |frame| {
+                plain_grid::within(single[of(frame)], r)
             }),
-            Method::new("parry f32: update, refit, traverse", || {
-                peers::parry_refit(&mut parry, single[frame(turn_parry)], r)
+            Method::moving("parry f32: update, refit, traverse", |frame| {
+                peers::parry_refit(&mut parry, single[of(frame)], r)
             }),
         ];
         let scene = format!("{name}, {} vertices, r = {delta}", next.len());

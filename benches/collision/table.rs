@@ -13,14 +13,40 @@ pub(crate) type Pairs = Vec<(u32, u32)>;
 /// A way to find the pairs, run again and again.
 pub(crate) struct Method<'a> {
     pub(crate) name: &'static str,
-    run: Box<dyn FnMut() -> Pairs + 'a>,
+    run: Box<dyn FnMut(Frame) -> Pairs + 'a>,
+    moves: bool,
+}
+
+/// What a method that follows a motion is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Frame {
+    /// The frame before, which is not timed.
+    Before,
+    /// The frame that is timed.
+    Timed,
 }
 
 impl<'a> Method<'a> {
-    pub(crate) fn new(name: &'static str, run: impl FnMut() -> Pairs + 'a) -> Self {
+    pub(crate) fn new(name: &'static str, mut run: impl FnMut() -> Pairs + 'a) -> Self {
+        Self {
+            name,
+            run: Box::new(move |_| run()),
+            moves: false,
+        }
+    }
+
+    /// One that goes from frame to frame: back to the frame before, untimed, after every turn.
+    pub(crate) fn moving(name: &'static str, run: impl FnMut(Frame) -> Pairs + 'a) -> Self {
         Self {
             name,
             run: Box::new(run),
+            moves: true,
+        }
+    }
+
+    fn step_back(&mut self) {
+        if self.moves {
+            std::hint::black_box((self.run)(Frame::Before));
         }
     }
 }
@@ -117,9 +143,11 @@ impl Report {
         let mut errors = Vec::new();
         let mut slowest = 0.0_f64;
         for method in &mut methods {
+            method.step_back();
             let start = Instant::now();
-            let mut found = (method.run)();
+            let mut found = (method.run)(Frame::Timed);
             slowest = slowest.max(start.elapsed().as_secs_f64());
+            method.step_back();
             found.sort_unstable();
             let missed = truth
                 .iter()
@@ -140,7 +168,8 @@ impl Report {
         for _ in 0..rounds {
             for (method, [warm, cold]) in methods.iter_mut().zip(&mut times) {
                 for turn in 0..TURNS {
-                    let (ms, _) = time(|| std::hint::black_box((method.run)()));
+                    let (ms, _) = time(|| std::hint::black_box((method.run)(Frame::Timed)));
+                    method.step_back();
                     if turn == 0 { &mut *cold } else { &mut *warm }.push(ms);
                 }
             }

@@ -1,6 +1,8 @@
 //! Problems whose fitness costs next to nothing, or ten microseconds.
+#![expect(clippy::disallowed_methods, reason = "a bench asks the time")]
 
 use std::hint::black_box;
+use std::time::Instant;
 
 use satisfice::{SatisficingProblem, Space};
 
@@ -49,39 +51,58 @@ impl SatisficingProblem for Lattice {
     }
 }
 
-/// The lattice, with arithmetic of about ten microseconds before each answer.
-pub(crate) struct Slow(Lattice);
+/// The lattice, with arithmetic of ten microseconds before each answer.
+pub(crate) struct Slow {
+    lattice: Lattice,
+    /// Steps of arithmetic that take ten microseconds on this machine.
+    steps: usize,
+}
 
 impl Slow {
+    /// Finds out how much arithmetic that is: the fastest of some tries, each of about a millisecond.
     pub(crate) fn new() -> Self {
-        Self(Lattice::new())
+        const STEPS: usize = 100_000;
+        let fastest = (0..20).map(|_| {
+            let start = Instant::now();
+            black_box(chain(STEPS));
+            start.elapsed().as_secs_f64()
+        });
+        let seconds = fastest.fold(f64::INFINITY, f64::min).max(1e-6);
+        Self {
+            lattice: Lattice::new(),
+            steps: (10e-6 / seconds * STEPS as f64) as usize,
+        }
     }
+}
+
+/// A chain of divisions, sums and stores of some nanoseconds each, which is always 0.
+fn chain(steps: usize) -> f64 {
+    let mut x = 1.0_f64;
+    for _ in 0..steps {
+        x = black_box(1.0 + 1.0 / x);
+    }
+    0.0 * x
 }
 
 impl SatisficingProblem for Slow {
     type Scalar = f64;
     type Solution = (u32, u32);
     fn space(&self) -> &Space<f64> {
-        self.0.space()
+        self.lattice.space()
     }
     fn decode(&self, values: &[f64]) -> (u32, u32) {
-        self.0.decode(values)
+        self.lattice.decode(values)
     }
     fn fitness(&self, solution: &(u32, u32)) -> f64 {
-        let mut x = 1.0_f64;
-        for _ in 0..1000 {
-            // A chain of divisions, sums and stores of some 10 ns each.
-            x = black_box(1.0 + 1.0 / x);
-        }
-        self.0.fitness(solution) + 0.0 * x
+        self.lattice.fitness(solution) + chain(self.steps)
     }
     fn threshold(&self) -> f64 {
-        self.0.threshold()
+        self.lattice.threshold()
     }
     fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
-        self.0.encode(solution, values)
+        self.lattice.encode(solution, values)
     }
     fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        self.0.neighbours(of, visit)
+        self.lattice.neighbours(of, visit)
     }
 }

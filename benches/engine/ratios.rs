@@ -130,7 +130,8 @@ pub(crate) fn run(full: bool) {
         "One thread and two, a fitness of ten microseconds",
         "two are faster by",
     );
-    table.rounds = if full { 15 } else { 1 };
+    table.rounds = if full { 25 } else { 1 };
+    let slow = Slow::new();
     for (engine, settings) in [
         ("random", &[("batch", "64")][..]),
         ("qpso", &[("particles", "64"), ("batch", "64")]),
@@ -145,8 +146,8 @@ pub(crate) fn run(full: bool) {
         table.row(
             4 * 4096,
             [
-                (&two, &mut || on_threads(engine, settings, 2)),
-                (&one, &mut || on_threads(engine, settings, 1)),
+                (&two, &mut || on_threads(&slow, engine, settings, 2)),
+                (&one, &mut || on_threads(&slow, engine, settings, 1)),
             ],
             false,
         );
@@ -232,12 +233,12 @@ fn overshoots(table: &mut Table, full: bool) {
     }
 }
 
-fn on_threads(name: &str, settings: &[(&str, &str)], threads: usize) {
+fn on_threads(slow: &Slow, name: &str, settings: &[(&str, &str)], threads: usize) {
     let engine = engine::find(name)
         .unwrap()
         .build(settings.iter().copied())
         .unwrap();
     let mut search = Search::new(engine).seed(7).threads(threads);
     let budget = Budget::evaluations(4 * 4096);
-    black_box(search.run(&Slow::new(), &budget).unwrap().hit_count());
+    black_box(search.run(slow, &budget).unwrap().hit_count());
 }

@@ -109,6 +109,7 @@ pub(crate) struct Fit {
     shortened: f32,
     /// Calls since then.
     age: u32,
+    sample: Vec<usize>,
 }
 
 /// Calls after which another sample is taken.
@@ -133,12 +134,9 @@ impl Fit {
             if is_alike && self.age < FRESH {
                 self.age += 1;
             } else {
-                *self = Self {
-                    points: n,
-                    reach,
-                    shortened: shortened(parts, n, min, max, edge, reach),
-                    age: 0,
-                };
+                let crowd = |cells: &Cells| crowd(parts, n, cells, &mut self.sample);
+                self.shortened = shortened(crowd, min, max, edge, reach);
+                (self.points, self.reach, self.age) = (n, reach, 0);
             }
             edge = greater(edge * self.shortened, reach);
         }
@@ -147,10 +145,16 @@ impl Fit {
 }
 
 /// Points on surfaces fill few cells; a sample tells how many share one, and by what factor the edge is to be shortened.
-fn shortened(parts: &[Part], n: usize, min: [f32; 3], max: [f32; 3], longest: f32, reach: f32) -> f32 {
+fn shortened(
+    mut crowd: impl FnMut(&Cells) -> f32,
+    min: [f32; 3],
+    max: [f32; 3],
+    longest: f32,
+    reach: f32,
+) -> f32 {
     let mut edge = longest;
     for _ in 0..3 {
-        let crowd = crowd(parts, n, &Cells::new(min, max, edge, usize::MAX));
+        let crowd = crowd(&Cells::new(min, max, edge, usize::MAX));
         if crowd < 2.0 * OCCUPANCY || edge <= reach {
             break;
         }
@@ -160,10 +164,11 @@ fn shortened(parts: &[Part], n: usize, min: [f32; 3], max: [f32; 3], longest: f3
 }
 
 /// How many points, on average over the points, share a point's cell, estimated from a sample.
-fn crowd(parts: &[Part], n: usize, cells: &Cells) -> f32 {
+fn crowd(parts: &[Part], n: usize, cells: &Cells, sample: &mut Vec<usize>) -> f32 {
     let stride = n.div_ceil(SAMPLE);
     let points = parts.iter().flat_map(|part| part.points.iter().step_by(stride));
-    let mut sample: Vec<usize> = points.map(|point| cells.index(&point.q)).collect();
+    sample.clear();
+    sample.extend(points.map(|point| cells.index(&point.q)));
     sample.sort_unstable();
     let pairs: usize = sample
         .chunk_by(|a, b| a == b)

@@ -52,23 +52,23 @@ impl Groups {
         self.starts[rank as usize].store(group, Ordering::Relaxed);
     }
 
-    /// Writes the pairs that the tasks found, a rank and a serial number, in order.
+    /// Writes the pairs that so many tasks found, a rank and a serial number, in order.
     pub(crate) fn gather<'p>(
         &mut self,
-        tasks: impl Iterator<Item = &'p [Pair]>,
+        tasks: usize,
+        found: impl Fn(usize) -> &'p [Pair] + Sync,
         out: &mut Vec<Pair>,
         threads: usize,
     ) {
         out.clear();
-        let tasks: Vec<_> = tasks.collect();
-        out.reserve(tasks.iter().map(|found| found.len()).sum());
+        out.reserve((0..tasks).map(|task| found(task).len()).sum());
         let Self { ids, starts, chunks } = self;
         let gather = |ids: &[u32], starts: &[AtomicU64], out: &mut Vec<Pair>| {
             for (&a, start) in ids.iter().zip(starts) {
                 let group = start.load(Ordering::Relaxed);
                 let count = group >> PLACE_BITS & MANY;
                 if count > 0 {
-                    let task = tasks[(group >> (PLACE_BITS + COUNT_BITS)) as usize];
+                    let task = found((group >> (PLACE_BITS + COUNT_BITS)) as usize);
                     let place = (group & ((1 << PLACE_BITS) - 1)) as usize;
                     append(&task[place..], count, a, out);
                 }

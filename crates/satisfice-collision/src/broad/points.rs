@@ -9,7 +9,7 @@ use super::join::{Clump, Join, Scratch};
 use super::lanes::dispatch;
 use super::overlap;
 use super::pair::Pair;
-use super::sieve::sieve;
+use super::sieve::Sieve;
 use super::sorting::Sorter;
 use super::watch::Watch;
 use crate::distance::Threshold;
@@ -54,6 +54,7 @@ pub struct PointGrid {
     threads: usize,
     runs: [Runs; 2],
     parts: [Vec<Part>; 2],
+    sieve: Sieve,
     fit: Fit,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
@@ -215,11 +216,13 @@ impl PointGrid {
             self.work.tests += self.tasks[task].tests;
             self.work.in_band += self.tasks[task].in_band;
         }
-        let found = self.tasks[..tasks].iter().map(|task| task.found.as_slice());
+        let found = &self.tasks[..tasks];
         if ONE_BODY {
+            let found = found.iter().map(|task| task.found.as_slice());
             self.sorter.sort(found, &mut self.pairs, self.threads);
         } else {
-            self.groups.gather(found, &mut self.pairs, self.threads);
+            let found = |task: usize| found[task].found.as_slice();
+            self.groups.gather(tasks, found, &mut self.pairs, self.threads);
         }
         Ok(())
     }
@@ -234,6 +237,7 @@ impl PointGrid {
         let Self {
             runs: [runs_a, runs_b],
             parts: [parts_a, parts_b],
+            sieve,
             threads,
             ..
         } = self;
@@ -265,7 +269,8 @@ impl PointGrid {
             || clip(a, &*runs_a, &regions[0], parts_a),
             || clip(b, &*runs_b, &regions[1], parts_b),
         );
-        self.work.lonely = sieve(parts_a, parts_b, frame.filter(threshold.get()).reach, *threads) as u64;
+        let reach = frame.filter(threshold.get()).reach;
+        self.work.lonely = sieve.sieve(parts_a, parts_b, reach, *threads) as u64;
         Some(*frame)
     }
 

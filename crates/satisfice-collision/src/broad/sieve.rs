@@ -1,81 +1,127 @@
 //! Points without a partner nearby are dropped before they are sorted: a coarse bitmap of where the other body is.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use super::cells::whole;
 use super::clip::{Part, Placed, greater, lesser};
 
 /// Cells along an axis: a row is one word, the whole bitmap fits into the first-level cache.
 const SIDE: usize = 64;
+const ROWS: usize = SIDE * SIDE;
 /// Fewer points than this are sorted faster than sieved.
 const WORTH: usize = 1 << 15;
 /// Points that tell whether the other body fills the overlap, so that a sieve would hold nothing back: uniform points of this
 /// number are near to half of the cells.
 const SAMPLE: usize = 1 << 13;
 
-/// Drops the points of either body that have no cell of the other's nearby. Returns how many.
-pub(crate) fn sieve(a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
-    let count = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
-    let before = count(a) + count(b);
-    if before < WORTH || count(a) == 0 || count(b) == 0 {
-        return 0;
-    }
-    let grid = Grid::new(&a.iter().chain(b.iter()), reach);
-    let step = count(a).div_ceil(SAMPLE);
-    let mut sample = Bitmap::new();
-    for part in a.iter() {
-        part.points
-            .iter()
-            .step_by(step)
-            .for_each(|point| sample.mark(&grid, point));
-    }
-    if sample.near().filled() > SIDE * SIDE * SIDE / 4 {
-        return 0;
-    }
-    let near_a = mark(a, &grid, threads).near();
-    keep(b, &grid, &near_a, threads);
-    let near_b = mark(b, &grid, threads).near();
-    keep(a, &grid, &near_b, threads);
-    before - count(a) - count(b)
+/// Drops points without a partner nearby. Keeps its memory from call to call.
+#[derive(Debug, Default)]
+pub(crate) struct Sieve {
+    grid: Grid,
+    /// Where one body is; atomic, because several threads mark it.
+    marks: Vec<AtomicU64>,
+    /// What is near to that.
+    near: Vec<u64>,
+    spare: Vec<u64>,
 }
 
-fn mark(parts: &[Part], grid: &Grid, threads: usize) -> Bitmap {
-    let mark = |parts: &[Part]| {
-        let mut bitmap = Bitmap::new();
-        for part in parts {
-            part.points.iter().for_each(|point| bitmap.mark(grid, point));
+impl Sieve {
+    /// Drops the points of either body that have no cell of the other's nearby. Returns how many.
+    pub(crate) fn sieve(&mut self, a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
+        let count = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
+        let before = count(a) + count(b);
+        if before < WORTH || count(a) == 0 || count(b) == 0 {
+            return 0;
         }
-        bitmap
-    };
-    if threads < 2 {
-        return mark(parts);
+        self.grid = Grid::new(&a.iter().chain(b.iter()), reach);
+        self.clear();
+        let step = count(a).div_ceil(SAMPLE);
+        for part in &*a {
+            part.points.iter().step_by(step).for_each(|point| self.mark(point));
+        }
+        self.widen();
+        if self.near.iter().map(|row| row.count_ones() as usize).sum::<usize>() > ROWS * SIDE / 4 {
+            return 0;
+        }
+        self.mark_all(a, threads);
+        self.keep(b, threads);
+        self.clear();
+        self.mark_all(b, threads);
+        self.keep(a, threads);
+        before - count(a) - count(b)
     }
-    use rayon::prelude::*;
-    // a bitmap a thread, not a part
-    parts
-        .par_chunks(parts.len().div_ceil(threads))
-        .map(mark)
-        .reduce(Bitmap::new, |all, part| all.or(&part))
-}
 
-fn keep(parts: &mut [Part], grid: &Grid, near: &Bitmap, threads: usize) {
-    let one = |part: &mut Part| {
-        let mut len = 0;
-        for at in 0..part.points.len() {
-            let point = part.points[at];
-            part.points[len] = point;
-            len += usize::from(near.holds(grid, &point));
+    fn clear(&mut self) {
+        self.marks.resize_with(ROWS, AtomicU64::default);
+        self.marks.iter_mut().for_each(|row| *row.get_mut() = 0);
+    }
+
+    /// Most points lie where others do, and then nothing is written that other threads would have to read again.
+    #[inline(always)]
+    fn mark(&self, point: &Placed) {
+        let (row, bit) = self.grid.cell(point);
+        let row = &self.marks[row];
+        if row.load(Ordering::Relaxed) >> bit & 1 == 0 {
+            // whoever reads it has joined the threads
+            row.fetch_or(1 << bit, Ordering::Relaxed);
         }
-        part.points.truncate(len);
-        part.measure();
-    };
-    if threads < 2 {
-        parts.iter_mut().for_each(one);
-    } else {
-        use rayon::prelude::*;
-        parts.par_iter_mut().for_each(one);
+    }
+
+    fn mark_all(&mut self, parts: &[Part], threads: usize) {
+        let mark = |part: &Part| part.points.iter().for_each(|point| self.mark(point));
+        if threads < 2 {
+            parts.iter().for_each(mark);
+        } else {
+            use rayon::prelude::*;
+            parts.par_iter().for_each(mark);
+        }
+        self.widen();
+    }
+
+    /// Enters as near every marked cell and those adjacent to it, corners included.
+    fn widen(&mut self) {
+        let Self { marks, near, spare, .. } = self;
+        near.clear();
+        near.extend(marks.iter_mut().map(|row| *row.get_mut()));
+        near.iter_mut().for_each(|row| *row |= *row << 1 | *row >> 1);
+        for stride in [1, SIDE] {
+            spare.clone_from(near);
+            for (at, row) in near.iter_mut().enumerate() {
+                let along = at / stride % SIDE;
+                if along > 0 {
+                    *row |= spare[at - stride];
+                }
+                if along + 1 < SIDE {
+                    *row |= spare[at + stride];
+                }
+            }
+        }
+    }
+
+    /// Drops the points that are not near, and measures what is left.
+    fn keep(&self, parts: &mut [Part], threads: usize) {
+        let one = |part: &mut Part| {
+            let mut len = 0;
+            for at in 0..part.points.len() {
+                let point = part.points[at];
+                part.points[len] = point;
+                let (row, bit) = self.grid.cell(&point);
+                len += (self.near[row] >> bit & 1) as usize;
+            }
+            part.points.truncate(len);
+            part.measure();
+        };
+        if threads < 2 {
+            parts.iter_mut().for_each(one);
+        } else {
+            use rayon::prelude::*;
+            parts.par_iter_mut().for_each(one);
+        }
     }
 }
 
 /// Cells wider than a reach, so that partners lie in the same or in adjacent cells.
+#[derive(Debug, Default)]
 struct Grid {
     lower: [f32; 3],
     inverse: [f32; 3],
@@ -96,60 +142,69 @@ impl Grid {
         Self { lower, inverse }
     }
 
+    /// The row of a point and its bit there.
     #[inline(always)]
-    fn cell(&self, point: &Placed) -> [usize; 3] {
-        std::array::from_fn(|k| whole((point.q[k] - self.lower[k]) * self.inverse[k], (SIDE - 1) as f32))
+    fn cell(&self, point: &Placed) -> (usize, usize) {
+        let cell = |k: usize| {
+            whole(
+                (point.q[k] - self.lower[k]) * self.inverse[k],
+                (SIDE - 1) as f32,
+            )
+        };
+        (cell(2) * SIDE + cell(1), cell(0))
     }
 }
 
-/// A bit a cell, a word a row.
-struct Bitmap(Box<[u64; SIDE * SIDE]>);
+#[cfg(test)]
+mod tests {
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-impl Bitmap {
-    fn new() -> Self {
-        Self(Box::new([0; SIDE * SIDE]))
-    }
+    use super::*;
 
-    #[inline(always)]
-    fn mark(&mut self, grid: &Grid, point: &Placed) {
-        let [x, y, z] = grid.cell(point);
-        self.0[z * SIDE + y] |= 1 << x;
-    }
-
-    #[inline(always)]
-    fn holds(&self, grid: &Grid, point: &Placed) -> bool {
-        let [x, y, z] = grid.cell(point);
-        self.0[z * SIDE + y] >> x & 1 == 1
-    }
-
-    fn or(mut self, other: &Self) -> Self {
-        self.0
-            .iter_mut()
-            .zip(other.0.iter())
-            .for_each(|(to, from)| *to |= from);
-        self
-    }
-
-    fn filled(&self) -> usize {
-        self.0.iter().map(|row| row.count_ones() as usize).sum()
-    }
-
-    /// Every marked cell and those adjacent to it, corners included.
-    fn near(&self) -> Self {
-        let mut wide = self.0.clone();
-        wide.iter_mut().for_each(|row| *row |= *row << 1 | *row >> 1);
-        for stride in [1, SIDE] {
-            let narrow = wide.clone();
-            for (at, row) in wide.iter_mut().enumerate() {
-                let along = at / stride % SIDE;
-                if along > 0 {
-                    *row |= narrow[at - stride];
-                }
-                if along + 1 < SIDE {
-                    *row |= narrow[at + stride];
-                }
-            }
-        }
-        Self(wide)
+    /// Two thin slabs that cross: what is kept is what has a point of the other in the same or an adjacent cell.
+    #[test]
+    fn keeps_whoever_has_a_partner_in_an_adjacent_cell() {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(5);
+        let mut body = |flat: usize| {
+            let point = |id| {
+                let mut q = [(); 3].map(|()| (rng.next_u32() >> 8) as f32 / (1 << 24) as f32);
+                q[flat] = 0.5 + 0.01 * q[flat];
+                Placed { q, id }
+            };
+            let mut part = Part {
+                points: (0..20_000).map(point).collect(),
+                ..Part::default()
+            };
+            part.measure();
+            part
+        };
+        let whole = [body(0), body(1)];
+        let copy = |part: &Part| Part {
+            points: part.points.clone(),
+            ..*part
+        };
+        let [mut a, mut b] = [0, 1].map(|body| [copy(&whole[body])]);
+        let mut sieve = Sieve::default();
+        let dropped = sieve.sieve(&mut a, &mut b, 0.01, 1);
+        let cells = |part: &Part| {
+            let cells = part.points.iter().map(|point| sieve.grid.cell(point));
+            cells.map(|(row, x)| [x, row % SIDE, row / SIDE]).collect::<Vec<_>>()
+        };
+        let [cells_a, cells_b] = [0, 1].map(|body| cells(&whole[body]));
+        let wanted = |own: &[[usize; 3]], others: &[[usize; 3]]| {
+            let others: std::collections::BTreeSet<_> = others.iter().collect();
+            let near = |cell: &[usize; 3]| {
+                let around = |k: usize| cell[k].saturating_sub(1)..=cell[k] + 1;
+                around(0).any(|x| around(1).any(|y| around(2).any(|z| others.contains(&[x, y, z]))))
+            };
+            let kept = (0_u32..).zip(own).filter(|(_, cell)| near(cell));
+            kept.map(|(id, _)| id).collect::<Vec<_>>()
+        };
+        let ids = |part: &Part| part.points.iter().map(|point| point.id).collect::<Vec<_>>();
+        assert_eq!(ids(&a[0]), wanted(&cells_a, &cells_b));
+        assert_eq!(ids(&b[0]), wanted(&cells_b, &cells_a));
+        assert_eq!(dropped, 40_000 - a[0].points.len() - b[0].points.len());
+        assert!(dropped > 10_000, "{dropped}");
     }
 }

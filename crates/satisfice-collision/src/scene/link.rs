@@ -247,7 +247,9 @@ impl Scene {
             self.links[at].kept.found(pairs.len(), one.vertices.len());
             let pairs = if filters(one, two, a == b) {
                 let keeps = |pair: &Pair| keeps(self.kind, one, two, a == b, *pair, &near);
-                pairs.iter().copied().filter(keeps).collect()
+                let mut kept = Vec::with_capacity(pairs.len());
+                kept.extend(pairs.iter().copied().filter(keeps));
+                kept
             } else {
                 pairs.to_vec()
             };

@@ -1,0 +1,151 @@
+//! After the first frames of a motion nothing allocates: counted by an allocator.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use core::cell::Cell;
+use std::alloc::{GlobalAlloc, Layout, System};
+
+use satisfice_collision::broad::{FeatureKind, FeatureTree, PointGrid, TreeJoin};
+use satisfice_collision::distance::{PairKind, Threshold};
+use satisfice_collision::scene::{Body, Scene};
+use satisfice_collision::{Mesh, Placement, generate};
+
+std::thread_local! {
+    /// Of this thread, so that tests beside this one are not counted.
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+fn count() {
+    // A thread that is going away has nothing left to count with.
+    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+}
+
+#[expect(unsafe_code, reason = "an allocator cannot be written without")]
+// SAFETY: every call is handed to the system's allocator unchanged, whose contract is the caller's; counting does not
+// allocate, for the counter is a constant and needs no destructor.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of each of some frames, after a motion has gone to and fro some times. `frame` gets 0 and 1 in turn.
+fn allocations(mut frame: impl FnMut(usize)) -> Vec<u64> {
+    // on this thread alone: a pool's queue grows now and then
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread();
+    let _ = pool.build_global(); // the first test has built it for all
+    (0..20).for_each(|n| frame(n % 2));
+    let of = |n: usize| {
+        let before = ALLOCATIONS.get();
+        frame(n % 2);
+        ALLOCATIONS.get() - before
+    };
+    (20..60).map(of).collect()
+}
+
+/// Two teapots, the spout of one through the handle of the other, in two places: so many points that all is used that is made
+/// for many.
+fn teapots() -> (Mesh, [Placement; 2]) {
+    let pot = generate::teapot(40).unwrap();
+    let places = [4.5, 4.49].map(|by| Placement::from_translation([by, 0.0, 0.0]).unwrap());
+    (pot, places)
+}
+
+fn threshold() -> Threshold {
+    Threshold::new(0.05).unwrap()
+}
+
+#[test]
+fn grids_allocate_nothing() {
+    // so many that the sieve is used
+    let ball = generate::icosphere(1.0, 6).unwrap();
+    let frames = [0.3, 0.31].map(|by| {
+        let place = Placement::from_translation([by, 0.0, 0.0]).unwrap();
+        place.place(&ball).unwrap()
+    });
+    let mut grid = PointGrid::new();
+    let between = allocations(|n| {
+        let pairs = grid.between(ball.vertices(), frames[n].vertices(), threshold());
+        assert!(pairs.unwrap().len() > 1000);
+        assert!(grid.work().lonely > 1000);
+    });
+    let mut grid = PointGrid::new();
+    let within = allocations(|n| {
+        let pairs = grid.within(frames[n].vertices(), threshold()).unwrap();
+        assert!(pairs.len() > 1000);
+    });
+    assert_eq!([between, within], [vec![0; 40], vec![0; 40]]);
+}
+
+#[test]
+fn trees_allocate_nothing() {
+    let (pot, places) = teapots();
+    let frames = places.map(|place| place.place(&pot).unwrap());
+    let rest = &Placement::IDENTITY;
+    for kind in [FeatureKind::Vertex, FeatureKind::Edge, FeatureKind::Triangle] {
+        let fixed = FeatureTree::new(&pot, kind);
+        let mut tree = FeatureTree::new(&pot, kind);
+        let mut join = TreeJoin::new();
+        let between = allocations(|n| {
+            tree.refit(frames[n].vertices()).unwrap();
+            let pairs = join.between((&fixed, rest), (&tree, rest), threshold(), None);
+            assert!(pairs.unwrap().len() > 1000);
+        });
+        assert_eq!(between, [0; 40], "{kind:?}");
+    }
+    let mut tree = FeatureTree::new(&pot, FeatureKind::Vertex);
+    let mut join = TreeJoin::new();
+    let within = allocations(|n| {
+        tree.refit(frames[n].vertices()).unwrap();
+        assert!(join.within(&tree, threshold(), None).len() > 1000);
+    });
+    assert_eq!(within, [0; 40]);
+}
+
+/// What a scene answers is the caller's: some lists a frame, however long they are.
+#[test]
+fn scenes_allocate_their_answers_only() {
+    let (pot, places) = teapots();
+    let frames = places.map(|place| place.place(&pot).unwrap());
+    for (kind, is_rigid) in [
+        (PairKind::VertexVertex, true),
+        (PairKind::VertexVertex, false),
+        (PairKind::TriangleTriangle, true),
+    ] {
+        let mut scene = Scene::new(kind, threshold());
+        scene.add(Body::fixed(pot.clone()));
+        let body = match is_rigid {
+            true => Body::rigid(pot.clone()),
+            false => Body::deforming(pot.clone()),
+        };
+        let body = scene.add(body);
+        let counts = allocations(|n| {
+            match is_rigid {
+                true => scene.place(body, places[n]).unwrap(),
+                false => scene.deform(body, frames[n].vertices()).unwrap(),
+            }
+            assert!(scene.contacts().unwrap().contacts.len() > 1000);
+        });
+        // now and then a list of neighbours is made anew
+        let more = counts.iter().filter(|&&count| count > 12).count();
+        assert!(more <= 2, "{kind}, rigid: {is_rigid}: {counts:?}");
+    }
+}
