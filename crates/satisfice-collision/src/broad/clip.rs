@@ -1,7 +1,5 @@
 //! What of a body can have a partner: boxes of runs of points, and the points inside a region brought into a frame.
 
-use std::ops::Range;
-
 use super::frame::Frame;
 use super::lanes::{Lanes, Work, dispatch};
 use crate::{Aabb, Error};
@@ -61,6 +59,13 @@ impl Runs {
     /// The box of each run.
     pub(crate) fn boxes(&self) -> &[Aabb] {
         &self.boxes
+    }
+
+    /// Lists the runs that reach into a region, ascending.
+    pub(crate) fn inside(&self, region: &Aabb, list: &mut Vec<u32>) {
+        list.clear();
+        let runs = (0..).zip(&self.boxes);
+        list.extend(runs.filter_map(|(run, bounds)| intersection(bounds, region).map(|_| run)));
     }
 }
 
@@ -208,6 +213,8 @@ impl Work for MeasurePart<'_> {
 pub(crate) struct Clip<'a> {
     pub(crate) points: &'a [[f64; 3]],
     pub(crate) runs: &'a Runs,
+    /// Every run that reaches into the region.
+    pub(crate) inside: &'a [u32],
     pub(crate) region: &'a Aabb,
     pub(crate) frame: &'a Frame,
 }
@@ -215,7 +222,7 @@ pub(crate) struct Clip<'a> {
 impl Clip<'_> {
     /// Places the points inside the region, in their order, in parts if there are threads for it.
     pub(crate) fn place(&self, parts: &mut Vec<Part>, threads: usize) {
-        let runs = self.runs.boxes.len();
+        let runs = self.inside.len();
         let count = if threads < 2 {
             1
         } else {
@@ -223,7 +230,10 @@ impl Clip<'_> {
         };
         parts.resize_with(count, Part::default);
         let one = |(part, to): (usize, &mut Part)| {
-            self.part(runs * part / count..runs * (part + 1) / count, to);
+            self.part(
+                &self.inside[runs * part / count..runs * (part + 1) / count],
+                to,
+            );
         };
         if count == 1 {
             one((0, &mut parts[0]));
@@ -233,7 +243,7 @@ impl Clip<'_> {
         }
     }
 
-    fn part(&self, runs: Range<usize>, to: &mut Part) {
+    fn part(&self, runs: &[u32], to: &mut Part) {
         to.points.clear();
         dispatch(Placing {
             clip: self,
@@ -247,7 +257,7 @@ impl Clip<'_> {
 /// The runs of a part being placed.
 struct Placing<'a> {
     clip: &'a Clip<'a>,
-    runs: Range<usize>,
+    runs: &'a [u32],
     to: &'a mut Vec<Placed>,
 }
 
@@ -261,14 +271,13 @@ impl Work for Placing<'_> {
             runs: Runs { boxes, .. },
             region,
             frame,
+            ..
         } = *self.clip;
         let (min, max, origin) = (wide(region.min), wide(region.max), wide(frame.origin));
         let axes = frame.axes();
-        for run in self.runs {
+        for &run in self.runs {
+            let run = run as usize;
             let bounds = &boxes[run];
-            if intersection(bounds, region).is_none() {
-                continue;
-            }
             let all = region.contains(bounds.min) && region.contains(bounds.max);
             let (first, last) = (run * RUN, points.len().min((run + 1) * RUN));
             // always written, kept by moving the end

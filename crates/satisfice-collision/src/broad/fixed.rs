@@ -102,10 +102,12 @@ impl FixedGrid {
         };
         let region = inflate(&bounds, threshold.get());
         let frame = Frame::for_threshold(&region, threshold.get());
-        let mut parts = Vec::new();
+        let (mut parts, mut inside) = (Vec::new(), Vec::new());
+        runs.inside(&region, &mut inside);
         Clip {
             points,
             runs: &runs,
+            inside: &inside,
             region: &region,
             frame: &frame,
         }

@@ -3,18 +3,31 @@
 use super::clip::{Runs, inflate, intersection, union};
 use crate::Aabb;
 
-/// For each body the region in which its points can be within `delta` of the other's; `None` if the bodies are apart.
-pub(crate) fn regions(a: &Runs, b: &Runs, delta: f64) -> Option<[Aabb; 2]> {
-    let mut regions = [b.whole()?, a.whole()?].map(|whole| inflate(&whole, delta));
-    intersection(&a.whole()?, &regions[0])?;
-    // what is left of one body, run by run, tightens the region of the other
-    for body in [0, 1, 0] {
-        let parts = [a, b][body]
-            .boxes()
-            .iter()
-            .filter_map(|bounds| intersection(bounds, &regions[body]));
-        let left = parts.reduce(|left, part| union(&left, &part))?;
-        regions[1 - body] = intersection(&regions[1 - body], &inflate(&left, delta))?;
+/// What of two bodies can have partners in the other. Keeps its memory from call to call.
+#[derive(Debug, Default)]
+pub(crate) struct Overlap {
+    /// The runs of each body that reach into its region, ascending: often neighbours, so that work is shared out by these and
+    /// not by all.
+    pub(crate) runs: [Vec<u32>; 2],
+}
+
+impl Overlap {
+    /// For each body the region in which its points can be within `delta` of the other's; `None` if the bodies are apart.
+    pub(crate) fn find(&mut self, a: &Runs, b: &Runs, delta: f64) -> Option<[Aabb; 2]> {
+        let mut regions = [b.whole()?, a.whole()?].map(|whole| inflate(&whole, delta));
+        intersection(&a.whole()?, &regions[0])?;
+        // what is left of one body, run by run, tightens the region of the other
+        for body in [0, 1, 0] {
+            let (runs, list) = ([a, b][body], &mut self.runs[body]);
+            runs.inside(&regions[body], list);
+            let bounds = |&run: &u32| intersection(&runs.boxes()[run as usize], &regions[body]);
+            let left = list.iter().filter_map(bounds);
+            let left = left.reduce(|left, part| union(&left, &part))?;
+            regions[1 - body] = intersection(&regions[1 - body], &inflate(&left, delta))?;
+        }
+        // that of the second body has become smaller since
+        let [_, list] = &mut self.runs;
+        list.retain(|&run| intersection(&b.boxes()[run as usize], &regions[1]).is_some());
+        Some(regions)
     }
-    Some(regions)
 }

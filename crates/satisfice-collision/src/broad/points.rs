@@ -7,7 +7,7 @@ use super::frame::{Filter, Frame};
 use super::groups::Groups;
 use super::join::{Clump, Join, Scratch};
 use super::lanes::dispatch;
-use super::overlap;
+use super::overlap::Overlap;
 use super::pair::Pair;
 use super::sieve::Sieve;
 use super::sorting::Sorter;
@@ -53,6 +53,7 @@ pub struct PointWork {
 pub struct PointGrid {
     threads: usize,
     runs: [Runs; 2],
+    overlap: Overlap,
     parts: [Vec<Part>; 2],
     sieve: Sieve,
     fit: Fit,
@@ -236,6 +237,7 @@ impl PointGrid {
     ) -> Option<Frame> {
         let Self {
             runs: [runs_a, runs_b],
+            overlap,
             parts: [parts_a, parts_b],
             sieve,
             threads,
@@ -244,21 +246,26 @@ impl PointGrid {
         if ONE_BODY {
             let region = &runs_a.whole()?;
             let frame = &Frame::for_threshold(region, threshold.get());
+            let [inside, _] = &mut overlap.runs;
+            runs_a.inside(region, inside);
             Clip {
                 points: a,
                 runs: runs_a,
+                inside,
                 region,
                 frame,
             }
             .place(parts_a, *threads);
             return Some(*frame);
         }
-        let regions = overlap::regions(runs_a, runs_b, threshold.get())?;
+        let regions = overlap.find(runs_a, runs_b, threshold.get())?;
+        let [inside_a, inside_b] = &overlap.runs;
         let frame = &Frame::for_threshold(&union(&regions[0], &regions[1]), threshold.get());
-        let clip = |points, runs, region, parts: &mut Vec<Part>| {
+        let clip = |points, runs, inside, region, parts: &mut Vec<Part>| {
             Clip {
                 points,
                 runs,
+                inside,
                 region,
                 frame,
             }
@@ -266,8 +273,8 @@ impl PointGrid {
         };
         both(
             *threads > 1 && a.len() + b.len() >= SHARED,
-            || clip(a, &*runs_a, &regions[0], parts_a),
-            || clip(b, &*runs_b, &regions[1], parts_b),
+            || clip(a, &*runs_a, inside_a, &regions[0], parts_a),
+            || clip(b, &*runs_b, inside_b, &regions[1], parts_b),
         );
         let reach = frame.filter(threshold.get()).reach;
         self.work.lonely = sieve.sieve(parts_a, parts_b, reach, *threads) as u64;

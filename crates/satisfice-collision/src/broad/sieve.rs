@@ -84,18 +84,14 @@ impl Sieve {
         near.clear();
         near.extend(marks.iter_mut().map(|row| *row.get_mut()));
         near.iter_mut().for_each(|row| *row |= *row << 1 | *row >> 1);
-        for stride in [1, SIDE] {
-            spare.clone_from(near);
-            for (at, row) in near.iter_mut().enumerate() {
-                let along = at / stride % SIDE;
-                if along > 0 {
-                    *row |= spare[at - stride];
-                }
-                if along + 1 < SIDE {
-                    *row |= spare[at + stride];
-                }
-            }
+        spare.clone_from(near);
+        for (wide, rows) in near.chunks_exact_mut(SIDE).zip(spare.chunks_exact(SIDE)) {
+            add(&mut wide[1..], rows);
+            add(wide, &rows[1..]);
         }
+        spare.clone_from(near);
+        add(&mut near[SIDE..], spare);
+        add(near, &spare[SIDE..]);
     }
 
     /// Drops the points that are not near, and measures what is left.
@@ -118,6 +114,11 @@ impl Sieve {
             parts.par_iter_mut().for_each(one);
         }
     }
+}
+
+/// Marks what is marked in as many of the other rows as there are.
+fn add(rows: &mut [u64], others: &[u64]) {
+    rows.iter_mut().zip(others).for_each(|(row, other)| *row |= other);
 }
 
 /// Cells wider than a reach, so that partners lie in the same or in adjacent cells.
