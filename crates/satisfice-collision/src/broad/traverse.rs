@@ -28,6 +28,9 @@ pub(crate) trait Candidates {
     }
 }
 
+/// Of a group with itself: each pair of different lanes once.
+const DIFFERENT: u64 = 0x0080_c0e0_f0f8_fcfe;
+
 /// Two trees and how they lie.
 #[derive(Clone, Copy)]
 pub(crate) struct Trees<'a> {
@@ -63,7 +66,7 @@ impl Trees<'_> {
         if self.one_body && at.a == at.b && at.level_a == at.level_b {
             // each pair of children once, and a child with itself for its descendants; but no item with itself
             wanted &= if at.level_a == 0 {
-                0x0080_c0e0_f0f8_fcfe
+                DIFFERENT
             } else {
                 0x80c0_e0f0_f8fc_feff
             };
@@ -94,34 +97,36 @@ impl<C: Candidates> Work for Descend<'_, C> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> u64 {
         let mut visits = 0;
+        let room = &mut [Leaf::default(); 64];
         while visits < self.most as u64
             && !self.visit.enough()
             && let Some(at) = self.stack.pop()
         {
             visits += 1;
             if at.level_a == 0 && at.level_b == 0 {
-                leaf(lanes, self.trees, at, self.visit);
+                let one = Leaf {
+                    near: near_in_leaf(lanes, self.trees, at, self.visit),
+                    a: at.a,
+                    b: at.b,
+                };
+                deliver(self.trees, one, self.visit);
                 continue;
             }
             let mut near = boxes_within(lanes, self.trees, at) & self.trees.wanted(at);
             // the taller tree alone, if their heights differ
             match at.level_a.cmp(&at.level_b) {
+                Ordering::Equal if at.level_a == 1 => {
+                    visits += leaves(lanes, self.trees, at, near, room, self.visit, self.stack);
+                }
                 Ordering::Equal => {
                     while near != 0 {
                         let (i, j) = next(&mut near);
-                        let below = Visit {
+                        self.stack.push(Visit {
                             level_a: at.level_a - 1,
                             level_b: at.level_b - 1,
                             a: at.a * 8 + i as u32,
                             b: at.b * 8 + j as u32,
-                        };
-                        // leaves at once, without the way over the stack
-                        if below.level_a == 0 && !self.visit.enough() {
-                            visits += 1;
-                            leaf(lanes, self.trees, below, self.visit);
-                        } else {
-                            self.stack.push(below);
-                        }
+                        });
                     }
                 }
                 Ordering::Greater => {
@@ -149,6 +154,53 @@ impl<C: Candidates> Work for Descend<'_, C> {
     }
 }
 
+/// A group of items of one tree against a group of the other: which of them are near.
+#[derive(Debug, Clone, Copy, Default)]
+struct Leaf {
+    near: u64,
+    a: u32,
+    b: u32,
+}
+
+/// Compares the leaves below a visit, those named by `below`, without the way over the stack. Returns how many they are.
+///
+/// First all are compared, then those looked at that have something near: one in several has, which nobody could foretell, and
+/// a wrong guess costs as much as a comparison. `found` is room for them.
+#[inline(always)]
+fn leaves<L: Lanes, C: Candidates>(
+    lanes: L,
+    trees: Trees<'_>,
+    at: Visit,
+    mut below: u64,
+    found: &mut [Leaf; 64],
+    visit: &mut C,
+    stack: &mut Vec<Visit>,
+) -> u64 {
+    let visits = u64::from(below.count_ones());
+    let mut count = 0;
+    while below != 0 {
+        let (i, j) = next(&mut below);
+        let (a, b) = (at.a * 8 + i as u32, at.b * 8 + j as u32);
+        let near = near_in_leaf(lanes, trees, Visit { level_a: 0, level_b: 0, a, b }, visit);
+        found[count & 63] = Leaf { near, a, b };
+        count += usize::from(near != 0);
+    }
+    for (n, &leaf) in found.iter().enumerate().take(count) {
+        if visit.enough() {
+            // these wait until somebody wants more
+            stack.extend(found[n..count].iter().map(|&Leaf { a, b, .. }| Visit {
+                level_a: 0,
+                level_b: 0,
+                a,
+                b,
+            }));
+            break;
+        }
+        deliver(trees, leaf, visit);
+    }
+    visits
+}
+
 /// The next pair of lanes of a mask that is not 0, which loses it.
 #[inline(always)]
 fn next(mask: &mut u64) -> (usize, usize) {
@@ -174,27 +226,43 @@ fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
     lanes.boxes_within(lower, upper, &a.lower, &a.upper, trees.filter.limit)
 }
 
+/// Which pairs of items of two leaves are within the threshold, or their boxes are.
 #[inline(always)]
-fn leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit, visit: &mut C) {
+fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit, _: &C) -> u64 {
+    if !C::POINTS {
+        return boxes_within(lanes, trees, at);
+    }
     let Trees { a, b, filter, .. } = trees;
     let mut room = [[0.0; 8]; 3];
-    let (points_a, points_b) = if C::POINTS {
-        (trees.relative.points(a.points(at.a), &mut room), b.points(at.b))
-    } else {
-        (&room, &[[0.0; 8]; 3])
-    };
-    let mut near = if C::POINTS {
-        lanes.all_closer(columns(points_b), points_a, filter.limit)
-    } else {
-        boxes_within(lanes, trees, at)
-    };
+    let points_a = trees.relative.points(a.points(at.a), &mut room);
+    let near = lanes.all_closer(columns(b.points(at.b)), points_a, filter.limit);
+    // no item with itself, which is all that is near in most of these
+    let is_one = trees.one_body && at.a == at.b;
+    near & if is_one { DIFFERENT } else { u64::MAX }
+}
+
+/// Hands over what is near in a leaf and wanted.
+#[inline(always)]
+fn deliver<C: Candidates>(trees: Trees<'_>, Leaf { mut near, a: at_a, b: at_b }: Leaf, visit: &mut C) {
+    let Trees { a, b, filter, .. } = trees;
     if near != 0 {
-        near &= trees.wanted(at);
+        near &= trees.wanted(Visit {
+            level_a: 0,
+            level_b: 0,
+            a: at_a,
+            b: at_b,
+        });
     }
     if near == 0 {
         return;
     }
-    let (ids_a, ids_b) = (&a.order[at.a as usize * 8..], &b.order[at.b as usize * 8..]);
+    let mut room = [[0.0; 8]; 3];
+    let (points_a, points_b) = if C::POINTS {
+        (trees.relative.points(a.points(at_a), &mut room), b.points(at_b))
+    } else {
+        (&room, &[[0.0; 8]; 3])
+    };
+    let (ids_a, ids_b) = (&a.order[at_a as usize * 8..], &b.order[at_b as usize * 8..]);
     while near != 0 {
         let (i, j) = next(&mut near);
         let sure = C::POINTS && {
