@@ -230,10 +230,7 @@ impl Clip<'_> {
         };
         parts.resize_with(count, Part::default);
         let one = |(part, to): (usize, &mut Part)| {
-            self.part(
-                &self.inside[runs * part / count..runs * (part + 1) / count],
-                to,
-            );
+            self.part(&self.inside[runs * part / count..runs * (part + 1) / count], to);
         };
         if count == 1 {
             one((0, &mut parts[0]));

@@ -37,10 +37,19 @@ impl Sieve {
         self.clear();
         let step = count(a).div_ceil(SAMPLE);
         for part in &*a {
-            part.points.iter().step_by(step).for_each(|point| self.mark(point));
+            part.points
+                .iter()
+                .step_by(step)
+                .for_each(|point| self.mark(point));
         }
         self.widen();
-        if self.near.iter().map(|row| row.count_ones() as usize).sum::<usize>() > ROWS * SIDE / 4 {
+        if self
+            .near
+            .iter()
+            .map(|row| row.count_ones() as usize)
+            .sum::<usize>()
+            > ROWS * SIDE / 4
+        {
             return 0;
         }
         self.mark_all(a, threads);
@@ -80,7 +89,9 @@ impl Sieve {
 
     /// Enters as near every marked cell and those adjacent to it, corners included.
     fn widen(&mut self) {
-        let Self { marks, near, spare, .. } = self;
+        let Self {
+            marks, near, spare, ..
+        } = self;
         near.clear();
         near.extend(marks.iter_mut().map(|row| *row.get_mut()));
         near.iter_mut().for_each(|row| *row |= *row << 1 | *row >> 1);
@@ -146,12 +157,7 @@ impl Grid {
     /// The row of a point and its bit there.
     #[inline(always)]
     fn cell(&self, point: &Placed) -> (usize, usize) {
-        let cell = |k: usize| {
-            whole(
-                (point.q[k] - self.lower[k]) * self.inverse[k],
-                (SIDE - 1) as f32,
-            )
-        };
+        let cell = |k: usize| whole((point.q[k] - self.lower[k]) * self.inverse[k], (SIDE - 1) as f32);
         (cell(2) * SIDE + cell(1), cell(0))
     }
 }
@@ -190,7 +196,9 @@ mod tests {
         let dropped = sieve.sieve(&mut a, &mut b, 0.01, 1);
         let cells = |part: &Part| {
             let cells = part.points.iter().map(|point| sieve.grid.cell(point));
-            cells.map(|(row, x)| [x, row % SIDE, row / SIDE]).collect::<Vec<_>>()
+            cells
+                .map(|(row, x)| [x, row % SIDE, row / SIDE])
+                .collect::<Vec<_>>()
         };
         let [cells_a, cells_b] = [0, 1].map(|body| cells(&whole[body]));
         let wanted = |own: &[[usize; 3]], others: &[[usize; 3]]| {

@@ -181,7 +181,17 @@ fn leaves<L: Lanes, C: Candidates>(
     while below != 0 {
         let (i, j) = next(&mut below);
         let (a, b) = (at.a * 8 + i as u32, at.b * 8 + j as u32);
-        let near = near_in_leaf(lanes, trees, Visit { level_a: 0, level_b: 0, a, b }, visit);
+        let near = near_in_leaf(
+            lanes,
+            trees,
+            Visit {
+                level_a: 0,
+                level_b: 0,
+                a,
+                b,
+            },
+            visit,
+        );
         found[count & 63] = Leaf { near, a, b };
         count += usize::from(near != 0);
     }
@@ -243,7 +253,15 @@ fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit, 
 
 /// Hands over what is near in a leaf and wanted.
 #[inline(always)]
-fn deliver<C: Candidates>(trees: Trees<'_>, Leaf { mut near, a: at_a, b: at_b }: Leaf, visit: &mut C) {
+fn deliver<C: Candidates>(
+    trees: Trees<'_>,
+    Leaf {
+        mut near,
+        a: at_a,
+        b: at_b,
+    }: Leaf,
+    visit: &mut C,
+) {
     let Trees { a, b, filter, .. } = trees;
     if near != 0 {
         near &= trees.wanted(Visit {
