@@ -212,17 +212,31 @@ fn starts(counts: &mut [usize]) {
 /// Sorts pairs in place.
 fn sort(pairs: &mut [Pair], scratch: &mut Scratch) {
     let n = pairs.len();
+    let keys = Keys::of(std::iter::once(&*pairs));
     if n < FEW {
-        pairs.sort_unstable_by_key(|pair| u64::from(pair.a) << 32 | u64::from(pair.b));
+        sort_few(pairs, keys, &mut scratch.keys[0]);
         return;
     }
-    let keys = Keys::of(std::iter::once(&*pairs));
     // a table much longer than the pairs costs more than another pass
     let digit = (n.ilog2() + 1).min(DIGIT_BITS);
     if keys.width <= u32::BITS && keys.width.div_ceil(digit) <= DIGITS && u32::try_from(n).is_ok() {
         sort_short(pairs, keys, digit, &mut scratch.keys);
     } else {
         sort_long(pairs, keys, digit, &mut scratch.pairs);
+    }
+}
+
+/// Sorts pairs by comparing, short keys if they have such.
+fn sort_few(pairs: &mut [Pair], keys: Keys, short: &mut Vec<u32>) {
+    if keys.width > u32::BITS {
+        pairs.sort_unstable_by_key(|pair| u64::from(pair.a) << 32 | u64::from(pair.b));
+        return;
+    }
+    short.clear();
+    short.extend(pairs.iter().map(|&pair| keys.key(pair) as u32));
+    short.sort_unstable();
+    for (pair, &key) in pairs.iter_mut().zip(&*short) {
+        *pair = keys.pair(key);
     }
 }
 
