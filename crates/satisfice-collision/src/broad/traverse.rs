@@ -16,6 +16,19 @@ pub(crate) struct Visit {
     b: u32,
 }
 
+impl Visit {
+    /// Of two groups of items.
+    #[inline(always)]
+    fn leaf(a: u32, b: u32) -> Self {
+        Self {
+            level_a: 0,
+            level_b: 0,
+            a,
+            b,
+        }
+    }
+}
+
 /// What happens to a pair of items that can be within the threshold.
 pub(crate) trait Candidates {
     /// Whether items are points, so that the squared distance itself is known.
@@ -105,7 +118,7 @@ impl<C: Candidates> Work for Descend<'_, C> {
             visits += 1;
             if at.level_a == 0 && at.level_b == 0 {
                 let one = Leaf {
-                    near: near_in_leaf(lanes, self.trees, at, self.visit),
+                    near: near_in_leaf::<L, C>(lanes, self.trees, at),
                     a: at.a,
                     b: at.b,
                 };
@@ -181,29 +194,14 @@ fn leaves<L: Lanes, C: Candidates>(
     while below != 0 {
         let (i, j) = next(&mut below);
         let (a, b) = (at.a * 8 + i as u32, at.b * 8 + j as u32);
-        let near = near_in_leaf(
-            lanes,
-            trees,
-            Visit {
-                level_a: 0,
-                level_b: 0,
-                a,
-                b,
-            },
-            visit,
-        );
+        let near = near_in_leaf::<L, C>(lanes, trees, Visit::leaf(a, b));
         found[count & 63] = Leaf { near, a, b };
         count += usize::from(near != 0);
     }
     for (n, &leaf) in found.iter().enumerate().take(count) {
         if visit.enough() {
             // these wait until somebody wants more
-            stack.extend(found[n..count].iter().map(|&Leaf { a, b, .. }| Visit {
-                level_a: 0,
-                level_b: 0,
-                a,
-                b,
-            }));
+            stack.extend(found[n..count].iter().map(|leaf| Visit::leaf(leaf.a, leaf.b)));
             break;
         }
         deliver(trees, leaf, visit);
@@ -238,7 +236,7 @@ fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
 
 /// Which pairs of items of two leaves are within the threshold, or their boxes are.
 #[inline(always)]
-fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit, _: &C) -> u64 {
+fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
     if !C::POINTS {
         return boxes_within(lanes, trees, at);
     }
@@ -264,12 +262,7 @@ fn deliver<C: Candidates>(
 ) {
     let Trees { a, b, filter, .. } = trees;
     if near != 0 {
-        near &= trees.wanted(Visit {
-            level_a: 0,
-            level_b: 0,
-            a: at_a,
-            b: at_b,
-        });
+        near &= trees.wanted(Visit::leaf(at_a, at_b));
     }
     if near == 0 {
         return;
