@@ -1,4 +1,6 @@
 //! Pairs of points of two bodies: structure built each frame, and structure kept.
+use std::sync::Mutex;
+
 use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::{Mesh, Placement};
@@ -68,10 +70,7 @@ fn reading(report: &mut Report, pool: &rayon::ThreadPool, bodies: [&[[f64; 3]]; 
         times[0].push(one);
         times[1].push(all);
     }
-    let [one, all] = times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        (times[times.len() / 2], times[0])
-    });
+    let [one, all] = times.map(median);
     report.line(&format!(
         "Reading the coordinates alone: {:.2} ms, by all threads {:.2}; one thread / all threads {:.2} (least {:.2}).",
         one.0,
@@ -80,6 +79,41 @@ fn reading(report: &mut Report, pool: &rayon::ThreadPool, bodies: [&[[f64; 3]]; 
         one.1 / all.1
     ));
     report.line("");
+}
+
+/// What threads can gain at most on this machine: each does the whole work for itself, on points of its own, and what they
+/// share is the memory only.
+fn side_by_side(report: &mut Report, pool: &rayon::ThreadPool, scene: &scenes::Pair, threshold: Threshold) {
+    let threads = pool.current_num_threads();
+    let own: Vec<_> = (0..threads)
+        .map(|_| Mutex::new((PointGrid::new(), scene.a.clone(), scene.b.clone())))
+        .collect();
+    let work = |thread: usize| {
+        let (grid, a, b) = &mut *own[thread].lock().expect("nobody panics");
+        grid.between(a, b, threshold).expect("finite points").len()
+    };
+    let rounds = if report.full { 15 } else { 1 };
+    let mut times = [const { Vec::new() }; 2];
+    for _ in 0..rounds {
+        times[0].push(time(|| work(0)).0);
+        times[1].push(time(|| pool.broadcast(|context| work(context.index()))).0);
+    }
+    let [one, all] = times.map(median);
+    report.line(&format!(
+        "{threads} threads, each for itself: {:.2} ms, one alone {:.2}: this machine does at most {:.2} times the work of one thread \
+         (least {:.2}).",
+        all.0,
+        one.0,
+        threads as f64 * one.0 / all.0,
+        threads as f64 * one.1 / all.1
+    ));
+    report.line("");
+}
+
+/// The median of some times, and the least.
+fn median(mut times: Vec<f64>) -> (f64, f64) {
+    times.sort_by(f64::total_cmp);
+    (times[times.len() / 2], times[0])
 }
 
 /// Structure built each frame.
@@ -148,6 +182,7 @@ pub(crate) fn fresh(report: &mut Report) {
         report.line("");
         if !small {
             reading(report, &pool, [a, b]);
+            side_by_side(report, &pool, &scene, threshold);
         }
     }
 }

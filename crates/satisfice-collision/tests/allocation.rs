@@ -2,62 +2,24 @@
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
-use core::cell::Cell;
-use std::alloc::{GlobalAlloc, Layout, System};
-
+use allocation_counter::measure;
 use satisfice_collision::broad::{FeatureKind, FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, Scene};
 use satisfice_collision::{Mesh, Placement, generate};
 
-std::thread_local! {
-    /// Of this thread, so that tests beside this one are not counted.
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+/// All is done on the thread that is counted: to be called before anything else, since whoever asks first for the pool of all
+/// tests gets one of all cores, whose queue grows now and then.
+fn on_one_thread() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let _ = pool.build_global(); // by the first test for all
+    assert_eq!(rayon::current_num_threads(), 1);
 }
-
-struct Counting;
-
-fn count() {
-    // A thread that is going away has nothing left to count with.
-    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
-}
-
-#[expect(unsafe_code, reason = "an allocator cannot be written without")]
-// SAFETY: every call is handed to the system's allocator unchanged, whose contract is the caller's; counting does not
-// allocate, for the counter is a constant and needs no destructor.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Allocations of each of some frames, after a motion has gone to and fro some times. `frame` gets 0 and 1 in turn.
 fn allocations(mut frame: impl FnMut(usize)) -> Vec<u64> {
-    // on this thread alone: a pool's queue grows now and then
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .use_current_thread();
-    let _ = pool.build_global(); // the first test has built it for all
     (0..20).for_each(|n| frame(n % 2));
-    let of = |n: usize| {
-        let before = ALLOCATIONS.get();
-        frame(n % 2);
-        ALLOCATIONS.get() - before
-    };
+    let of = |n: usize| measure(|| frame(n % 2)).count_total;
     (20..60).map(of).collect()
 }
 
@@ -75,6 +37,7 @@ fn threshold() -> Threshold {
 
 #[test]
 fn grids_allocate_nothing() {
+    on_one_thread();
     // so many that the sieve is used
     let ball = generate::icosphere(1.0, 6).unwrap();
     let frames = [0.3, 0.31].map(|by| {
@@ -97,6 +60,7 @@ fn grids_allocate_nothing() {
 
 #[test]
 fn trees_allocate_nothing() {
+    on_one_thread();
     let (pot, places) = teapots();
     let frames = places.map(|place| place.place(&pot).unwrap());
     let rest = &Placement::IDENTITY;
@@ -123,6 +87,7 @@ fn trees_allocate_nothing() {
 /// What a scene answers is the caller's: some lists a frame, however long they are.
 #[test]
 fn scenes_allocate_their_answers_only() {
+    on_one_thread();
     let (pot, places) = teapots();
     let frames = places.map(|place| place.place(&pot).unwrap());
     for (kind, is_rigid) in [

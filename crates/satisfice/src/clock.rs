@@ -91,7 +91,7 @@ impl Clock {
     }
 }
 
-/// Takes the time of some calls of the fitness, without what surrounds them: for scheduling, never for results.
+/// Takes the time of calls of the fitness, without what surrounds them: for scheduling, never for results.
 #[cfg(feature = "rayon")]
 #[derive(Debug)]
 pub(crate) struct Stopwatch(Instant);
@@ -102,10 +102,9 @@ impl Stopwatch {
         Self(now())
     }
 
-    /// What one call cost, by the time that so many took on so many threads.
-    pub(crate) fn stop(self, calls: usize, threads: usize) -> Duration {
-        let count = |n: usize| u32::try_from(n.max(1)).unwrap_or(u32::MAX);
-        self.0.elapsed().saturating_mul(count(threads.min(calls))) / count(calls)
+    /// Nanoseconds since the start.
+    pub(crate) fn stop(self) -> u64 {
+        u64::try_from(self.0.elapsed().as_nanos()).unwrap_or(u64::MAX)
     }
 }
 

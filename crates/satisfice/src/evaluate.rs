@@ -39,9 +39,9 @@ pub(crate) struct Ledger {
     pub(crate) trace: Vec<TracePoint>,
     pub(crate) stop: Option<StopReason>,
     pub(crate) clock: Clock,
-    /// What a call of the fitness cost lately.
+    /// Nanoseconds that a call of the fitness took lately.
     #[cfg(feature = "rayon")]
-    fitness_cost: Duration,
+    fitness_cost: u64,
     /// Whether the last batch was shared among threads.
     shared: bool,
     alarm: Option<Alarm>,
@@ -64,7 +64,7 @@ impl Ledger {
             stop: None,
             clock: Clock::start(Duration::ZERO),
             #[cfg(feature = "rayon")]
-            fitness_cost: Duration::ZERO,
+            fitness_cost: 0,
             shared: false,
             alarm: budget.time.map(Alarm::set),
             next_count: 1,
@@ -99,7 +99,7 @@ impl Ledger {
             stop,
             clock: Clock::start(elapsed),
             #[cfg(feature = "rayon")]
-            fitness_cost: Duration::ZERO,
+            fitness_cost: 0,
             shared: false,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             next_count: next,
@@ -233,19 +233,21 @@ impl Ledger {
         problem: &P,
         candidates: &mut Candidates<P::Scalar, P::Solution>,
     ) {
-        /// Below this much work, handing it to threads costs more than it saves.
-        const WORTH: Duration = Duration::from_micros(30);
+        use core::sync::atomic::{AtomicU64, Ordering};
 
-        let calls = candidates.live - candidates.ready;
-        let work = self
-            .fitness_cost
-            .saturating_mul(u32::try_from(calls).unwrap_or(u32::MAX));
+        /// Below this much work in nanoseconds, handing it to threads costs more than it saves.
+        const WORTH: u64 = 30_000;
+        /// One call in so many is timed: what handing over costs is no reason to go on with it.
+        const TIMED: usize = 8;
+
+        let (ready, calls) = (candidates.ready, candidates.live - candidates.ready);
+        let work = self.fitness_cost.saturating_mul(calls as u64);
         self.shared = calls >= 2 && work >= WORTH && !self.interrupted();
         if !self.shared {
-            let (ready, stopwatch) = (candidates.ready, Stopwatch::start());
+            let stopwatch = Stopwatch::start();
             self.evaluate_alone(problem, candidates);
             if candidates.ready > ready {
-                self.fitness_cost = stopwatch.stop(candidates.ready - ready, 1);
+                self.fitness_cost = stopwatch.stop() / (candidates.ready - ready) as u64;
             }
             return;
         }
@@ -256,15 +258,24 @@ impl Ledger {
                 || cancel.as_ref().is_some_and(crate::Cancel::is_cancelled)
         };
         let (solutions, fitness, done) = candidates.slots();
-        let slots = solutions.iter().zip(fitness).zip(done);
-        let stopwatch = Stopwatch::start();
-        threads.for_each(slots, |((solution, fitness), done)| {
-            if !*done && !over() {
-                *fitness = problem.fitness(solution);
-                *done = true;
+        let slots = solutions.iter().zip(fitness).zip(done).enumerate();
+        let (timed, nanoseconds) = (AtomicU64::new(0), AtomicU64::new(0));
+        threads.for_each(slots, |(slot, ((solution, fitness), done))| {
+            if *done || over() {
+                return;
+            }
+            let stopwatch = (slot % TIMED == ready % TIMED).then(Stopwatch::start);
+            *fitness = problem.fitness(solution);
+            *done = true;
+            if let Some(stopwatch) = stopwatch {
+                // whoever reads them has joined the threads
+                timed.fetch_add(1, Ordering::Relaxed);
+                nanoseconds.fetch_add(stopwatch.stop(), Ordering::Relaxed);
             }
         });
-        self.fitness_cost = stopwatch.stop(calls, threads.count());
+        if let Some(cost) = nanoseconds.into_inner().checked_div(timed.into_inner()) {
+            self.fitness_cost = cost;
+        }
         self.pass(candidates.live);
         let _ = self.interrupted();
     }

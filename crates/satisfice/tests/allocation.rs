@@ -2,46 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
-use core::cell::Cell;
-use std::alloc::{GlobalAlloc, Layout, System};
-
+use allocation_counter::measure;
 use satisfice::engine::{self, Entry};
 use satisfice::{Budget, SatisficingProblem, Search, Space, from_fn};
-
-std::thread_local! {
-    /// Of this thread, so that tests beside this one are not counted.
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-fn count() {
-    // A thread that is going away has nothing left to count with.
-    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
-}
-
-#[expect(unsafe_code, reason = "an allocator cannot be written without")]
-// SAFETY: every call is handed to the system's allocator unchanged, whose contract is the caller's; counting does not
-// allocate, for the counter is a constant and needs no destructor.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Pairs of indices, as in collision detection.
 struct Pairs(Space<f64>);
@@ -84,10 +47,12 @@ impl SatisficingProblem for Pairs {
 fn run<P: SatisficingProblem<Scalar = f64>>(problem: &P, entry: &Entry, evaluations: u64) -> (u64, u64) {
     // Probes keep every solution that they hit, new or not: they are left out, whatever the engine wishes.
     let mut search = Search::new(entry.build([]).unwrap()).seed(3).probes(0.0);
-    let before = ALLOCATIONS.get();
-    let report = search.run(problem, &Budget::evaluations(evaluations)).unwrap();
-    let allocations = ALLOCATIONS.get() - before;
-    (allocations, report.hit_count() as u64)
+    let mut hits = 0;
+    let allocations = measure(|| {
+        let report = search.run(problem, &Budget::evaluations(evaluations)).unwrap();
+        hits = report.hit_count() as u64;
+    });
+    (allocations.count_total, hits)
 }
 
 /// Allocations that grow with the logarithm of a run: each list that grows doubles once or twice in twice the evaluations.
@@ -133,8 +98,6 @@ fn on_a_continuous_closure() {
 
 #[test]
 fn the_counter_counts() {
-    let before = ALLOCATIONS.get();
-    let list: Vec<u8> = std::hint::black_box(Vec::with_capacity(10));
-    assert_eq!(ALLOCATIONS.get() - before, 1);
-    drop(list);
+    let allocations = measure(|| drop::<Vec<u8>>(std::hint::black_box(Vec::with_capacity(10))));
+    assert_eq!(allocations.count_total, 1);
 }

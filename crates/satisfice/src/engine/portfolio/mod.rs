@@ -104,13 +104,6 @@ enum Source {
 /// A candidate's source, and which swarm, climber, step or trial of it.
 type Tag = (Source, usize);
 
-impl Source {
-    /// Whether its candidates are noted as visited when they are proposed; the others' once their outcome is known.
-    fn notes_at_once(self) -> bool {
-        !matches!(self, Self::Swarm | Self::Climber | Self::Member)
-    }
-}
-
 /// Number of sources with an arm, and some of these.
 const ARMS: usize = 6;
 const TRIAL: usize = 3;
@@ -457,9 +450,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
                 return Ask::Covered;
             }
             // Everything drawn was known: whatever the next uniform point is, it goes to the ledger.
-            rng.position(context.space(), &mut self.position);
-            let _ = self.is_fresh(context);
-            out.push(&self.position);
+            out.push_with(|position| rng.position(context.space(), position));
             self.tags.push((Source::Uniform, 0));
         }
         Ask::More
@@ -467,7 +458,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         let space = context.space();
-        for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
+        for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
                 // Steps between whole cells are whole: hits are kept at the centres of their cells.
                 let centre = space
@@ -479,8 +470,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
             } else if let Outcome::Miss(fitness) = *outcome {
                 self.near_misses.keep(position, fitness);
             }
-            let is_noted = origin == Origin::Engine && self.tags[i].0.notes_at_once();
-            if let (Some(visited), false) = (&mut self.visited, is_noted) {
+            if let Some(visited) = &mut self.visited {
                 visited.insert(space, position);
             }
         }
