@@ -81,9 +81,10 @@ fn reading(report: &mut Report, pool: &rayon::ThreadPool, bodies: [&[[f64; 3]]; 
     report.line("");
 }
 
-/// What threads can gain at most on this machine: each does the whole work for itself, on points of its own, and what they
-/// share is the memory only.
-fn side_by_side(report: &mut Report, pool: &rayon::ThreadPool, scene: &scenes::Pair, threshold: Threshold) {
+/// One thread, all of them together, and all of them at once, each for itself on points of its own: these share the memory
+/// only, so that this is what threads can gain at most on this machine. Without other methods in between, during which the
+/// other cores fall asleep.
+fn threads_alone(report: &mut Report, pool: &rayon::ThreadPool, scene: &scenes::Pair, threshold: Threshold) {
     let threads = pool.current_num_threads();
     let own: Vec<_> = (0..threads)
         .map(|_| Mutex::new((PointGrid::new(), scene.a.clone(), scene.b.clone())))
@@ -92,20 +93,30 @@ fn side_by_side(report: &mut Report, pool: &rayon::ThreadPool, scene: &scenes::P
         let (grid, a, b) = &mut *own[thread].lock().expect("nobody panics");
         grid.between(a, b, threshold).expect("finite points").len()
     };
-    let rounds = if report.full { 15 } else { 1 };
-    let mut times = [const { Vec::new() }; 2];
+    let mut together = pool.install(PointGrid::parallel);
+    let mut share = || {
+        let pairs = together.between(&scene.a, &scene.b, threshold);
+        pairs.expect("finite points").len()
+    };
+    let rounds = if report.full { 25 } else { 1 };
+    let mut times = [const { Vec::new() }; 3];
     for _ in 0..rounds {
         times[0].push(time(|| work(0)).0);
-        times[1].push(time(|| pool.broadcast(|context| work(context.index()))).0);
+        times[1].push(time(|| pool.install(&mut share)).0);
+        times[2].push(time(|| pool.broadcast(|context| work(context.index()))).0);
     }
-    let [one, all] = times.map(median);
+    let [one, all, each] = times.map(median);
+    let most = [one.0 / each.0, one.1 / each.1].map(|ratio| threads as f64 * ratio);
     report.line(&format!(
-        "{threads} threads, each for itself: {:.2} ms, one alone {:.2}: this machine does at most {:.2} times the work of one thread \
-         (least {:.2}).",
-        all.0,
+        "Without other methods in between: one thread {:.2} ms, {threads} together {:.2}, which is {:.2} times as fast (least {:.2}); \
+         {threads} at once, each for itself, {:.2}, so that this machine does at most {:.2} times the work of one thread (least {:.2}).",
         one.0,
-        threads as f64 * one.0 / all.0,
-        threads as f64 * one.1 / all.1
+        all.0,
+        one.0 / all.0,
+        one.1 / all.1,
+        each.0,
+        most[0],
+        most[1]
     ));
     report.line("");
 }
@@ -182,7 +193,7 @@ pub(crate) fn fresh(report: &mut Report) {
         report.line("");
         if !small {
             reading(report, &pool, [a, b]);
-            side_by_side(report, &pool, &scene, threshold);
+            threads_alone(report, &pool, &scene, threshold);
         }
     }
 }
