@@ -166,7 +166,8 @@ fn shortened(
 /// How many points, on average over the points, share a point's cell, estimated from a sample.
 fn crowd(parts: &[Part], n: usize, cells: &Cells, sample: &mut Vec<usize>) -> f32 {
     let stride = n.div_ceil(SAMPLE);
-    let points = parts.iter().flat_map(|part| part.points.iter().step_by(stride));
+    // of all parts as one, so that nothing depends on how many there are
+    let points = parts.iter().flat_map(|part| &part.points).step_by(stride);
     sample.clear();
     sample.extend(points.map(|point| cells.index(&point.q)));
     sample.sort_unstable();

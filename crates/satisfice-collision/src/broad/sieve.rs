@@ -36,12 +36,9 @@ impl Sieve {
         self.grid = Grid::new(&a.iter().chain(b.iter()), reach);
         self.clear();
         let step = count(a).div_ceil(SAMPLE);
-        for part in &*a {
-            part.points
-                .iter()
-                .step_by(step)
-                .for_each(|point| self.mark(point));
-        }
+        // of all parts as one, so that nothing depends on how many there are
+        let points = a.iter().flat_map(|part| &part.points);
+        points.step_by(step).for_each(|point| self.mark(point));
         self.widen();
         if self
             .near
@@ -215,5 +212,23 @@ mod tests {
         assert_eq!(ids(&b[0]), wanted(&cells_b, &cells_a));
         assert_eq!(dropped, 40_000 - a[0].points.len() - b[0].points.len());
         assert!(dropped > 10_000, "{dropped}");
+
+        // in parts, on threads: the same
+        let mut parts = [0, 1].map(|body| {
+            let piece = |points: &[Placed]| {
+                let mut part = Part {
+                    points: points.to_vec(),
+                    ..Part::default()
+                };
+                part.measure();
+                part
+            };
+            let points: &Part = &whole[body];
+            points.points.chunks(3001).map(piece).collect::<Vec<_>>()
+        });
+        let [parts_a, parts_b] = &mut parts;
+        assert_eq!(sieve.sieve(parts_a, parts_b, 0.01, 2), dropped);
+        let all = |parts: &[Part]| parts.iter().flat_map(ids).collect::<Vec<_>>();
+        assert!(all(parts_a) == ids(&a[0]) && all(parts_b) == ids(&b[0]));
     }
 }

@@ -399,6 +399,7 @@ fn threads_change_nothing() {
     let threshold = Threshold::new(0.02).unwrap();
     let mut alone = PointGrid::new();
     let one = alone.between(&a, &b, threshold).unwrap().to_vec();
+    let work = alone.work();
     let same = alone.within(&a, threshold).unwrap().to_vec();
     assert!(one.len() > 100_000 && same.len() > 30_000);
     for threads in [2, 3, 8] {
@@ -412,6 +413,7 @@ fn threads_change_nothing() {
                 one == grid.between(&a, &b, threshold).unwrap(),
                 "{threads} threads"
             );
+            assert_eq!(grid.work(), work, "{threads} threads");
             assert!(same == grid.within(&a, threshold).unwrap(), "{threads} threads");
             let mut join = TreeJoin::parallel();
             let (tree_a, tree_b) = (point_tree(&a).unwrap(), point_tree(&b).unwrap());
