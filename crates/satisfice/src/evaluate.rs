@@ -39,9 +39,9 @@ pub(crate) struct Ledger {
     pub(crate) trace: Vec<TracePoint>,
     pub(crate) stop: Option<StopReason>,
     pub(crate) clock: Clock,
-    /// Nanoseconds that a call of the fitness took lately.
+    /// Nanoseconds that a call of the fitness took lately; `None` before the first.
     #[cfg(feature = "rayon")]
-    fitness_cost: u64,
+    fitness_cost: Option<u64>,
     /// Whether the last batch was shared among threads.
     shared: bool,
     alarm: Option<Alarm>,
@@ -64,7 +64,7 @@ impl Ledger {
             stop: None,
             clock: Clock::start(Duration::ZERO),
             #[cfg(feature = "rayon")]
-            fitness_cost: 0,
+            fitness_cost: None,
             shared: false,
             alarm: budget.time.map(Alarm::set),
             next_count: 1,
@@ -99,7 +99,7 @@ impl Ledger {
             stop,
             clock: Clock::start(elapsed),
             #[cfg(feature = "rayon")]
-            fitness_cost: 0,
+            fitness_cost: None,
             shared: false,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             next_count: next,
@@ -240,14 +240,28 @@ impl Ledger {
         /// One call in so many is timed: what handing over costs is no reason to go on with it.
         const TIMED: usize = 8;
 
+        if candidates.ready == candidates.live || self.interrupted() {
+            return;
+        }
+        let cost = if let Some(cost) = self.fitness_cost {
+            cost
+        } else {
+            // nobody knows yet: one call tells, so that not even the first batch of a dear fitness waits for one thread
+            let (stopwatch, first) = (Stopwatch::start(), candidates.ready);
+            candidates.fitness[first] = problem.fitness(&candidates.solutions[first]);
+            candidates.ready += 1;
+            self.pass(1);
+            stopwatch.stop()
+        };
+        self.fitness_cost = Some(cost);
         let (ready, calls) = (candidates.ready, candidates.live - candidates.ready);
-        let work = self.fitness_cost.saturating_mul(calls as u64);
+        let work = cost.saturating_mul(calls as u64);
         self.shared = calls >= 2 && work >= WORTH && !self.interrupted();
         if !self.shared {
             let stopwatch = Stopwatch::start();
             self.evaluate_alone(problem, candidates);
             if candidates.ready > ready {
-                self.fitness_cost = stopwatch.stop() / (candidates.ready - ready) as u64;
+                self.fitness_cost = Some(stopwatch.stop() / (candidates.ready - ready) as u64);
             }
             return;
         }
@@ -274,9 +288,9 @@ impl Ledger {
             }
         });
         if let Some(cost) = nanoseconds.into_inner().checked_div(timed.into_inner()) {
-            self.fitness_cost = cost;
+            self.fitness_cost = Some(cost);
         }
-        self.pass(candidates.live);
+        self.pass(calls);
         let _ = self.interrupted();
     }
 

@@ -105,3 +105,25 @@ fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, 
         }
     });
 }
+
+#[cfg(all(test, feature = "rayon"))]
+mod tests {
+    use core::time::Duration;
+    use std::sync::Mutex;
+
+    use crate::{Budget, Search, Space, engine, from_fn};
+
+    #[test]
+    fn the_first_batch_of_a_dear_fitness_is_shared() {
+        let seen = Mutex::new(Vec::new());
+        let problem = from_fn(Space::cube(1, 0.0, 1.0).unwrap(), -1.0, |x: &[f64]| {
+            seen.lock().unwrap().push(std::thread::current().id());
+            std::thread::sleep(Duration::from_millis(2));
+            x[0]
+        });
+        let mut search = Search::new(engine::build("random").unwrap()).threads(2);
+        search.run(&problem, &Budget::evaluations(64)).unwrap();
+        let seen = seen.lock().unwrap();
+        assert!(seen.len() == 64 && seen.iter().any(|id| *id != seen[0]));
+    }
+}
