@@ -36,13 +36,11 @@ const SETTINGS: &[(&str, Settings, bool)] = &[
     ("descent", &[("step", "1"), ("shortest", "1")], true),
 ];
 
-/// Every fourth of the engines at their defaults and of the settings above: the four tests go on side by side.
-fn engines_keep_the_laws(quarter: usize) {
-    let defaults = engine::all()
-        .iter()
-        .map(|entry| (entry.name, Settings::default(), true));
-    let all = defaults.chain(SETTINGS.iter().copied());
-    for (name, settings, searches) in all.skip(quarter).step_by(4) {
+/// Checks an engine at its defaults and under its settings above.
+fn keeps_the_laws(name: &str) {
+    let settings = SETTINGS.iter().filter(|(engine, ..)| *engine == name);
+    let settings = settings.map(|&(_, settings, searches)| (settings, searches));
+    for (settings, searches) in [(Settings::default(), true)].into_iter().chain(settings) {
         let mut violations = check_entry(engine::find(name).unwrap(), settings).unwrap();
         violations.retain(|violation| searches || violation.law != Law::HitCount);
         let listed: Vec<String> = violations.iter().take(10).map(ToString::to_string).collect();
@@ -55,24 +53,30 @@ fn engines_keep_the_laws(quarter: usize) {
     }
 }
 
-#[test]
-fn every_engine_keeps_the_laws_first_quarter() {
-    engines_keep_the_laws(0);
+/// A test for each engine, by its name with underscores; and one that every engine is among them.
+macro_rules! laws {
+    ($($engine:ident)*) => {
+        mod laws {
+            $(#[test]
+            fn $engine() {
+                super::keeps_the_laws(&stringify!($engine).replace('_', "-"));
+            })*
+        }
+
+        #[test]
+        fn every_engine_has_a_test_of_its_laws() {
+            let tested: Vec<String> = [$(stringify!($engine)),*].map(|name| name.replace('_', "-")).to_vec();
+            let registered: Vec<&str> = engine::all().iter().map(|spec| spec.name).collect();
+            assert_eq!(tested, registered);
+        }
+    };
 }
 
-#[test]
-fn every_engine_keeps_the_laws_second_quarter() {
-    engines_keep_the_laws(1);
-}
-
-#[test]
-fn every_engine_keeps_the_laws_third_quarter() {
-    engines_keep_the_laws(2);
-}
-
-#[test]
-fn every_engine_keeps_the_laws_fourth_quarter() {
-    engines_keep_the_laws(3);
+laws! {
+    portfolio random walk descent descent_flood restarted_cma_es
+    pso_1995 pso_inertia pso pso_latest_hit spso_2011
+    qpso qpso_deletion latest_hit_qpso
+    wang li branch_and_bound
 }
 
 #[test]
