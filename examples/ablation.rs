@@ -1,9 +1,9 @@
-//! Which parts of the default engine earn their place: each left out in turn, beside the engines that it has to beat; then the
-//! teapots in every vertex order, teapots that move, and the composed functions of CEC2013 where their data are at hand.
+//! What each part of the default engine contributes: each is left out in turn, and rival engines run beside it. Then the
+//! teapots in every vertex order, moving teapots, and the composed functions of CEC2013 if their data are available.
 //!
 //! `cargo run --release --example ablation` prints the table and writes it to `docs/results/ablation.md` (or to the folder
 //! `SATISFICE_OUT`). Sixteen seeds, the same for every engine; with `SATISFICE_QUICK=1` two seeds and a tenth of the evaluations.
-//! `SATISFICE_CEC2013=DIR` names the folder with the data of that suite.
+//! `SATISFICE_CEC2013=DIR` names the folder with that suite's data.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use satisfice_bench::moving_teapots::{MovingTeapots, Way};
 use satisfice_bench::{Instance, Request, catalogue};
 use satisfice_problems::Cec2013;
 
-/// The ten of the paper's notes and the teapots; then some that have another structure: many optima of a smooth function,
+/// Ten problems for the geometric mean and the teapots; then problems of other structure: many optima of a smooth function,
 /// isolated postures, combinatorial designs.
 const PROBLEMS: [(&str, &[(&str, &str)]); 19] = [
     ("falsification", &[]),
@@ -37,9 +37,9 @@ const PROBLEMS: [(&str, &[(&str, &str)]); 19] = [
     ("costas", &[]),
     ("langford", &[]),
 ];
-/// The geometric mean is over the ten problems before the teapots, as in the notes.
+/// The geometric mean is over the ten problems before the teapots.
 const MEAN_OVER: usize = 10;
-/// Engines, each with a setting of its own.
+/// Engines with their settings.
 const ENGINES: [(&str, &str); 18] = [
     ("latest-hit-qpso", ""),
     ("latest-hit-qpso", "exhaust=yes"),
@@ -60,11 +60,11 @@ const ENGINES: [(&str, &str); 18] = [
     ("portfolio", "prune=yes"),
     ("branch-and-bound", ""),
 ];
-/// The default engine among them.
+/// The default engine's place in the list.
 const WHOLE: usize = 8;
-/// Engines that it is compared with on the teapots.
+/// The engines compared on the teapots.
 const BESIDE: [&str; 4] = ["portfolio", "descent-flood", "latest-hit-qpso", "random"];
-/// The same on teapots that move, where a slice follows another.
+/// The engines compared on moving teapots, slice after slice.
 const WARM: [(&str, &[(&str, &str)]); 5] = [
     ("portfolio", &[]),
     ("portfolio", &[("without", "near-misses")]),
@@ -72,14 +72,14 @@ const WARM: [(&str, &[(&str, &str)]); 5] = [
     ("latest-hit-qpso", &[]),
     ("random", &[]),
 ];
-/// Composed functions of CEC2013, with the evaluations that the suite allows, and the engines that meet on them.
+/// Composed functions of CEC2013 with the suite's evaluation limits, and the engines compared on them.
 const COMPOSED: std::ops::RangeInclusive<u64> = 11..=20;
 const ON_COMPOSED: [(&str, &str); 3] = [
     ("portfolio", ""),
     ("portfolio", "without=populations"),
     ("descent-flood", ""),
 ];
-/// Frames of the teapots that move, sizes a frame, evaluations a frame.
+/// Moving teapots: frames, sizes moved in a frame, evaluations in a frame.
 const FRAMES: usize = 40;
 const STEP: f64 = 0.004;
 const PER_FRAME: u64 = 5_000;
@@ -135,7 +135,7 @@ fn mean_hits(
     seeds: u64,
     evaluations: u64,
 ) -> Result<f64, satisfice_bench::Error> {
-    // Under a budget of evaluations a busy core changes nothing.
+    // A busy core does not affect results under a budget of evaluations.
     let hits = (0..seeds).into_par_iter().map(|seed| {
         let mut request = Request::new(engine, Budget::evaluations(evaluations)).seed(seed);
         if let Some((name, value)) = setting.split_once('=') {
@@ -147,7 +147,7 @@ fn mean_hits(
     Ok(hits.iter().sum::<u64>() as f64 / seeds as f64)
 }
 
-/// Geometric mean of the ratios; a count of none counts as half a hit, so that the mean exists.
+/// Geometric mean of the ratios. No hits count as half a hit, so that the mean exists.
 fn relative(means: &[f64], to: &[f64]) -> f64 {
     let logs = means
         .iter()
@@ -186,7 +186,7 @@ fn table(
     Ok(text)
 }
 
-/// Recall on the teapots, whichever serial numbers their vertices have.
+/// Recall on the teapots for each order of their vertices.
 fn orders(seeds: u64, budgets: &[u64]) -> Result<String, Box<dyn std::error::Error>> {
     let mut text =
         format!("\n## Teapots in every vertex order\n\nMean recall of {seeds} seeds, in %.\n\n| order |");
@@ -213,7 +213,7 @@ fn orders(seeds: u64, budgets: &[u64]) -> Result<String, Box<dyn std::error::Err
     Ok(text)
 }
 
-/// Recall on teapots that move, each frame searched for so long, warm from the frame before.
+/// Recall on moving teapots: each frame is a slice, warm from the frame before.
 fn moving(seeds: u64, frames: usize) -> Result<String, Box<dyn std::error::Error>> {
     let mut text = format!(
         "\n## Teapots that move\n\n{frames} frames, the second teapot moving by {STEP} sizes a frame (delta is 0.02 sizes), \
@@ -251,8 +251,8 @@ fn moving(seeds: u64, frames: usize) -> Result<String, Box<dyn std::error::Error
     Ok(text)
 }
 
-/// Optima of the composed functions of CEC2013, whose shifts and rotations are the suite's own: from the folder
-/// `SATISFICE_CEC2013`, if there is one.
+/// Optima of the composed functions of CEC2013. Their shifts and rotations are read from the folder
+/// `SATISFICE_CEC2013`, if it is set.
 fn composed(seeds: u64, quick: bool) -> Result<String, Box<dyn std::error::Error>> {
     let mut text = format!(
         "\n## Composed functions of CEC2013\n\nMean optima of {seeds} seeds within the suite's evaluations, found at an accuracy of \

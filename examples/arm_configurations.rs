@@ -1,4 +1,4 @@
-//! Postures that bring an arm's hand to its goal, drawn: all of a planar arm of three links, and many of an arm with seven joints.
+//! Postures that bring an arm's hand to its goal, drawn: all postures of a planar arm of three links, and many of an arm with seven joints.
 //!
 //! `cargo run --release --example arm_configurations`; writes to `out/arm_configurations`, or to the folder `SATISFICE_OUT`.
 
@@ -11,10 +11,10 @@ use satisfice_problems::{Arm, SevenJoints};
 
 mod gallery;
 
-/// Cells an angle of the planar arm, and how near its tip has to be, in arm lengths.
+/// Cells for each angle of the planar arm, and the largest distance of its tip from the goal, in arm lengths.
 const CELLS: usize = 100;
 const NEAR: f64 = 0.01;
-/// Postures of the seven joints that are drawn: more would hide each other.
+/// Number of seven-joint postures that are drawn; more would hide each other.
 const DRAWN: usize = 40;
 const GOAL: [f64; 3] = [0.45, 0.2, 0.5];
 
@@ -73,8 +73,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     gallery::save("arm_configurations", |format| draw_maps(&maps, format))
 }
 
-/// The referee: for each pair of the first two angles, the third one from the direction of what is left of the way, and every
-/// cell beside it that is near enough.
+/// The referee: for each pair of the first two angles, the third angle follows from the direction to the goal; cells
+/// beside it are checked too.
 fn postures_of_three_links(goal: [f64; 2]) -> u64 {
     let centre = |cell: usize| TAU * (cell as f64 + 0.5) / CELLS as f64 - 0.5 * TAU;
     let mut count = 0;
@@ -85,14 +85,14 @@ fn postures_of_three_links(goal: [f64; 2]) -> u64 {
                 3.0 * goal[0] - a.cos() - b.cos(),
                 3.0 * goal[1] - a.sin() - b.sin(),
             ];
-            // A link of length 1 reaches what is left of the way to within 3 NEAR or not at all.
+            // A link of length 1 reaches the goal to within 3 NEAR or not at all.
             if (left[0].hypot(left[1]) - 1.0).abs() >= 3.0 * NEAR {
                 continue;
             }
             let wanted = left[1].atan2(left[0]);
             let misses = |third: &usize| {
                 let c = b + centre(*third);
-                // The chord of the angle between the link and the way to the goal.
+                // The chord of the angle between the link and the direction to the goal.
                 let chord = 2.0 * (0.5 * (c - wanted)).sin();
                 let length = left[0].hypot(left[1]);
                 // Law of cosines, from lengths 1 and `length`.
@@ -139,7 +139,7 @@ fn planar(arm: &Arm, postures: &[Vec<[f64; 2]>]) -> Map {
     }
 }
 
-/// The arms with seven joints, x to the right and the axis of this number upwards.
+/// The seven-joint arms: x to the right, the axis of this number upwards.
 fn spatial(bodies: &[Vec<[f64; 3]>], up: usize, from: &str, y_label: &str) -> Map {
     let step = bodies.len() / DRAWN;
     let drawn: Vec<&Vec<[f64; 3]>> = bodies.iter().step_by(step.max(1)).take(DRAWN).collect();

@@ -1,7 +1,7 @@
-//! Experiment II: a cloth falls on a sphere. What is in contact, and what happens where contacts do not push back?
+//! Experiment II: a cloth falls on a sphere. Which particles are in contact, and what happens if contacts do not push back?
 //!
 //! `cargo run --release --example cloth`; writes its pictures to `out/cloth`, or to the folder `SATISFICE_OUT`.
-//! With `SATISFICE_QUICK=1` a coarse cloth.
+//! `SATISFICE_QUICK=1` uses a coarse cloth.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     assert!(
         quick || 10 * crossed[0] <= crossed[1],
-        "contacts that push back leave a tenth of the crossings at most: {crossed:?}"
+        "contacts that push back leave at most a tenth of the crossings: {crossed:?}"
     );
     Ok(())
 }

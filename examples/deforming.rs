@@ -1,5 +1,5 @@
-//! A deforming scene frame by frame: a pleated cloth whose waves run on, a ball that comes down through it, a table that
-//! stays. What touches what in each frame, how long it took, what was skipped, and what a tenth of the time is enough for.
+//! A deforming scene frame by frame: a pleated cloth with travelling waves, a ball that passes down through it, a table that
+//! stays. For each frame: the contacts, the time, what was skipped, and how much a tenth of the time finds.
 //!
 //! `cargo run --release --example deforming`
 
@@ -17,16 +17,16 @@ use satisfice_collision::scene::{Body, Completeness, Contact, Scene, Skips};
 use satisfice_collision::{Mesh, Placement, generate};
 
 const KIND: PairKind = PairKind::TriangleTriangle;
-/// The cloth is 3 long and 1 wide before it is laid in pleats.
+/// The flat cloth is 3 long and 1 wide.
 const DELTA: f64 = 0.012;
 const GAP: f64 = 0.05;
 const LAYERS: usize = 5;
 const FRAMES: usize = 20;
-/// The cloth rests from this frame on, the ball from three later on.
+/// The cloth rests from this frame on, the ball from three frames later.
 const REST: usize = 12;
-/// The frame that is compared with brute force.
+/// The frame compared with brute force.
 const SAMPLED: usize = 7;
-/// The frame that is drawn.
+/// The frame drawn.
 const DRAWN: usize = 11;
 
 const TABLE: usize = 0;
@@ -55,8 +55,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         assert_eq!(answer.completeness, Completeness::Proved);
         let contacts = answer.contacts;
 
-        // The second scene knows the whole frame before, and has a tenth of the time for this one; where everything rests,
-        // there is nothing to hurry.
+        // The second scene knows all of the last frame and has a tenth of the time for this one; if everything rests,
+        // it needs no limit.
         film.go_to(&mut hurried, frame)?;
         let resting = frame > REST + 3;
         let limit = if resting {
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let found = within(&mut hurried, limit)?;
         if resting {
-            assert_eq!(found, contacts, "frame {frame}: what rests is known");
+            assert_eq!(found, contacts, "frame {frame}: contacts of bodies at rest are known");
         }
         assert!(
             found
@@ -145,13 +145,13 @@ impl Film {
         })
     }
 
-    /// The cloth at a frame: its waves move by 3 thousandths of a turn, then rest.
+    /// The cloth at a frame: its waves move by 0.003 turns a frame, then rest.
     fn cloth(&self, frame: usize) -> Result<Mesh, Box<dyn Error>> {
         let phase = 0.003 * frame.min(REST) as f64;
         Ok(generate::pleats(self.size.0, self.size.1, LAYERS, GAP, phase)?)
     }
 
-    /// The ball at a frame: it comes down from above the cloth.
+    /// The ball at a frame: it descends from above the cloth.
     fn course(frame: usize) -> Result<Placement, Box<dyn Error>> {
         let height = LAYERS as f64 * GAP + 0.1 - 0.008 * frame.min(REST + 3) as f64;
         Ok(Placement::from_translation([0.05, 0.1, height])?)
@@ -171,7 +171,7 @@ impl Film {
         Ok(())
     }
 
-    /// The same frame by a scene that has seen no other and decides every pair.
+    /// The same frame by a new scene that decides every pair.
     fn brute_force(&self, frame: usize) -> Result<Vec<Contact>, Box<dyn Error>> {
         let mut scene = self.scene(Method::BruteForce)?;
         self.go_to(&mut scene, frame)?;
@@ -192,7 +192,7 @@ impl Film {
         for contact in contacts {
             picture.highlight(contact.body_a, contact.a);
             picture.highlight(contact.body_b, contact.b);
-            // Inside the cloth they are so many that they would hide it.
+            // Contacts of the cloth with itself would hide it.
             if contact.body_a != contact.body_b {
                 let nearest = scene.proximity(*contact)?;
                 picture.pair(nearest.point_a, nearest.point_b, true);
@@ -202,7 +202,7 @@ impl Film {
     }
 }
 
-/// What a scene finds before a deadline, in milliseconds from now.
+/// The contacts that a scene finds before a deadline, in milliseconds from now.
 #[expect(clippy::disallowed_methods, reason = "an example that shows times")]
 fn within(scene: &mut Scene, milliseconds: f64) -> Result<Vec<Contact>, Box<dyn Error>> {
     let start = Instant::now();
@@ -213,7 +213,7 @@ fn within(scene: &mut Scene, milliseconds: f64) -> Result<Vec<Contact>, Box<dyn 
     Ok(scene.finish(pass).contacts)
 }
 
-/// A result and how many milliseconds it took.
+/// A result and its time in milliseconds.
 #[expect(clippy::disallowed_methods, reason = "an example that shows times")]
 fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
     let start = Instant::now();

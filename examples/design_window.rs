@@ -139,13 +139,13 @@ fn same(a: &Parts, b: &Parts) -> bool {
         .all(|(a, b)| (a / b - 1.0).abs() < 1e-9)
 }
 
-/// How far the parts of a kind are apart, as a logarithm.
+/// The ratio of the largest to the smallest part of a kind, as a logarithm.
 fn spread(parts: &Parts) -> f64 {
     let apart = |[a, b]: [f64; 2]| (a / b).ln().abs();
     apart(parts.resistances) + apart(parts.capacitances)
 }
 
-/// The designs by what they do.
+/// The designs by behaviour.
 fn response(window: &Window, found: &[Parts], missed: &[&Parts], near: &[&Parts]) -> Map {
     let place = |parts: &Parts| (parts.frequency(), parts.quality());
     let corner = |x: f64, y: f64| {
@@ -187,7 +187,7 @@ fn response(window: &Window, found: &[Parts], missed: &[&Parts], near: &[&Parts]
         );
     }
     Map {
-        title: "What they do (exchanged resistors coincide)".to_owned(),
+        title: "Behaviour (exchanged resistors coincide)".to_owned(),
         x_label: "corner frequency f0 (Hz)".to_owned(),
         y_label: "quality Q".to_owned(),
         x_range: (low.0, high.0),
@@ -197,7 +197,7 @@ fn response(window: &Window, found: &[Parts], missed: &[&Parts], near: &[&Parts]
     }
 }
 
-/// The designs by what they are made of.
+/// The designs by parts.
 fn parts(found: &[Parts]) -> Map {
     let decades = [
         (1e-9, Colour::Blue, Marker::Disc, "C2 from 1 to 8.2 nF"),

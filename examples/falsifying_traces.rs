@@ -10,10 +10,10 @@ use satisfice_problems::{Falsification, Transmission};
 
 mod gallery;
 
-/// Traces that are drawn: more would hide each other.
+/// Number of traces drawn; more would hide each other.
 const DRAWN: usize = 60;
 const LEVELS: usize = 20;
-/// The oscillator must not swing farther.
+/// The largest allowed deflection of the oscillator.
 const LIMIT: f64 = 2.25;
 
 type Line = Vec<(f64, f64)>;
@@ -87,7 +87,7 @@ fn falsifying_inputs() -> u64 {
             count += LEVELS as u64;
             continue;
         }
-        // Levels between `low` and `high` keep every step within the limit, all others falsify it.
+        // Levels between `low` and `high` keep every step within the limit; all others falsify it.
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for (n, r) in responses[4].iter().enumerate().skip(80) {
             let x = rest(n);
@@ -116,7 +116,7 @@ fn too_fast() -> Result<Map, Box<dyn Error>> {
     ))
 }
 
-/// Whoever keeps the engine below 3200 1/min must stay below 40 km/h in the first 8 s.
+/// If the engine stays below 3200 1/min, the car must stay below 40 km/h in the first 8 s.
 fn no_calm_start() -> Result<Map, Box<dyn Error>> {
     let violates = |signals: &[Vec<f64>]| {
         signals[1].iter().all(|w| *w < 3200.0) && signals[0][..=80].iter().any(|v| *v > 40.0)
@@ -164,7 +164,7 @@ fn transmission(
     ))
 }
 
-/// Inputs all over the oscillator's space, for comparison.
+/// Inputs spread over the oscillator's space, for comparison.
 fn inputs() -> impl Iterator<Item = Vec<u32>> {
     (0_u32..).map(|k| {
         (1..=5)
@@ -173,7 +173,7 @@ fn inputs() -> impl Iterator<Item = Vec<u32>> {
     })
 }
 
-/// Manoeuvres all over the car's space, for comparison.
+/// Manoeuvres spread over the car's space, for comparison.
 fn manoeuvres() -> impl Iterator<Item = Vec<u32>> {
     (0_u32..).map(|k| {
         vec![

@@ -1,10 +1,10 @@
-//! A problem of one's own: every gear train of four wheels with 12 to 60 teeth whose ratio is within 100 ppm of 1 : 6.931.
+//! A problem of your own: every gear train of four wheels with 12 to 60 teeth whose ratio is within 100 ppm of 1 : 6.931.
 //!
 //! `cargo run --release --example getting_started`
 
 use satisfice::{Axis, Budget, SatisficingProblem, Search, Space, engine};
 
-/// Two pairs of wheels: `[driving, driving, driven, driven]`, the smaller one of each first.
+/// Two pairs of wheels: `[driving, driving, driven, driven]`, the smaller wheel of each pair first.
 struct GearTrain(Space<f64>);
 
 impl SatisficingProblem for GearTrain {
@@ -31,7 +31,7 @@ fn main() -> Result<(), satisfice::Error> {
     let mut search = Search::new(engine::build("portfolio")?).seed(1);
     let report = search.run(&problem, &Budget::evaluations(300_000))?;
 
-    println!("{report}\nthe first ones:");
+    println!("{report}\nthe first hits:");
     for hit in report.hits().take(5) {
         let ([a, b, c, d], error) = (hit.solution, 1e6 * problem.fitness(hit.solution));
         println!(
@@ -43,7 +43,7 @@ fn main() -> Result<(), satisfice::Error> {
     Ok(())
 }
 
-/// Counts them all, in whole numbers: 1,225^2 trains are few enough.
+/// Counts all trains by enumeration in whole numbers: there are only 1,225^2.
 fn check(report: &satisfice::Report<[u32; 4]>) {
     let pairs = || (12..=60_u64).flat_map(|a| (a..=60).map(move |b| (a, b)));
     // |6.931 ab/cd - 1| < 1e-4, times 1e4 cd.
@@ -56,6 +56,6 @@ fn check(report: &satisfice::Report<[u32; 4]>) {
         assert!(is_hit(a, b, c, d), "{:?} is reported but is no hit", hit.solution);
     }
     let share = report.hit_count() as f64 / count as f64;
-    // Of 300,000 uniform draws among 49^4 one or two would be hits.
+    // 300,000 uniform points would contain one or two hits.
     assert!(share >= 0.5, "no better than chance: {share}");
 }

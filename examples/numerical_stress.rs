@@ -17,7 +17,7 @@ use stress::{Motion, Point, below, decide, families, orders, proximity, scaled, 
 
 const SEED: u64 = 20_260_101;
 
-/// What was seen of one family or kind.
+/// The counts of one family or kind.
 #[derive(Default, Clone)]
 struct Tally {
     decisions: [u64; 2],
@@ -80,7 +80,7 @@ impl Tally {
     }
 }
 
-/// All orders, both orders of the pair, and moves that round nothing, at three thresholds.
+/// All vertex orders, both orders of the pair, and motions without rounding, at three thresholds.
 fn study(kind: PairKind, a: &[Point], b: &[Point], rng: &mut Xoshiro256PlusPlus) -> Tally {
     let mut tally = Tally::default();
     let truth = squared_distance(a, b);
@@ -90,7 +90,7 @@ fn study(kind: PairKind, a: &[Point], b: &[Point], rng: &mut Xoshiro256PlusPlus)
         let delta = if hard {
             families::threshold_near(near, rng)
         } else {
-            // Where the features meet, a part of the largest coordinate.
+            // If the features meet: a fraction of the largest coordinate.
             let extent = a
                 .iter()
                 .chain(b)
@@ -141,7 +141,7 @@ fn main() -> ExitCode {
         None => 300,
         Some(Ok(count)) => count,
         Some(Err(error)) => {
-            eprintln!("PAIRS has to be a whole number: {error}");
+            eprintln!("PAIRS must be a whole number: {error}");
             return ExitCode::from(2);
         }
     };

@@ -1,5 +1,5 @@
-//! All roots of three systems of equations over contours of the sum of squares, checked against those that interval branch and
-//! bound proves to be all.
+//! All roots of three systems of equations over contours of the sum of squares, checked against a complete list by
+//! interval branch and bound.
 //!
 //! `cargo run --release --example roots_contour`; writes to `out/roots_contour`, or to the folder `SATISFICE_OUT`.
 
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     gallery::save("roots_contour", |format| draw_maps(&maps, format))
 }
 
-/// F is tiny at each, and they are different.
+/// F is tiny at each root, and the roots are distinct.
 fn check(problem: &System, roots: &[Vec<f64>]) {
     for (index, root) in roots.iter().enumerate() {
         let f = problem.fitness(&Located::new(root, 0.01));

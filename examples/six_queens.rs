@@ -46,13 +46,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     gallery::save("six_queens", |format| draw_boards(&boards, format))
 }
 
-/// Rows of the columns from left to right, from 1.
+/// The row of the queen in each column from left to right, from 1.
 fn places(rows: &[u32]) -> String {
     let words: Vec<_> = rows.iter().map(|row| (row + 1).to_string()).collect();
     words.join(" ")
 }
 
-/// No two in a row, in a falling or in a rising diagonal: counted along lines, where the problem looks at pairs.
+/// No two queens share a row or a diagonal. Counted along lines; the problem itself looks at pairs.
 fn is_peaceful(rows: &[u32]) -> bool {
     let n = rows.len() as u32;
     let on = |line: &dyn Fn(u32, u32) -> u32| {
@@ -64,7 +64,7 @@ fn is_peaceful(rows: &[u32]) -> bool {
     on(&|_, row| row) && on(&|column, row| column + row) && on(&|column, row| n + column - row)
 }
 
-/// The board turned and reflected in all eight ways.
+/// The eight rotations and reflections of the board.
 fn symmetric(rows: &[u32]) -> Vec<Vec<u32>> {
     let n = rows.len();
     let turned = |rows: &Vec<u32>| {

@@ -1,4 +1,4 @@
-//! Four ways to end a search before its budget, and how to watch one: a number of hits, an observer, another thread, a time.
+//! Four ways to end a search early, and how to watch one: by a number of hits, an observer, another thread, a time.
 //!
 //! `cargo run --release --example stop_and_observe`
 
@@ -10,12 +10,12 @@ use std::time::Duration;
 use satisfice::{Budget, Cancel, Hit, Located, Observer, Search, StopReason, TracePoint, engine, from_fn};
 use satisfice::{SatisficingProblem, Space};
 
-/// A limit that is far off, so that nothing runs for ever if the other one fails.
+/// A generous limit, so that nothing runs forever if the other limit fails.
 const FAR: u64 = 1_000_000_000;
 
 const BARREN: u64 = 100_000;
 
-/// Prints how far the search is, and ends it once a number of evaluations in a row brought no new hit.
+/// Prints progress, and ends the search after a number of evaluations without a new hit.
 struct Patience {
     latest: u64,
     printed: u64,
@@ -43,7 +43,7 @@ fn search() -> Result<Search<f64, Located<f64>>, satisfice::Error> {
 }
 
 fn main() -> Result<(), satisfice::Error> {
-    // Points near the unit sphere of [-2, 2]^3, an answer every 0.1.
+    // Points near the unit sphere in [-2, 2]^3, at least 0.1 apart.
     let sphere = |x: &[f64]| (x.iter().map(|c| c * c).sum::<f64>().sqrt() - 1.0).abs();
     let problem = from_fn(Space::cube(3, -2.0, 2.0)?, 0.01, sphere).separation(0.1);
     assert!(problem.threshold() > 0.0);
@@ -81,7 +81,7 @@ fn main() -> Result<(), satisfice::Error> {
     assert_eq!(
         report.stop_reason,
         StopReason::Observer,
-        "it never stops to find, or never lost patience"
+        "it never stops finding hits, or the observer never gave up"
     );
 
     println!("another thread that cancels after the twentieth hit:");
@@ -95,7 +95,7 @@ fn main() -> Result<(), satisfice::Error> {
             }
         });
         let mut tell = move |_: Hit<'_, Located<f64>>, count: usize| {
-            // Nobody listens any more once the twentieth was told; that is no reason to stop.
+            // The receiver is gone after the twentieth hit; that is no reason to stop.
             let _ = sender.send(count);
             ControlFlow::Continue(())
         };
@@ -105,7 +105,7 @@ fn main() -> Result<(), satisfice::Error> {
     assert_eq!(report.stop_reason, StopReason::Cancelled);
     assert!(report.hit_count() >= 20, "hits before the cancellation are kept");
 
-    println!("20 ms of a fitness that takes one: the last evaluation may end late, none begins late");
+    println!("20 ms of a fitness that takes 1 ms: the last evaluation may end late, none begins late");
     let slow = from_fn(Space::cube(3, -2.0, 2.0)?, 0.5, |x: &[f64]| {
         thread::sleep(Duration::from_millis(1));
         sphere(x)
@@ -118,7 +118,7 @@ fn main() -> Result<(), satisfice::Error> {
     assert_eq!(report.stop_reason, StopReason::Time);
     assert!(
         report.counts.evaluations <= 20,
-        "each takes a millisecond at least"
+        "each evaluation takes at least a millisecond"
     );
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Experiment I: two teapots run into each other. How many of the vertex pairs closer than delta does each engine find?
 //!
 //! `cargo run --release --example teapots`; writes its pictures to `out/teapots`, or to the folder `SATISFICE_OUT`.
-//! With `SATISFICE_QUICK=1` two seeds and short runs, which show that it works but are no measurement.
+//! `SATISFICE_QUICK=1` uses two seeds and short runs: a check that it works, not a measurement.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -109,10 +109,10 @@ fn teapots(order: &str) -> Result<Teapots, satisfice::Error> {
     )?)
 }
 
-/// All pairs, by brute force, and again by a grid. What engines find is compared with them.
+/// All pairs, by brute force and by a grid: the reference for the engines.
 #[expect(
     clippy::disallowed_methods,
-    reason = "exact methods have no budget; their time is only shown"
+    reason = "exact methods have no budget; their time is only printed"
 )]
 fn exact(problem: &Teapots) -> Result<BTreeSet<Pair>, Box<dyn Error>> {
     let pairs = problem.pairs();
@@ -156,7 +156,7 @@ fn search(problem: &Teapots, name: &str, seed: u64, budget: &Budget) -> Result<F
     Search::new(engine::build(name)?).seed(seed).run(problem, budget)
 }
 
-/// The reports of all seeds, made on all cores. Budgets of evaluations give the same reports on any number of them.
+/// The reports of all seeds, made on all cores. Under budgets of evaluations the number of cores changes no report.
 fn all_seeds(
     problem: &Teapots,
     name: &str,
@@ -183,7 +183,7 @@ fn all_seeds(
     Ok(reports)
 }
 
-/// No engine may report what is none.
+/// Every reported pair must be a true one.
 fn check(report: &Found, truth: &BTreeSet<Pair>) {
     for hit in report.hits() {
         assert!(
@@ -241,7 +241,7 @@ fn print_slice(name: &str, reports: &[Found], truth: usize) {
     );
 }
 
-/// |C(t)|, recall(t) and r(t) beside each other: r alone rewards an engine that finds little and stalls.
+/// |C(t)|, recall(t) and r(t) side by side: r alone rewards an engine that finds little and stalls.
 fn chart(runs: &[(&str, Vec<Found>)], truth: usize, seeds: u64) -> Chart {
     let times = || (0..=100).map(f64::from);
     let curves = |value: &dyn Fn(&Found, f64) -> f64| {
@@ -311,7 +311,7 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// What the table says, and what has to hold whatever the machine.
+/// Checks that must hold on any machine.
 fn conclude(means: &[[f64; 2]], quick: bool) {
     let of = |name: &str, order: usize| {
         let row = COUNTED.iter().position(|&engine| engine == name);
@@ -330,7 +330,7 @@ fn conclude(means: &[[f64; 2]], quick: bool) {
         "descent-flood is no better than chance"
     );
     if !quick {
-        // Standard error some 50 of 365.
+        // The standard error is about 50 of 365.
         assert!(
             of("latest-hit-qpso", 0) > 2.0 * of("random", 0),
             "latest-hit-qpso is no better than chance"

@@ -1,5 +1,5 @@
-//! Time slices: a teapot moves through another, and every frame is searched for a fixed number of evaluations. What is the
-//! frame before good for?
+//! Time slices: a teapot moves through another, and every frame is searched for a fixed number of evaluations. How much do
+//! the hits of the last frame help?
 //!
 //! `cargo run --release --example time_slices`
 
@@ -11,7 +11,7 @@ use satisfice_bench::moving_teapots::{MovingTeapots, Way};
 
 const EVALUATIONS: u64 = 20_000;
 const FRAMES: usize = 10;
-/// In sizes, a frame; delta is 0.02.
+/// Motion a frame, in sizes; delta is 0.02.
 const STEP: f64 = 0.004;
 const RULES: [(WarmStart, &str); 3] = [
     (WarmStart::Cold, "cold"),
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "   mean from frame 1 {:>10.1} {:>15.1} {:>10.1}\n",
             means[0], means[1], means[2]
         );
-        // The first frame has none before it: every rule does the same there.
+        // All rules do the same in the first frame, which has no predecessor.
         assert!(
             recalls.iter().all(|rule| rule[0] == recalls[0][0]),
             "{name}: frame 0 differs between rules"

@@ -1,4 +1,4 @@
-//! What the examples that draw have in common: a search that knows how much to do, and where pictures go.
+//! Shared by the examples that draw: a search of the right length, and the folder for pictures.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -7,12 +7,12 @@ use std::{env, fs};
 use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
 use satisfice_bench::plot::Format;
 
-/// Whether to do as little as shows that it works.
+/// Whether to run a short form that only shows that the example works.
 pub(crate) fn is_quick() -> bool {
     env::var_os("SATISFICE_QUICK").is_some_and(|value| value != "0")
 }
 
-/// Searches with the default engine, seed 1, for `evaluations` at most, a fifth of them under `SATISFICE_QUICK`, or until `hits`.
+/// Searches with the default engine and seed 1 for at most `evaluations` (a fifth of them under `SATISFICE_QUICK`), or until `hits`.
 pub(crate) fn search<P: SatisficingProblem<Scalar = f64>>(
     problem: &P,
     evaluations: u64,
