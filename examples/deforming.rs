@@ -66,7 +66,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let found = within(&mut hurried, limit)?;
         if resting {
-            assert_eq!(found, contacts, "frame {frame}: contacts of bodies at rest are known");
+            assert_eq!(
+                found, contacts,
+                "frame {frame}: contacts of bodies at rest are known"
+            );
         }
         assert!(
             found
