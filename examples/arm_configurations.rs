@@ -5,7 +5,8 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use satisfice::{Catalogued, SatisficingProblem};
+use satisfice::SatisficingProblem;
+use satisfice::catalogue::Catalogued;
 use satisfice_bench::plot::{Colour, Layer, Map, Maps, Marker, draw_maps};
 use satisfice_problems::{Arm, SevenJoints};
 
@@ -39,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     assert_eq!(postures.len() as u64, count);
 
-    let seven = SevenJoints::from_values(&satisfice::Values::defaults(SevenJoints::PARAMETERS)?)?;
+    let seven = SevenJoints::from_params(&satisfice::catalogue::Params::defaults(SevenJoints::PARAMETERS)?)?;
     let known = seven.reference_hits().ok_or("a count")?;
     let report = gallery::search(&seven, 500_000, known)?;
     println!("{report}");

@@ -4,7 +4,8 @@
 
 use std::error::Error;
 
-use satisfice::{Catalogued, SatisficingProblem};
+use satisfice::SatisficingProblem;
+use satisfice::catalogue::Catalogued;
 use satisfice_bench::plot::{Colour, Layer, Map, Maps, draw_maps};
 use satisfice_problems::{Falsification, Transmission};
 

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     for (name, title) in systems {
         let problem = System::new(name, 1e-5, 0.01)?;
-        let count = satisfice::Catalogued::reference_hits(&problem).ok_or("a count")?;
+        let count = satisfice::catalogue::Catalogued::reference_hits(&problem).ok_or("a count")?;
         let report = gallery::search(&problem, 1_500_000, count)?;
         let roots: Vec<Vec<f64>> = report
             .hits()

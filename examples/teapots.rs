@@ -10,7 +10,8 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use satisfice::{Budget, Catalogued, Report, SatisficingProblem, Search, Values, engine};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
 use satisfice_bench::picture::{Picture, View};
 use satisfice_bench::plot::{self, Chart, Curve, Format, Panel};
 use satisfice_collision::broad::PointGrid;
@@ -102,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn teapots(order: &str) -> Result<Teapots, satisfice::Error> {
-    Teapots::from_values(&Values::with(
+    Teapots::from_params(&Params::with(
         Teapots::PARAMETERS,
         Teapots::NAME,
         [("order", order)],

@@ -18,7 +18,8 @@ use std::hint::black_box;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
 use loops::{latest_hit_loop, random_loop};
 use problems::{Lattice, Slow};
-use satisfice::{Archive, Budget, Catalogued, SatisficingProblem, Search, SearchRng, Values, engine};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Archive, Budget, SatisficingProblem, Search, SearchRng, engine};
 use satisfice_collision::problem::Teapots;
 
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
@@ -74,7 +75,7 @@ fn engines(c: &mut Criterion) {
 
 /// Two teapots, as `satisfice run teapots` takes them by default.
 pub(crate) fn teapots() -> Teapots {
-    Teapots::from_values(&Values::defaults(Teapots::PARAMETERS).unwrap()).unwrap()
+    Teapots::from_params(&Params::defaults(Teapots::PARAMETERS).unwrap()).unwrap()
 }
 
 fn archive(c: &mut Criterion) {

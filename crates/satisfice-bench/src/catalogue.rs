@@ -1,6 +1,6 @@
 //! Every problem that has a name. One line each in [`all`].
 
-use satisfice::{Catalogued, Parameter, Values};
+use satisfice::catalogue::{Catalogued, Parameter, Params};
 use satisfice_cloth::Cloth;
 use satisfice_collision::problem::{Pleats, Teapots};
 use satisfice_problems::{
@@ -16,7 +16,7 @@ use crate::exact::Geometric;
 use crate::instance::{self, Instance};
 
 /// What makes an instance from its parameters.
-pub type Build = fn(&Values) -> Result<Box<dyn Instance>, Error>;
+pub type Build = fn(&Params) -> Result<Box<dyn Instance>, Error>;
 
 /// One problem of the catalogue.
 #[derive(Debug, Clone, Copy)]
@@ -69,7 +69,7 @@ impl Entry {
         &self,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Box<dyn Instance>, Error> {
-        (self.build)(&Values::with(self.parameters, self.name, settings)?)
+        (self.build)(&Params::with(self.parameters, self.name, settings)?)
     }
 }
 

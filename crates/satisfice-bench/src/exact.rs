@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use satisfice::{Catalogued, Completeness, Counts, SatisficingProblem, StopReason, TracePoint};
+use satisfice::catalogue::Catalogued;
+use satisfice::{Completeness, Counts, SatisficingProblem, StopReason, TracePoint};
 use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::{Prepared, Recipe};

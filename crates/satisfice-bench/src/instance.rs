@@ -1,6 +1,6 @@
 //! A problem with its parameters set, behind one virtual call a run.
 
-use satisfice::{Catalogued, Values};
+use satisfice::catalogue::{Catalogued, Params};
 use satisfice_collision::VertexPairs;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -63,29 +63,29 @@ struct Built<P> {
 }
 
 /// Builds the instance with these values.
-pub(crate) fn build<P>(values: &Values) -> Result<Box<dyn Instance>, Error>
+pub(crate) fn build<P>(params: &Params) -> Result<Box<dyn Instance>, Error>
 where
     P: Catalogued + Send + 'static,
     P::Solution: Serialize + DeserializeOwned,
 {
-    build_with::<P>(values, None)
+    build_with::<P>(params, None)
 }
 
 /// The same for a problem of vertex pairs.
 pub(crate) fn build_geometric<P: Geometric + Send + 'static>(
-    values: &Values,
+    params: &Params,
 ) -> Result<Box<dyn Instance>, Error> {
-    build_with::<P>(values, Some(P::vertex_pairs))
+    build_with::<P>(params, Some(P::vertex_pairs))
 }
 
-fn build_with<P>(values: &Values, pairs: Option<fn(&P) -> &VertexPairs>) -> Result<Box<dyn Instance>, Error>
+fn build_with<P>(params: &Params, pairs: Option<fn(&P) -> &VertexPairs>) -> Result<Box<dyn Instance>, Error>
 where
     P: Catalogued + Send + 'static,
     P::Solution: Serialize + DeserializeOwned,
 {
     Ok(Box::new(Built {
-        problem: P::from_values(values)?,
-        parameters: Settings::typed(&values.texts(), P::PARAMETERS),
+        problem: P::from_params(params)?,
+        parameters: Settings::typed(&params.texts(), P::PARAMETERS),
         pairs,
     }))
 }

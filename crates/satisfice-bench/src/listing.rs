@@ -1,7 +1,8 @@
 //! Engines and problems with their parameters, as data: what `list --json` prints.
 
-use satisfice::parameter::Kind;
-use satisfice::{Parameter, engine};
+use satisfice::catalogue::ParamKind;
+use satisfice::catalogue::Parameter;
+use satisfice::engine;
 use serde::Serialize;
 
 use crate::catalogue;
@@ -81,10 +82,10 @@ pub enum Range {
 impl From<&Parameter> for Row {
     fn from(parameter: &Parameter) -> Self {
         let values = match parameter.kind {
-            Kind::Integer { min, max, default } => Range::Integer { default, min, max },
-            Kind::Real { min, max, default } => Range::Real { default, min, max },
-            Kind::Choice { of, default } => Range::Choice { default, of },
-            Kind::Text { default } => Range::Text { default },
+            ParamKind::Integer { min, max, default } => Range::Integer { default, min, max },
+            ParamKind::Real { min, max, default } => Range::Real { default, min, max },
+            ParamKind::Choice { of, default } => Range::Choice { default, of },
+            ParamKind::Text { default } => Range::Text { default },
         };
         Self {
             name: parameter.name,

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use satisfice::{Budget, Catalogued, Search, Values, WarmStart, engine};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, Search, WarmStart, engine};
 use satisfice_collision::problem::Teapots;
 use satisfice_collision::{Placement, generate};
 
@@ -33,7 +34,7 @@ impl MovingTeapots {
         let teapot = generate::teapot(13)?;
         let size = teapot.size();
         let along = teapot.bounds().longest_axis();
-        let mut problem = Teapots::from_values(&Values::defaults(Teapots::PARAMETERS)?)?;
+        let mut problem = Teapots::from_params(&Params::defaults(Teapots::PARAMETERS)?)?;
         let mut scene = Self {
             frames: Vec::with_capacity(frames),
             hits: Vec::with_capacity(frames),

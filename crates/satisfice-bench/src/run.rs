@@ -269,7 +269,7 @@ fn sum(slices: &[Slice]) -> Counts {
 fn write_up<P>(
     problem: &P,
     request: &Request,
-    table: &[satisfice::Parameter],
+    table: &[satisfice::catalogue::Parameter],
     reports: &[Report<P::Solution>],
     all: &Archive<P::Solution>,
     trace: Vec<TracePoint>,

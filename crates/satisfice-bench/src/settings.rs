@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use satisfice::Parameter;
-use satisfice::parameter::Kind;
+use satisfice::catalogue::ParamKind;
+use satisfice::catalogue::Parameter;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -20,9 +20,9 @@ impl Settings {
         let typed = |(name, text): &(String, String)| {
             let row = table.iter().find(|row| row.name == name);
             let value = match row.map(|row| row.kind) {
-                Some(Kind::Integer { .. }) => text.parse::<i64>().ok().map(Value::from),
-                Some(Kind::Real { .. }) => text.parse::<f64>().ok().map(Value::from),
-                Some(Kind::Choice { .. } | Kind::Text { .. }) | None => None,
+                Some(ParamKind::Integer { .. }) => text.parse::<i64>().ok().map(Value::from),
+                Some(ParamKind::Real { .. }) => text.parse::<f64>().ok().map(Value::from),
+                Some(ParamKind::Choice { .. } | ParamKind::Text { .. }) | None => None,
             };
             (name.clone(), value.unwrap_or_else(|| Value::String(text.clone())))
         };

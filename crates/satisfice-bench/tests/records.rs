@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Axis, Budget, Cancel, Catalogued, Error, Parameter, SatisficingProblem, Space, Values};
+use satisfice::catalogue::{Catalogued, Parameter, Params};
+use satisfice::{Axis, Budget, Cancel, Error, SatisficingProblem, Space};
 use satisfice_bench::catalogue::{Entry, entry};
 use satisfice_bench::plot::{self, Format};
 use satisfice_bench::{Record, Request, catalogue};
@@ -42,18 +43,18 @@ impl Catalogued for Corner {
         Parameter::integer("width", "points on a side", 40, 1, 1000),
         Parameter::integer("sum", "delta", 5, 0, 1000),
     ];
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let width = values.integer("width");
-        if values.integer("sum") > width {
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let width = params.integer("width");
+        if params.integer("sum") > width {
             return Err(Error::parameter(
                 "sum",
-                values.integer("sum"),
+                params.integer("sum"),
                 "at most the width",
             ));
         }
         Ok(Self {
             space: Space::new([Axis::integer(0, width - 1), Axis::integer(0, width - 1)])?,
-            sum: u32::try_from(values.count("sum")).unwrap(),
+            sum: u32::try_from(params.count("sum")).unwrap(),
         })
     }
     fn reference_hits(&self) -> Option<u64> {

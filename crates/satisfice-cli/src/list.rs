@@ -99,7 +99,7 @@ fn real(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use satisfice::Parameter;
+    use satisfice::catalogue::Parameter;
 
     use super::*;
 

@@ -1,6 +1,6 @@
 //! The cloth as a satisficing problem: one frame of its fall.
 
-use satisfice::{Parameter, Values};
+use satisfice::catalogue::{Parameter, Params};
 use satisfice_collision::problem::{Prepared, Recipe};
 use satisfice_collision::{Error, VertexOrder, VertexPairs};
 
@@ -54,26 +54,26 @@ impl Recipe for FallenCloth {
 
     type Pairs = VertexPairs;
 
-    fn build(values: &Values) -> Result<VertexPairs, Error> {
-        let columns = u32::try_from(values.count("columns")).unwrap_or(u32::MAX);
+    fn build(params: &Params) -> Result<VertexPairs, Error> {
+        let columns = u32::try_from(params.count("columns")).unwrap_or(u32::MAX);
         let settings = Settings {
             columns,
             ..Settings::default()
         };
         let mut cloth = Simulation::new(&settings)?;
-        for _ in 0..values.count("frame") {
+        for _ in 0..params.count("frame") {
             cloth.frame()?;
         }
-        let delta = values.real("delta") * settings.spacing();
-        let pairs = if values.text("pairs") == "sphere" {
+        let delta = params.real("delta") * settings.spacing();
+        let pairs = if params.text("pairs") == "sphere" {
             VertexPairs::between(&cloth.mesh()?, cloth.sphere(), delta)?
         } else {
             VertexPairs::within(&cloth.mesh()?, delta, 1)?
         };
-        let order = values
+        let order = params
             .text("order")
             .parse::<VertexOrder>()?
-            .with_seed(values.integer("order-seed").unsigned_abs());
+            .with_seed(params.integer("order-seed").unsigned_abs());
         Ok(pairs.with_orders(order, order))
     }
 

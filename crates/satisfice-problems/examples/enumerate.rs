@@ -2,11 +2,12 @@
 //!
 //! `cargo run --release -p satisfice-problems --example enumerate`: about ten seconds.
 
-use satisfice::{Catalogued, Error, Values};
+use satisfice::Error;
+use satisfice::catalogue::{Catalogued, Params};
 use satisfice_problems::{Arm, Falsification, Islands, Rastrigin, SallenKey, SevenJoints, Shell, count_hits};
 
 fn row<P: Catalogued<Scalar = f64>>(settings: &[(&str, &str)]) -> Result<bool, Error> {
-    let problem = P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied())?)?;
+    let problem = P::from_params(&Params::with(P::PARAMETERS, P::NAME, settings.iter().copied())?)?;
     let parameters: Vec<String> = (problem.description().parameters.iter())
         .map(|(name, value)| format!("{name}={value}"))
         .collect();

@@ -9,7 +9,8 @@
 use std::error::Error;
 use std::time::Instant;
 
-use satisfice::{Budget, Catalogued, Completeness, SatisficingProblem, Search, Values, engine};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, Completeness, SatisficingProblem, Search, engine};
 use satisfice_problems::{
     Arm, Cec2006, Costas, DiscPacking, Extendable, Falsification, GraphColouring, Himmelblau, Islands,
     Langford, LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat, SevenJoints,
@@ -52,7 +53,7 @@ fn main() -> Fallible {
 }
 
 fn make<P: Catalogued<Scalar = f64>>(settings: &[(&str, &str)]) -> Fallible<P> {
-    Ok(P::from_values(&Values::with(
+    Ok(P::from_params(&Params::with(
         P::PARAMETERS,
         P::NAME,
         settings.iter().copied(),
@@ -268,7 +269,7 @@ fn sallen_key() -> Fallible {
 fn falsification() -> Fallible {
     const INPUTS: usize = 5;
     let problem: Falsification = make(&[])?;
-    let limit = Values::with(Falsification::PARAMETERS, Falsification::NAME, [])?.real("limit");
+    let limit = Params::with(Falsification::PARAMETERS, Falsification::NAME, [])?.real("limit");
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

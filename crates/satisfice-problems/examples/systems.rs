@@ -3,7 +3,8 @@
 //! `cargo run --release -p satisfice-problems --example systems [RUNS [ENGINE]]`, 30 runs of `portfolio` by default. Budgets: 50,000
 //! evaluations for two unknowns, 100,000 for three, 200,000 for four and five, 500,000 above.
 
-use satisfice::{Budget, Catalogued, Search, engine};
+use satisfice::catalogue::Catalogued;
+use satisfice::{Budget, Search, engine};
 use satisfice_problems::{Himmelblau, System};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,6 +1,7 @@
 //! What problems on a lattice of cells share: the space, decoding, range minima, enumeration.
 
-use satisfice::{Axis, Description, Error, SatisficingProblem, Space};
+use satisfice::catalogue::Description;
+use satisfice::{Axis, Error, SatisficingProblem, Space};
 
 /// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices. Or the random keys of a
 /// permutation of `0..D`: reals whose ranks are the solution.
@@ -128,7 +129,7 @@ macro_rules! lattice_methods {
         fn encode(&self, cells: &Vec<u32>, values: &mut [f64]) -> bool {
             self.lattice.encode(cells, values)
         }
-        fn description(&self) -> satisfice::Description {
+        fn description(&self) -> satisfice::catalogue::Description {
             self.description.clone()
         }
     };
@@ -209,7 +210,7 @@ pub const ENUMERABLE: f64 = 2e7;
 /// more than `limit` points. Cost: one decoding and one fitness a point.
 ///
 /// ```
-/// use satisfice::Catalogued;
+/// use satisfice::catalogue::Catalogued;
 /// use satisfice_problems::{ENUMERABLE, Queens, count_hits};
 /// assert_eq!(count_hits(&Queens::new(6)?, ENUMERABLE), Some(4));
 /// # Ok::<(), satisfice::Error>(())

@@ -15,7 +15,7 @@
 //! makes them again.
 //!
 //! [`SatisficingProblem`]: satisfice::SatisficingProblem
-//! [`Catalogued`]: satisfice::Catalogued
+//! [`Catalogued`]: satisfice::catalogue::Catalogued
 
 mod cec2013;
 mod constraints;

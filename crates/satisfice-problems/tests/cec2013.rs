@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use satisfice::{Catalogued, SatisficingProblem, SearchRng, testing};
+use satisfice::catalogue::Catalogued;
+use satisfice::{SatisficingProblem, SearchRng, testing};
 use satisfice_problems::{Cec2013, SuiteData, peak_ratio};
 
 const OPTIMA: [usize; 20] = [2, 5, 1, 4, 2, 18, 36, 81, 216, 12, 6, 8, 6, 6, 8, 6, 8, 6, 8, 8];

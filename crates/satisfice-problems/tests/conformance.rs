@@ -1,12 +1,13 @@
 //! Every problem at its defaults keeps the laws of the framework's suite, and its table builds it.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Catalogued, Values, testing};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::testing;
 use satisfice_problems::*;
 
 fn keeps_the_laws<P: Catalogued>(settings: &[(&str, &str)]) {
-    let values = Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap();
-    let problem = P::from_values(&values).unwrap();
+    let values = Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap();
+    let problem = P::from_params(&values).unwrap();
     assert_eq!(testing::problem::check(&problem, 1), [], "{}", P::NAME);
     assert_eq!(problem.description().name, P::NAME);
     // What a report says builds the same problem again.
@@ -14,7 +15,7 @@ fn keeps_the_laws<P: Catalogued>(settings: &[(&str, &str)]) {
     let again = parameters
         .iter()
         .map(|(name, value)| (name.as_str(), value.as_str()));
-    let again = P::from_values(&Values::with(P::PARAMETERS, P::NAME, again).unwrap()).unwrap();
+    let again = P::from_params(&Params::with(P::PARAMETERS, P::NAME, again).unwrap()).unwrap();
     assert_eq!(again.description().parameters, parameters);
     assert_eq!(again.space(), problem.space());
 }

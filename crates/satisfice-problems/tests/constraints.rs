@@ -1,14 +1,15 @@
 //! Constraint problems: backtracking against full enumeration and published counts, bounds, encodings, DIMACS files.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Catalogued, Region, SatisficingProblem, SearchRng, Values};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Region, SatisficingProblem, SearchRng};
 use satisfice_problems::{
     Costas, ENUMERABLE, Encoding, Extendable, Formula, Graph, GraphColouring, Langford, LatinSquare,
     MagicSquare, Queens, Sat, backtrack, count_hits,
 };
 
 fn problem<P: Catalogued>(settings: &[(&str, &str)]) -> P {
-    P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap()
+    P::from_params(&Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap()
 }
 
 fn solutions(problem: &impl Extendable) -> Vec<Vec<u32>> {
@@ -245,8 +246,8 @@ fn dimacs_files() {
     let triangle = problem::<GraphColouring>(&[("file", path.to_str().unwrap())]);
     assert_eq!(triangle.reference_hits(), Some(6));
 
-    let missing = Values::with(Sat::PARAMETERS, "sat", [("file", "no/such/file.cnf")]).unwrap();
-    let error = Sat::from_values(&missing).unwrap_err().to_string();
+    let missing = Params::with(Sat::PARAMETERS, "sat", [("file", "no/such/file.cnf")]).unwrap();
+    let error = Sat::from_params(&missing).unwrap_err().to_string();
     assert!(
         error.starts_with("file = no/such/file.cnf is not allowed: a readable file"),
         "{error}"

@@ -2,7 +2,8 @@
 //! sampling, on problems whose hits cluster and on one whose hits do not.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Budget, Catalogued, Search, Values, engine};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, Search, engine};
 use satisfice_problems::{
     Arm, Falsification, Islands, Needles, Queens, Rastrigin, SallenKey, SevenJoints, Shell,
 };
@@ -15,7 +16,7 @@ const FAMILY: [&str; 3] = ["latest-hit-qpso", "pso-latest-hit", "portfolio"];
 /// Hits of all seeds together.
 fn hits<P: Catalogued<Scalar = f64>>(engine: &str, settings: &[(&str, &str)]) -> f64 {
     let problem =
-        P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap();
+        P::from_params(&Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap();
     let count = (0..SEEDS).map(|seed| {
         let mut search = Search::new(engine::build(engine).unwrap()).seed(seed);
         let report = search.run(&problem, &Budget::evaluations(EVALUATIONS)).unwrap();
@@ -76,7 +77,7 @@ fn latest_hits_lead_where_hits_cluster() {
 #[test]
 fn nobody_leads_on_needles() {
     let needles =
-        Needles::from_values(&Values::with(Needles::PARAMETERS, Needles::NAME, []).unwrap()).unwrap();
+        Needles::from_params(&Params::with(Needles::PARAMETERS, Needles::NAME, []).unwrap()).unwrap();
     let known = needles.reference_hits().unwrap() as f64;
     let expected = known * (1.0 - (1.0 - 1e-6_f64).powi(EVALUATIONS as i32)) * SEEDS as f64;
     let deviation = expected.sqrt();

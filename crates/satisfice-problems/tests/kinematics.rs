@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use approx::assert_relative_eq;
-use satisfice::{Catalogued, Located, SatisficingProblem, SearchRng};
+use satisfice::catalogue::Catalogued;
+use satisfice::{Located, SatisficingProblem, SearchRng};
 use satisfice_problems::{ENUMERABLE, Puma, SevenJoints, count_hits};
 
 type Matrix = [[f64; 4]; 4];

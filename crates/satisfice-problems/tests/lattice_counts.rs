@@ -4,13 +4,14 @@
 use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
-use satisfice::{Catalogued, Region, SatisficingProblem, SearchRng, Values};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Region, SatisficingProblem, SearchRng};
 use satisfice_problems::{
     Arm, ENUMERABLE, Falsification, Islands, Needles, Queens, Rastrigin, SallenKey, Shell, count_hits,
 };
 
 fn problem<P: Catalogued>(settings: &[(&str, &str)]) -> P {
-    P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap()
+    P::from_params(&Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap()
 }
 
 /// `formula` gets the cell indices; cell `k` of `m` has the centre `(k + 0.5) / m` of its axis.

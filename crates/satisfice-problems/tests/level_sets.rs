@@ -1,7 +1,8 @@
 //! Disc packings and the feasible sets of CEC2006.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Catalogued, SatisficingProblem, SearchRng};
+use satisfice::catalogue::Catalogued;
+use satisfice::{SatisficingProblem, SearchRng};
 use satisfice_problems::{Cec2006, DiscPacking, ENUMERABLE, count_hits};
 
 #[test]

@@ -1,11 +1,12 @@
 //! Root problems: every root is found from the threshold, none is found that is not one, bounds are sound.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::{Catalogued, Region, SatisficingProblem, SearchRng, Values};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Region, SatisficingProblem, SearchRng};
 use satisfice_problems::{Himmelblau, Roots};
 
 fn problem<P: Catalogued>(settings: &[(&str, &str)]) -> P {
-    P::from_values(&Values::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap()
+    P::from_params(&Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap()
 }
 
 /// Points of a fine grid with F below the threshold, polished: the distinct roots, each at least `apart` from the others.

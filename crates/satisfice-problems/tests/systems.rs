@@ -4,7 +4,8 @@
 use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
-use satisfice::{Catalogued, Region, SatisficingProblem, SearchRng, testing};
+use satisfice::catalogue::Catalogued;
+use satisfice::{Region, SatisficingProblem, SearchRng, testing};
 use satisfice_problems::System;
 
 /// Has a singular root at (1, 0), of which branch and bound proves nothing.

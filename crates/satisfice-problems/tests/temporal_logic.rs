@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use approx::assert_relative_eq;
-use satisfice::{Catalogued, SatisficingProblem, SearchRng};
+use satisfice::catalogue::Catalogued;
+use satisfice::{SatisficingProblem, SearchRng};
 use satisfice_problems::{Falsification, Specification, Trace, Transmission};
 
 fn random_trace(rng: &mut SearchRng, length: usize) -> Trace {

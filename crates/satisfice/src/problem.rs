@@ -1,8 +1,7 @@
 //! The problem: what a candidate means, how good it is, and when it is good enough.
 
-use crate::error::Error;
+use crate::catalogue::Description;
 use crate::identity::{Identity, Located};
-use crate::parameter::{Parameter, Values};
 use crate::scalar::{Real, copy_row};
 use crate::space::{Region, Space};
 
@@ -103,48 +102,6 @@ pub trait SatisficingProblem: Sync {
     /// Name and parameters, for the report.
     fn description(&self) -> Description {
         Description::default()
-    }
-}
-
-/// What a report says of its problem.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Description {
-    /// Its name, `"unnamed"` by default.
-    pub name: String,
-    /// Its parameters as text, in a fixed order.
-    pub parameters: Vec<(String, String)>,
-}
-
-impl Default for Description {
-    fn default() -> Self {
-        Self {
-            name: "unnamed".to_owned(),
-            parameters: Vec::new(),
-        }
-    }
-}
-
-/// A problem that can be named on a command line: it is made from a table of parameters.
-pub trait Catalogued: SatisficingProblem + Sized {
-    /// Its name, in lower case with hyphens.
-    const NAME: &'static str;
-    /// One line.
-    const SUMMARY: &'static str;
-    /// Where it comes from.
-    const SOURCE: &'static str;
-    /// Its parameters with defaults and ranges.
-    const PARAMETERS: &'static [Parameter];
-
-    /// The problem with these parameters; values are within their ranges already.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] where values do not fit each other.
-    fn from_values(values: &Values) -> Result<Self, Error>;
-
-    /// How many distinct hits there are, where that is known or can be enumerated in seconds. May take long.
-    fn reference_hits(&self) -> Option<u64> {
-        None
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::archive::{Archive, Hit};
 use crate::budget::{Budget, StopReason};
-use crate::problem::Description;
+use crate::catalogue::Description;
 use crate::unseen::Unseen;
 
 /// How complete the hits are.
@@ -66,9 +66,6 @@ impl core::ops::AddAssign for Counts {
         self.bound_calls += other.bound_calls;
     }
 }
-
-/// A name with parameters as text.
-pub use crate::problem::Description as Described;
 
 /// The result of one time slice: plain data.
 #[derive(Debug, Clone)]

@@ -4,9 +4,9 @@ use core::fmt::{Debug, Display, LowerExp};
 
 use num_traits::{Float, FloatConst};
 
+use crate::catalogue::Params;
 use crate::engine::{Engine, Entry};
 use crate::error::Error;
-use crate::parameter::Values;
 
 mod sealed {
     pub trait Sealed {}
@@ -55,7 +55,7 @@ pub trait Real:
     #[doc(hidden)]
     const ROUNDER: Self;
     #[doc(hidden)]
-    fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error>;
+    fn build(entry: &Entry, values: &Params) -> Result<Box<dyn Engine<Self>>, Error>;
 }
 
 /// The floor. Not every machine has an instruction for it, and a call of the library's costs as much as a cheap fitness: two
@@ -102,7 +102,7 @@ impl Real for f32 {
     fn below(self) -> Self {
         self.next_down()
     }
-    fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
+    fn build(entry: &Entry, values: &Params) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f32)(values)
     }
 }
@@ -132,7 +132,7 @@ impl Real for f64 {
     fn below(self) -> Self {
         self.next_down()
     }
-    fn build(entry: &Entry, values: &Values) -> Result<Box<dyn Engine<Self>>, Error> {
+    fn build(entry: &Entry, values: &Params) -> Result<Box<dyn Engine<Self>>, Error> {
         (entry.build_f64)(values)
     }
 }

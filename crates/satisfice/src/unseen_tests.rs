@@ -323,7 +323,7 @@ fn probes_do_not_disturb_the_engine() {
     let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
     let mut compared = 0;
     for entry in engine::all() {
-        let defaults = crate::Values::with(entry.parameters, entry.name, []).unwrap();
+        let defaults = crate::catalogue::Params::with(entry.parameters, entry.name, []).unwrap();
         if (entry.scheduled)(&defaults) {
             continue; // a schedule follows the whole budget, probes included
         }

@@ -342,7 +342,7 @@ fn what_does_not_fit_is_refused() {
         Err(Error::SpaceChanged { before: 3, now: 2 })
     ));
     let mut other = saved.clone();
-    other.problem = Some(satisfice::Description::default());
+    other.problem = Some(satisfice::catalogue::Description::default());
     let mut resumed = Search::resume(other, with(&[])).unwrap();
     assert!(matches!(
         resumed.run_resumed(&lattice, None, &mut (), None),

@@ -181,7 +181,7 @@ fn engines(choices: &[Choice]) -> Result<Vec<Chosen>, Error> {
     for (settings, label, name) in grids(choices) {
         if exact::find(&name).is_some() {
             // It has no parameters: whatever is set is unknown.
-            satisfice::Values::with(&[], &name, pairs(&settings))?;
+            satisfice::catalogue::Params::with(&[], &name, pairs(&settings))?;
             found.push(Chosen {
                 name,
                 label,

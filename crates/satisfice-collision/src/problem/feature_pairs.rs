@@ -1,6 +1,7 @@
 //! The problem of any kind of feature pair: which edges, triangles and vertices are closer than delta?
 
-use satisfice::{Axis, Description, Region, SatisficingProblem, Space};
+use satisfice::catalogue::Description;
+use satisfice::{Axis, Region, SatisficingProblem, Space};
 
 use super::metric::{PointMetric, far};
 use super::ranges;

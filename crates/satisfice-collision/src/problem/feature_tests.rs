@@ -3,7 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use satisfice::{Budget, Catalogued, Completeness, SatisficingProblem, Search, Values, engine, testing};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, Completeness, SatisficingProblem, Search, engine, testing};
 
 use super::*;
 use crate::distance::{PairKind, measure};
@@ -89,13 +90,13 @@ fn branch_and_bound_proves_the_exact_count() {
 #[test]
 fn branch_and_bound_proves_vertex_pairs() {
     let [a, b] = balls();
-    let teapots = Values::with(
+    let teapots = Params::with(
         Teapots::PARAMETERS,
         Teapots::NAME,
         [("segments", "4"), ("samples", "300")],
     )
     .unwrap();
-    let teapots = Teapots::from_values(&teapots).unwrap();
+    let teapots = Teapots::from_params(&teapots).unwrap();
     for problem in [
         VertexPairs::between(&a, &b, 0.2).unwrap(),
         VertexPairs::within(&fold(), 0.12, 1).unwrap(),

@@ -1,6 +1,6 @@
 //! Self-collision: a cloth laid in pleats, whose layers touch here and there.
 
-use satisfice::{Parameter, Values};
+use satisfice::catalogue::{Parameter, Params};
 
 use super::{FeaturePairs, Prepared, Recipe};
 use crate::error::Error;
@@ -19,10 +19,10 @@ const KINDS: [&str; 6] = [
 /// a vertex (of vertices: an edge) left out?
 ///
 /// ```
-/// use satisfice::{Catalogued, Values};
+/// use satisfice::catalogue::{Catalogued, Params};
 /// use satisfice_collision::problem::Pleats;
-/// let few = Values::with(Pleats::PARAMETERS, Pleats::NAME, [("columns", "31"), ("rows", "9")])?;
-/// let pleats = Pleats::from_values(&few)?;
+/// let few = Params::with(Pleats::PARAMETERS, Pleats::NAME, [("columns", "31"), ("rows", "9")])?;
+/// let pleats = Pleats::from_params(&few)?;
 /// assert_eq!(pleats.reference_hits(), Some(pleats.pairs().reference_pairs().len() as u64));
 /// # Ok::<(), satisfice::Error>(())
 /// ```
@@ -60,12 +60,12 @@ impl Recipe for PleatedCloth {
 
     type Pairs = FeaturePairs;
 
-    fn build(values: &Values) -> Result<FeaturePairs, Error> {
-        let [columns, rows, layers] = ["columns", "rows", "layers"].map(|name| values.count(name));
-        let cloth = generate::pleats(columns, rows, layers, values.real("gap"), values.real("phase"))?;
-        let kind = values.text("pairs").parse()?;
+    fn build(params: &Params) -> Result<FeaturePairs, Error> {
+        let [columns, rows, layers] = ["columns", "rows", "layers"].map(|name| params.count(name));
+        let cloth = generate::pleats(columns, rows, layers, params.real("gap"), params.real("phase"))?;
+        let kind = params.text("pairs").parse()?;
         let ring_width = usize::from(kind == crate::distance::PairKind::VertexVertex);
-        FeaturePairs::within(kind, &cloth, values.real("delta"), ring_width)
+        FeaturePairs::within(kind, &cloth, params.real("delta"), ring_width)
     }
 
     fn count(pairs: &FeaturePairs) -> u64 {

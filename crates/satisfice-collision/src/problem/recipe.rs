@@ -1,6 +1,7 @@
 //! Problems of pairs that a catalogue makes from parameters: all that they have in common.
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Space, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, Region, SatisficingProblem, Space};
 
 /// How a scene is made from parameters, and what is asked of it. With it [`Prepared`] is the problem.
 pub trait Recipe {
@@ -20,7 +21,7 @@ pub trait Recipe {
     ///
     /// # Errors
     /// [`crate::Error`] where values do not fit each other.
-    fn build(values: &Values) -> Result<Self::Pairs, crate::Error>;
+    fn build(params: &Params) -> Result<Self::Pairs, crate::Error>;
 
     /// How many hits there are: an exact count.
     fn count(pairs: &Self::Pairs) -> u64;
@@ -52,8 +53,8 @@ impl<R: Recipe> Catalogued for Prepared<R> {
     const SOURCE: &'static str = R::SOURCE;
     const PARAMETERS: &'static [Parameter] = R::PARAMETERS;
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let pairs = R::build(values).map_err(|error| match error {
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let pairs = R::build(params).map_err(|error| match error {
             crate::Error::Parameter {
                 parameter,
                 value,
@@ -63,7 +64,7 @@ impl<R: Recipe> Catalogued for Prepared<R> {
         })?;
         Ok(Self {
             pairs,
-            parameters: values.texts(),
+            parameters: params.texts(),
         })
     }
 

@@ -1,6 +1,6 @@
 //! Experiment I: two teapots that run into each other.
 
-use satisfice::{Parameter, Values};
+use satisfice::catalogue::{Parameter, Params};
 
 use super::{Prepared, Recipe, VertexPairs};
 use crate::error::Error;
@@ -15,10 +15,10 @@ use crate::sampling;
 /// Lengths are in units of the teapot's longest extent, its size.
 ///
 /// ```
-/// use satisfice::{Catalogued, Values};
+/// use satisfice::catalogue::{Catalogued, Params};
 /// use satisfice_collision::problem::Teapots;
-/// let few = Values::with(Teapots::PARAMETERS, Teapots::NAME, [("segments", "4"), ("samples", "200")])?;
-/// let teapots = Teapots::from_values(&few)?;
+/// let few = Params::with(Teapots::PARAMETERS, Teapots::NAME, [("segments", "4"), ("samples", "200")])?;
+/// let teapots = Teapots::from_params(&few)?;
 /// assert_eq!(teapots.reference_hits(), Some(teapots.pairs().reference_pairs().len() as u64));
 /// # Ok::<(), satisfice::Error>(())
 /// ```
@@ -87,12 +87,12 @@ impl Recipe for TwoTeapots {
 
     type Pairs = VertexPairs;
 
-    fn build(values: &Values) -> Result<VertexPairs, Error> {
-        let first = generate::teapot(values.count("segments"))?;
+    fn build(params: &Params) -> Result<VertexPairs, Error> {
+        let first = generate::teapot(params.count("segments"))?;
         let size = first.size();
         let mut offset = [0.0; 3];
-        offset[first.bounds().longest_axis()] = values.real("offset") * size;
-        let turn = values.real("rotation");
+        offset[first.bounds().longest_axis()] = params.real("offset") * size;
+        let turn = params.real("rotation");
         let placement = if turn == 0.0 {
             Placement::IDENTITY
         } else {
@@ -101,19 +101,19 @@ impl Recipe for TwoTeapots {
         let second = placement.moved(offset)?.place(&first)?;
 
         let [seed, order_seed] =
-            ["sample-seed", "order-seed"].map(|name| values.integer(name).unsigned_abs());
+            ["sample-seed", "order-seed"].map(|name| params.integer(name).unsigned_abs());
         let order = |stream: u64| -> Result<VertexOrder, Error> {
-            Ok(values
+            Ok(params
                 .text("order")
                 .parse::<VertexOrder>()?
                 .with_seed(stream_seed(order_seed, stream)))
         };
-        let pairs = VertexPairs::between(&first, &second, values.real("delta") * size)?;
-        let pairs = match values.count("samples") {
+        let pairs = VertexPairs::between(&first, &second, params.real("delta") * size)?;
+        let pairs = match params.count("samples") {
             0 => pairs,
             count => {
                 let draw = |mesh: &Mesh, stream| {
-                    sample(mesh, count, values.text("sampling"), stream_seed(seed, stream))
+                    sample(mesh, count, params.text("sampling"), stream_seed(seed, stream))
                 };
                 pairs.with_vertices(&draw(&first, 0)?, &draw(&second, 1)?)?
             }

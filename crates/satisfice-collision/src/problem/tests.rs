@@ -4,7 +4,8 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use satisfice::{Budget, Catalogued, SatisficingProblem, Search, Values, engine, testing};
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, SatisficingProblem, Search, engine, testing};
 
 use super::*;
 use crate::distance::Threshold;
@@ -313,7 +314,7 @@ fn the_laws_of_a_problem_hold() {
 // Teapots
 
 fn teapots(settings: &[(&str, &str)]) -> Result<Teapots, satisfice::Error> {
-    Teapots::from_values(&Values::with(
+    Teapots::from_params(&Params::with(
         Teapots::PARAMETERS,
         Teapots::NAME,
         settings.iter().copied(),

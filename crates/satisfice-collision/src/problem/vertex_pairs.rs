@@ -233,7 +233,7 @@ impl SatisficingProblem for VertexPairs {
         self.pairs.canonical(hit)
     }
 
-    fn description(&self) -> satisfice::Description {
+    fn description(&self) -> satisfice::catalogue::Description {
         let side = |name: &str, side: &Side| {
             [
                 (format!("vertices-{name}"), side.len().to_string()),
@@ -249,7 +249,7 @@ impl SatisficingProblem for VertexPairs {
             Some(_) => "vertex-pairs",
             None => "vertex-self-pairs",
         };
-        satisfice::Description {
+        satisfice::catalogue::Description {
             name: name.to_owned(),
             parameters,
         }

@@ -1,8 +1,7 @@
 //! One problem of the suite as a satisficing problem.
 
-use satisfice::{
-    Axis, Catalogued, Description, Error, Located, Parameter, SatisficingProblem, Space, Values,
-};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Axis, Error, Located, SatisficingProblem, Space};
 
 use super::basic;
 use super::composition::{Composition, recipe};
@@ -89,7 +88,7 @@ enum Function {
 /// methods for multimodal function optimization, with the corrections of 2016.
 ///
 /// ```
-/// use satisfice::Catalogued;
+/// use satisfice::catalogue::Catalogued;
 /// use satisfice_problems::Cec2013;
 /// let vincent = Cec2013::new(7, 1e-4, "")?;
 /// assert_eq!((vincent.reference_hits(), vincent.max_evaluations()), (Some(36), 200_000));
@@ -292,11 +291,11 @@ impl Catalogued for Cec2013 {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
+    fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(
-            values.count("problem"),
-            values.real("accuracy"),
-            values.text("data"),
+            params.count("problem"),
+            params.real("accuracy"),
+            params.text("data"),
         )
     }
 

@@ -1,6 +1,7 @@
 //! Costas arrays.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
@@ -103,8 +104,8 @@ impl Catalogued for Costas {
         Parameter::choice("encoding", "how axes become a permutation", "integer", ENCODINGS),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("n"), Encoding::of(values.text("encoding")))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("n"), Encoding::of(params.text("encoding")))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -1,6 +1,7 @@
 //! Colourings of a graph.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::{Extendable, Violations, constraint_methods, counted, dimacs};
 use crate::lattice::{Lattice, description};
@@ -151,9 +152,9 @@ impl Catalogued for GraphColouring {
         Parameter::integer("colours", "number of colours, k", 3, 1, 1000),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let (name, file) = (values.text("graph"), values.text("file"));
-        let colours = values.count("colours") as u32;
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let (name, file) = (params.text("graph"), params.text("file"));
+        let colours = params.count("colours") as u32;
         if !file.is_empty() {
             return Self::described(file, Graph::read_dimacs(file)?, colours);
         }

@@ -1,6 +1,7 @@
 //! Langford pairings.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::{Extendable, Violations, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
@@ -113,8 +114,8 @@ impl Catalogued for Langford {
         "Langford 1958, Mathematical Gazette 42:228; counts: OEIS A014552 times 2, and by backtracking";
     const PARAMETERS: &'static [Parameter] = &[Parameter::integer("n", "order", 8, 1, LARGEST as i64)];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("n"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("n"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -1,6 +1,7 @@
 //! Latin squares.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::{Extendable, Violations, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
@@ -91,8 +92,8 @@ impl Catalogued for LatinSquare {
         "Euler 1782; counts: McKay, Wanless 2005, doi 10.1007/s00026-005-0261-7, and by backtracking";
     const PARAMETERS: &'static [Parameter] = &[Parameter::integer("n", "order", 4, 1, LARGEST as i64)];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("n"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("n"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -1,6 +1,7 @@
 //! Magic squares.
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, Region, SatisficingProblem};
 
 use super::{ENCODINGS, Encoding, Extendable, counted};
 use crate::lattice::{Lattice, description, lattice_methods};
@@ -135,8 +136,8 @@ impl Catalogued for MagicSquare {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("n"), Encoding::of(values.text("encoding")))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("n"), Encoding::of(params.text("encoding")))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -1,6 +1,7 @@
 //! Queens that do not attack each other.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
@@ -104,8 +105,8 @@ impl Catalogued for Queens {
         Parameter::choice("encoding", "how axes become rows", "integer", ENCODINGS),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::with_encoding(values.count("n"), Encoding::of(values.text("encoding")))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::with_encoding(params.count("n"), Encoding::of(params.text("encoding")))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -2,7 +2,8 @@
 
 use core::fmt::Write;
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, SearchRng, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem, SearchRng};
 
 use super::{Extendable, Violations, constraint_methods, counted, dimacs};
 use crate::lattice::{Lattice, description};
@@ -184,16 +185,16 @@ impl Catalogued for Sat {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let file = values.text("file");
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let file = params.text("file");
         if !file.is_empty() {
             return Self::described([("file", file.to_owned())], Formula::read_dimacs(file)?);
         }
-        let (variables, seed) = (values.count("variables"), values.count("formula-seed"));
-        let clauses = (values.real("ratio") * variables as f64).round() as usize;
+        let (variables, seed) = (params.count("variables"), params.count("formula-seed"));
+        let clauses = (params.real("ratio") * variables as f64).round() as usize;
         let parameters = [
             ("variables", variables.to_string()),
-            ("ratio", values.real("ratio").to_string()),
+            ("ratio", params.real("ratio").to_string()),
             ("formula-seed", seed.to_string()),
         ];
         Self::described(parameters, Formula::random(variables, clauses, seed as u64)?)

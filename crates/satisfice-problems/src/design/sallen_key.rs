@@ -2,7 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{ENUMERABLE, Lattice, count_hits, description, lattice_methods};
 
@@ -174,12 +175,12 @@ impl Catalogued for SallenKey {
         Parameter::real("quality-tolerance", "tolerance of ln(Q / q)", 0.02, 1e-9, 10.0),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
+    fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(Window {
-            frequency: values.real("frequency"),
-            quality: values.real("quality"),
-            frequency_tolerance: values.real("frequency-tolerance"),
-            quality_tolerance: values.real("quality-tolerance"),
+            frequency: params.real("frequency"),
+            quality: params.real("quality"),
+            frequency_tolerance: params.real("frequency-tolerance"),
+            quality_tolerance: params.real("quality-tolerance"),
         })
     }
 

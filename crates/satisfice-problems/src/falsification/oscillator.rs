@@ -1,6 +1,7 @@
 //! A damped oscillator that must not swing too far.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{Lattice, Published, centres, description, lattice_methods, reference};
 
@@ -100,8 +101,8 @@ impl Catalogued for Falsification {
         Parameter::real("limit", "what |x| must not exceed", PUBLISHED_LIMIT, 0.0, 100.0),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("levels"), values.real("limit"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("levels"), params.real("limit"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::temporal_logic::{Specification, Trace};
 use crate::lattice::{ENUMERABLE, Lattice, count_hits, description, lattice_methods};
@@ -162,8 +163,8 @@ impl Catalogued for Transmission {
         Parameter::integer("levels", "levels of the throttle, m", 10, 2, 1000),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.text("specification"), values.count("levels"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.text("specification"), params.count("levels"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

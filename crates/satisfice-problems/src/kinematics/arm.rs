@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{Lattice, Published, as_published, description, lattice_methods, reference};
 
@@ -126,13 +127,13 @@ impl Catalogued for Arm {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let links = values.count("links");
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let links = params.count("links");
         let (cells, threshold) = as_published(
             PUBLISHED,
             ("links", links),
-            values.count("cells"),
-            values.real("threshold"),
+            params.count("cells"),
+            params.real("threshold"),
         )?;
         Self::new(links, cells, threshold)
     }

@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use satisfice::{Boundary, Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Boundary, Error, SatisficingProblem};
 
 use crate::lattice::description;
 use crate::number::Number;
@@ -123,8 +124,8 @@ impl Catalogued for Puma {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.real("threshold"), values.real("separation"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.real("threshold"), params.real("separation"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

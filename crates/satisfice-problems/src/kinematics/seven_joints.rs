@@ -1,6 +1,7 @@
 //! An arm with seven joints and their limits.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{ENUMERABLE, Lattice, count_hits, description, lattice_methods};
 
@@ -162,8 +163,8 @@ impl Catalogued for SevenJoints {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("cells"), values.real("threshold"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("cells"), params.real("threshold"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -1,6 +1,7 @@
 //! Feasible sets of the CEC2006 problems of constrained optimisation.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{ENUMERABLE, Lattice, count_hits, description, lattice_methods};
 
@@ -189,11 +190,11 @@ impl Catalogued for Cec2006 {
         Parameter::real("threshold", "violation allowed, delta", 0.0, -1e6, 1e6),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
+    fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(
-            values.text("problem"),
-            values.count("cells"),
-            values.real("threshold"),
+            params.text("problem"),
+            params.count("cells"),
+            params.real("threshold"),
         )
     }
 

@@ -1,6 +1,7 @@
 //! Discs that do not overlap.
 
-use satisfice::{Axis, Catalogued, Description, Error, Parameter, SatisficingProblem, Space, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Axis, Error, SatisficingProblem, Space};
 
 use crate::constraints::{Extendable, counted};
 use crate::lattice::description;
@@ -161,11 +162,11 @@ impl Catalogued for DiscPacking {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
+    fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(
-            values.count("discs"),
-            values.count("grid"),
-            values.real("diameter"),
+            params.count("discs"),
+            params.count("grid"),
+            params.real("diameter"),
         )
     }
 

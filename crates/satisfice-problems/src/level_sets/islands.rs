@@ -1,6 +1,7 @@
 //! Eight balls in four dimensions.
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, Region, SatisficingProblem};
 
 use crate::lattice::{Lattice, Published, RangeMinimum, centres, description, lattice_methods, reference};
 
@@ -102,8 +103,8 @@ impl Catalogued for Islands {
         Parameter::real("threshold", "radius of the balls, delta", 0.1, 0.0, 2.0),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.count("cells"), values.real("threshold"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.count("cells"), params.real("threshold"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

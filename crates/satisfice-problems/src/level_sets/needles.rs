@@ -1,6 +1,7 @@
 //! Needles in a haystack: the negative control.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{ENUMERABLE, Lattice, count_hits, description, lattice_methods};
 
@@ -83,11 +84,11 @@ impl Catalogued for Needles {
         Parameter::integer("hash-seed", "which hash", 0, 0, i64::MAX),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
+    fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(
-            values.count("cells"),
-            values.real("threshold"),
-            values.count("hash-seed") as u64,
+            params.count("cells"),
+            params.real("threshold"),
+            params.count("hash-seed") as u64,
         )
     }
 

@@ -2,7 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, Region, SatisficingProblem};
 
 use crate::lattice::{
     Lattice, Published, RangeMinimum, as_published, centres, description, lattice_methods, reference,
@@ -26,7 +27,8 @@ const PUBLISHED: &[Published] = &[
 /// Source: Rastrigin 1974; in D dimensions Mühlenbein, Schomisch, Born 1991, doi 10.1016/S0167-8191(05)80052-3.
 ///
 /// ```
-/// use satisfice::{Catalogued, SatisficingProblem};
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice::SatisficingProblem;
 /// let problem = satisfice_problems::Rastrigin::new(2, 1000, 4.0)?;
 /// assert!(problem.fitness(&vec![500, 500]) < 0.01); // next to the optimum
 /// assert_eq!(problem.reference_hits(), Some(15_136));
@@ -112,13 +114,13 @@ impl Catalogued for Rastrigin {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let dimension = values.count("dimension");
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let dimension = params.count("dimension");
         let (cells, threshold) = as_published(
             PUBLISHED,
             ("dimension", dimension),
-            values.count("cells"),
-            values.real("threshold"),
+            params.count("cells"),
+            params.real("threshold"),
         )?;
         Self::new(dimension, cells, threshold)
     }

@@ -1,6 +1,7 @@
 //! A thin spherical shell.
 
-use satisfice::{Catalogued, Description, Error, Parameter, Region, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, Region, SatisficingProblem};
 
 use crate::lattice::{
     Lattice, Published, RangeMinimum, as_published, centres, description, lattice_methods, reference,
@@ -106,13 +107,13 @@ impl Catalogued for Shell {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        let dimension = values.count("dimension");
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        let dimension = params.count("dimension");
         let (cells, threshold) = as_published(
             PUBLISHED,
             ("dimension", dimension),
-            values.count("cells"),
-            values.real("threshold"),
+            params.count("cells"),
+            params.real("threshold"),
         )?;
         Self::new(dimension, cells, threshold)
     }

@@ -169,7 +169,7 @@ macro_rules! root_methods {
         fn canonical(&self, hit: satisfice::Located<f64>) -> satisfice::Located<f64> {
             self.equations.canonical(hit)
         }
-        fn description(&self) -> satisfice::Description {
+        fn description(&self) -> satisfice::catalogue::Description {
             self.description.clone()
         }
     };

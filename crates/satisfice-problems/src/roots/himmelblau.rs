@@ -1,6 +1,7 @@
 //! Himmelblau's function.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::equations::{Equations, functions, root_methods};
 use crate::lattice::description;
@@ -68,8 +69,8 @@ impl Catalogued for Himmelblau {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.real("threshold"), values.real("separation"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.real("threshold"), params.real("separation"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -1,6 +1,7 @@
 //! Nonlinear systems from the literature, by name.
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::certify;
 use super::equations::{Equations, root_methods};
@@ -119,11 +120,11 @@ impl Catalogued for System {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
+    fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(
-            values.text("name"),
-            values.real("threshold"),
-            values.real("separation"),
+            params.text("name"),
+            params.real("threshold"),
+            params.real("separation"),
         )
     }
 

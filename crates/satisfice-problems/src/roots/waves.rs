@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use satisfice::{Catalogued, Description, Error, Parameter, SatisficingProblem, Values};
+use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
+use satisfice::{Error, SatisficingProblem};
 
 use super::equations::{Equations, functions, root_methods};
 use crate::lattice::description;
@@ -76,8 +77,8 @@ impl Catalogued for Roots {
         ),
     ];
 
-    fn from_values(values: &Values) -> Result<Self, Error> {
-        Self::new(values.real("threshold"), values.real("separation"))
+    fn from_params(params: &Params) -> Result<Self, Error> {
+        Self::new(params.real("threshold"), params.real("separation"))
     }
 
     fn reference_hits(&self) -> Option<u64> {

@@ -5,9 +5,9 @@ use std::collections::BinaryHeap;
 use super::region_tree::{Node, Split, Splitter};
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Region;
@@ -86,7 +86,7 @@ pub(super) struct BranchAndBound<S> {
     given_up: bool,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     #[expect(clippy::cast_precision_loss, reason = "at most 2^20")]
     Ok(Box::new(BranchAndBound {
         leaf: values.count("leaf") as f64,

@@ -2,9 +2,9 @@
 
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::{Boundary, Space};
@@ -61,7 +61,7 @@ pub(super) struct Descent<S> {
 
 impl<S: Real> Descent<S> {
     /// A descent by the rows [`STEP`] and [`SHORTEST`].
-    pub(super) fn new(values: &Values) -> Self {
+    pub(super) fn new(values: &Params) -> Self {
         Self {
             first_step: S::of(values.real("step")),
             shortest: S::of(values.real("shortest")),
@@ -181,7 +181,7 @@ impl<S: Real> Part for Descent<S> {
     crate::saved_fields!(point, fitness, step, around, tried, current, first, touches);
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     Ok(Box::new(Descent::new(values)))
 }
 

@@ -4,9 +4,9 @@ use super::descent::{Descent, SHORTEST, STEP};
 use super::flood::Flood;
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
@@ -35,7 +35,7 @@ pub(super) struct DescentFlood<S> {
     flooding: bool,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     Ok(Box::new(DescentFlood {
         descent: Descent::new(values),
         flood: Flood::new(values.real("flood-step")),

@@ -1,12 +1,12 @@
 //! The registry: what the command line, the docs, the conformance suite and the benches walk.
 
 use super::{Engine, pso_inertia, qpso};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 /// What makes a boxed engine from its parameters.
-pub type Build<S> = fn(&Values) -> Result<Box<dyn Engine<S>>, Error>;
+pub type Build<S> = fn(&Params) -> Result<Box<dyn Engine<S>>, Error>;
 
 /// One engine of the registry.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ pub struct Entry {
     pub parameters: &'static [Parameter],
     /// Whether, with these parameters, a schedule follows the budget, so that a short run is no prefix of a long one unless
     /// both have one [horizon](crate::Budget::with_horizon).
-    pub scheduled: fn(&Values) -> bool,
+    pub scheduled: fn(&Params) -> bool,
     /// Builds it for `f32`.
     pub build_f32: Build<f32>,
     /// Builds it for `f64`.
@@ -49,7 +49,7 @@ impl Entry {
     /// defaults.
     ///
     /// # Errors
-    /// [`Error::Unknown`] and [`Error::Parameter`] as in [`Values::with`].
+    /// [`Error::Unknown`] and [`Error::Parameter`] as in [`Params::with`].
     pub fn build<'a, S: Real>(
         &self,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
@@ -57,8 +57,8 @@ impl Entry {
         let (common, own): (Vec<_>, Vec<_>) = settings
             .into_iter()
             .partition(|(name, _)| COMMON_PARAMETERS.iter().any(|row| row.name == *name));
-        let common = Values::with(COMMON_PARAMETERS, self.name, common)?;
-        let values = Values::with(self.parameters, self.name, own)?;
+        let common = Params::with(COMMON_PARAMETERS, self.name, common)?;
+        let values = Params::with(self.parameters, self.name, own)?;
         let mut named = Named {
             name: self.name.to_owned(),
             parameters: values.texts(),

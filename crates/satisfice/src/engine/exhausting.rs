@@ -131,7 +131,7 @@ mod tests {
             "portfolio",
         ] {
             let entry = find(name).unwrap();
-            let values = crate::Values::defaults(entry.parameters).unwrap();
+            let values = crate::catalogue::Params::defaults(entry.parameters).unwrap();
             let found = check::<f64>((entry.scheduled)(&values), &mut || {
                 Ok(entry.build([])?.exhausting())
             });

@@ -4,8 +4,8 @@ use super::Engine;
 use super::quantum_swarm::{ALPHA, QuantumSwarm};
 use super::schedule::Schedule;
 use super::swarm::{self, Attractor};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 pub(super) const PARAMETERS: &[Parameter] = &[swarm::particles(30), ALPHA, swarm::BATCH];
@@ -30,7 +30,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[swarm::particles(30), ALPHA, swarm
 /// Eq. 2 is [`potential_well`](super::potential_well)'s. N = 30 and alpha = 1 as published.
 ///
 /// Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539. Differs from the paper in nothing that survives of it.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let alpha = Schedule::fixed(values.real("alpha"));
     Ok(Box::new(QuantumSwarm::new(
         values,

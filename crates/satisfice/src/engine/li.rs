@@ -7,9 +7,9 @@ use super::region_tree::{Split, Splitter};
 use super::velocity_swarm::{Coefficients, v_max};
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::{Axis, Region, Space};
@@ -88,7 +88,7 @@ pub(super) struct Li<S> {
     fitness: Vec<S>,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     #[expect(clippy::cast_precision_loss, reason = "at most 2^20")]
     Ok(Box::new(Li {
         leaf: S::of(values.count("leaf") as f64),

@@ -4,8 +4,8 @@ use super::Engine;
 use super::schedule::Schedule;
 use super::swarm::{self, Attractor};
 use super::velocity_swarm::{Coefficients, VelocitySwarm, v_max};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 /// The row for phi.
@@ -29,7 +29,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
 ///
 /// Clerc, Kennedy 2002, doi 10.1109/4235.985692: phi = 4.1, chi = 0.7298; Vmax = Xmax, half an axis, after Eberhart, Shi
 /// 2000, doi 10.1109/CEC.2000.870279.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let deletes = values.text("deletion") == "yes";
     let coefficients = constriction(values);
     Ok(Box::new(VelocitySwarm::new(
@@ -41,7 +41,7 @@ pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Erro
 }
 
 /// The coefficients of a constricted swarm by the rows [`PHI`] and [`v_max`].
-pub(super) fn constriction<S: Real>(values: &Values) -> Coefficients<S> {
+pub(super) fn constriction<S: Real>(values: &Params) -> Coefficients<S> {
     let phi = values.real("phi");
     let chi = chi(phi);
     Coefficients {

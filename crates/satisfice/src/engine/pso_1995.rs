@@ -4,8 +4,8 @@ use super::Engine;
 use super::schedule::Schedule;
 use super::swarm::{self, Attractor};
 use super::velocity_swarm::{Coefficients, VelocitySwarm, acceleration, v_max};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 pub(super) const PARAMETERS: &[Parameter] = &[
@@ -21,7 +21,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
 ///
 /// Kennedy, Eberhart 1995, doi 10.1109/ICNN.1995.488968; Vmax of 10 to 20 % of an axis after Eberhart, Shi 2001,
 /// doi 10.1109/CEC.2001.934374. Differs from the paper, which leaves the bounds open, in what happens there.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let coefficients = Coefficients {
         inertia: Schedule::fixed(1.0),
         cognitive: S::of(values.real("c1")),

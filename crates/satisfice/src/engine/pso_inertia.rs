@@ -4,8 +4,8 @@ use super::Engine;
 use super::schedule::Schedule;
 use super::swarm::{self, Attractor};
 use super::velocity_swarm::{Coefficients, VelocitySwarm, acceleration, v_max};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 pub(super) const PARAMETERS: &[Parameter] = &[
@@ -24,7 +24,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
 /// Shi, Eberhart 1998, doi 10.1109/ICEC.1998.699146; the schedule and Vmax = Xmax, half an axis, after Shi, Eberhart 1999,
 /// doi 10.1109/CEC.1999.785511. Differs from the paper in that w follows the elapsed share of the budget, not a count of
 /// iterations.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let coefficients = Coefficients {
         inertia: Schedule::linear(values.real("w"), values.real("w-end")),
         cognitive: S::of(values.real("c1")),
@@ -40,6 +40,6 @@ pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Erro
     )))
 }
 
-pub(super) fn is_scheduled(values: &Values) -> bool {
+pub(super) fn is_scheduled(values: &Params) -> bool {
     values.real("w") != values.real("w-end")
 }

@@ -4,8 +4,8 @@ use super::Engine;
 use super::pso::{PHI, constriction};
 use super::swarm::{self, Attractor};
 use super::velocity_swarm::{VelocitySwarm, v_max};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 pub(super) const PARAMETERS: &[Parameter] = &[swarm::particles(30), PHI, v_max(0.5), swarm::BATCH];
@@ -14,7 +14,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[swarm::particles(30), PHI, v_max(0
 /// become personal bests.
 ///
 /// Clerc, Kennedy 2002, doi 10.1109/4235.985692, with the attractor of Chen et al. 2012, doi 10.3923/itj.2012.536.539.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let coefficients = constriction(values);
     Ok(Box::new(VelocitySwarm::new(
         values,

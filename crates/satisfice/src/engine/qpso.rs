@@ -4,8 +4,8 @@ use super::Engine;
 use super::quantum_swarm::{ALPHA, QuantumSwarm};
 use super::schedule::Schedule;
 use super::swarm::{self, Attractor};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 pub(super) const PARAMETERS: &[Parameter] = &[
@@ -28,7 +28,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
 ///
 /// Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875; alpha after Sun et al. 2012, doi 10.1162/EVCO_a_00049. Differs from the
 /// paper in the schedule, which follows the elapsed share of the budget and not a count of iterations.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let (alpha, end) = (values.real("alpha"), values.real("alpha-end"));
     let alpha = if is_scheduled(values) {
         Schedule::linear(alpha, end)
@@ -38,6 +38,6 @@ pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Erro
     Ok(Box::new(QuantumSwarm::new(values, alpha, Attractor::Best, false)))
 }
 
-pub(super) fn is_scheduled(values: &Values) -> bool {
+pub(super) fn is_scheduled(values: &Params) -> bool {
     values.real("alpha-end") > 0.0
 }

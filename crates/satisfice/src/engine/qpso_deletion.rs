@@ -4,8 +4,8 @@ use super::Engine;
 use super::quantum_swarm::{ALPHA, QuantumSwarm};
 use super::schedule::Schedule;
 use super::swarm::{self, Attractor};
+use crate::catalogue::{Parameter, Params};
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 
 pub(super) const PARAMETERS: &[Parameter] = &[swarm::particles(30), ALPHA, swarm::BATCH];
@@ -15,7 +15,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[swarm::particles(30), ALPHA, swarm
 ///
 /// Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875. Differs from the paper in the deletion, and in that a hit becomes P_i
 /// even if it is worse than the P_i that was deleted.
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let alpha = Schedule::fixed(values.real("alpha"));
     Ok(Box::new(QuantumSwarm::new(values, alpha, Attractor::Best, true)))
 }

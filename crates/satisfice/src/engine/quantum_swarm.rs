@@ -5,9 +5,9 @@ use super::schedule::Schedule;
 use super::swarm::{Attractor, Swarm};
 use super::{Ask, Engine, Origin, Steps, WarmStart};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
@@ -39,7 +39,7 @@ pub(super) struct QuantumSwarm<S> {
 }
 
 impl<S: Real> QuantumSwarm<S> {
-    pub(super) fn new(values: &Values, alpha: Schedule<S>, attractor: Attractor, deletes: bool) -> Self {
+    pub(super) fn new(values: &Params, alpha: Schedule<S>, attractor: Attractor, deletes: bool) -> Self {
         Self {
             swarm: Swarm::new(values, attractor, deletes),
             alpha,

@@ -5,9 +5,9 @@ use super::one_plus_one::Mutation;
 use super::recombination::Pairs;
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
@@ -102,7 +102,7 @@ pub(super) struct RestartedCmaEs<S> {
     position: Vec<S>,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let step = (values.real("smallest-step"), values.real("step"));
     let patience = values.count("patience") as u64;
     Ok(Box::new(RestartedCmaEs::new(

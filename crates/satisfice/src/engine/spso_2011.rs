@@ -5,9 +5,9 @@ use super::swarm::{self, Attractor, Swarm};
 use super::velocity_swarm::drop_subnormals;
 use super::{Ask, Engine, Origin, WarmStart};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Boundary;
@@ -66,7 +66,7 @@ pub(super) struct Spso2011<S> {
     direction: Vec<S>,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let deletes = values.text("deletion") == "yes";
     Ok(Box::new(Spso2011 {
         swarm: Swarm::new(values, Attractor::Best, deletes),

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 
 use super::{Origin, Steps};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::{Real, copy_row};
 use crate::seed::SearchRng;
 use crate::state::Part;
@@ -68,7 +68,7 @@ pub(super) struct Swarm<S> {
 
 impl<S: Real> Swarm<S> {
     /// A swarm by the rows [`particles`] and [`BATCH`].
-    pub(super) fn new(values: &Values, attractor: Attractor, deletes: bool) -> Self {
+    pub(super) fn new(values: &Params, attractor: Attractor, deletes: bool) -> Self {
         let particles = values.count("particles");
         Self {
             particles,

@@ -4,9 +4,9 @@ use super::schedule::Schedule;
 use super::swarm::{Attractor, Swarm};
 use super::{Ask, Engine, Origin, Steps, WarmStart};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::{Real, copy_row};
 use crate::seed::SearchRng;
 use crate::space::Boundary;
@@ -63,7 +63,7 @@ pub(super) struct VelocitySwarm<S> {
 
 impl<S: Real> VelocitySwarm<S> {
     pub(super) fn new(
-        values: &Values,
+        values: &Params,
         coefficients: Coefficients<S>,
         attractor: Attractor,
         deletes: bool,

@@ -6,9 +6,9 @@ use super::swarm::{self, Attractor, Swarm};
 use super::velocity_swarm::{Coefficients, v_max};
 use super::{Ask, Engine, Origin, WarmStart};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::{Axis, Boundary};
@@ -81,7 +81,7 @@ pub(super) struct Wang<S> {
     sweeps: u64,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     Ok(Box::new(Wang {
         swarm: Swarm::new(values, Attractor::Best, true),
         coefficients: constriction(values),

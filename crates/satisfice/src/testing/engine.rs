@@ -9,10 +9,10 @@
 
 use super::case::{Case, spaces};
 use crate::budget::Budget;
+use crate::catalogue::Params;
 use crate::engine::{Entry, Named};
 use crate::error::Error;
 use crate::identity::Located;
-use crate::parameter::Values;
 use crate::problem::SatisficingProblem;
 use crate::report::Report;
 use crate::scalar::Real;
@@ -67,7 +67,7 @@ const LONG_RUN: u64 = 20_000;
 /// # Errors
 /// As [`Entry::build`].
 pub fn check_entry(entry: &Entry, settings: &[(&str, &str)]) -> Result<Vec<Violation>, Error> {
-    let values = Values::with(entry.parameters, entry.name, settings.iter().copied())?;
+    let values = Params::with(entry.parameters, entry.name, settings.iter().copied())?;
     let scheduled = (entry.scheduled)(&values);
     let mut violations = Vec::new();
     entry.build::<f32>(settings.iter().copied())?;

@@ -22,9 +22,9 @@ use super::bandit::{Arm, draw};
 use super::recombination::recombine;
 use super::{Ask, Engine, Origin};
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
-use crate::parameter::{Parameter, Values};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, Saved, State};
@@ -175,7 +175,7 @@ pub(super) struct Portfolio<S> {
     position: Vec<S>,
 }
 
-pub(super) fn build<S: Real>(values: &Values) -> Result<Box<dyn Engine<S>>, Error> {
+pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
     let batch = values.count("batch");
     let block = batch.div_ceil(4);
     Ok(Box::new(Portfolio {

@@ -2,8 +2,8 @@
 
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
+use crate::catalogue::Params;
 use crate::engine::potential_well::{draw, mean_best};
-use crate::parameter::Values;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
@@ -50,7 +50,7 @@ pub(super) struct Swarms<S> {
 }
 
 impl<S: Real> Swarms<S> {
-    pub(super) fn new(values: &Values) -> Self {
+    pub(super) fn new(values: &Params) -> Self {
         let swarm = SubSwarm {
             positions: Vec::new(),
             bests: Vec::new(),
