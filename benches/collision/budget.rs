@@ -1,5 +1,6 @@
 //! A frame that may take a tenth of the time of the complete answer, given by the fastest exact enumeration.
-use satisfice_collision::broad::{FeatureKind, FeatureTree, PointGrid, TreeJoin};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::{FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, Completeness, Scene};
 use satisfice_collision::{Mesh, Placement};
@@ -35,7 +36,7 @@ fn turning(t: usize) -> Placement {
 }
 
 fn by_trees(pot: &Mesh, kind: PairKind, there: Placement, threshold: Threshold) -> Box<dyn FnMut()> {
-    let (feature, _) = FeatureKind::of_pair(kind);
+    let (feature, _) = kind.features();
     let (tree, mut join) = (FeatureTree::new(pot, feature), TreeJoin::new());
     Box::new(move || {
         let here = (&tree, &Placement::IDENTITY);

@@ -1,5 +1,6 @@
 //! Self-pairs of a deforming body, frame by frame.
-use satisfice_collision::broad::{FeatureKind, FeatureTree, PointGrid, TreeJoin};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::{FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 
 use crate::points::plain;

@@ -1,7 +1,8 @@
 //! Pairs of points of two bodies: structure built each frame, and structure kept.
 use std::sync::Mutex;
 
-use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::{FeatureTree, Pair, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::{Mesh, Placement};
 

@@ -1,5 +1,6 @@
 //! Pairs of triangles within a threshold: trees built, candidates, exact decision.
-use satisfice_collision::broad::{FeatureKind, FeatureTree, TreeJoin};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::{FeatureTree, TreeJoin};
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::{Mesh, Placement, generate};
 

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use satisfice::catalogue::Catalogued;
 use satisfice::{Completeness, Counts, SatisficingProblem, StopReason, TracePoint};
-use satisfice_collision::broad::{FeatureKind, FeatureTree, Pair, PointGrid, TreeJoin};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::{FeatureTree, Pair, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::{Prepared, Recipe};
 use satisfice_collision::{Mesh, Placement, VertexPairs};

@@ -17,7 +17,7 @@ pub mod sampling;
 pub mod scene;
 
 pub use error::{Element, Error};
-pub use mesh::{Aabb, Adjacency, Mesh};
+pub use mesh::{Aabb, Adjacency, FeatureKind, Mesh, Shape};
 pub use order::VertexOrder;
 pub use placement::Placement;
 pub use problem::{FeaturePairs, VertexPairs};

@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use allocation_counter::measure;
-use satisfice_collision::broad::{FeatureKind, FeatureTree, PointGrid, TreeJoin};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::{FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, Scene};
 use satisfice_collision::{Mesh, Placement, generate};

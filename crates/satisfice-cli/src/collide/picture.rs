@@ -5,7 +5,8 @@ use std::path::Path;
 
 use anyhow::bail;
 use satisfice_bench::picture::{Picture, Up, View};
-use satisfice_collision::broad::{FeatureKind, Method};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::Method;
 use satisfice_collision::scene::Contact;
 
 use super::arguments::Axis;

@@ -6,12 +6,12 @@ use std::fmt::Write;
 use satisfice::StopReason;
 use satisfice_bench::verify::{self, LISTED_BEFORE, Mismatch};
 use satisfice_bench::{Record, record};
-use satisfice_collision::broad::FeatureKind;
+use satisfice_collision::FeatureKind;
 use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Serialize};
 
 use super::arguments::Find;
-use super::scene::{Feature, Pair, World, singular};
+use super::scene::{Feature, Pair, World};
 use crate::summary;
 
 /// What `collide --json` writes.
@@ -120,7 +120,7 @@ impl Report {
             let ends = listed
                 .vertices
                 .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
-            format!("{} {feature}{ends} of body {body}", singular(kind))
+            format!("{} {feature}{ends} of body {body}", kind.name())
         };
         let mut text = summary::summary_with(&self.record, |solution| match Found::new(solution, world) {
             Ok(found) => format!("{} and {}", name(kind_a, &found.a), name(kind_b, &found.b)),

@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 use anyhow::{Context, bail};
 use satisfice::SatisficingProblem;
 use satisfice_bench::{Record, Settings};
-use satisfice_collision::broad::{FeatureKind, Method};
+use satisfice_collision::FeatureKind;
+use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::problem::FeaturePairs;
 use satisfice_collision::scene::{Body, Contact, Scene};
@@ -119,9 +120,9 @@ impl World {
         };
         if world.couples().is_empty() {
             let (a, b) = world.kinds();
-            let lacks = |kind| world.bodies.iter().all(|mesh| count(mesh, kind) == 0);
+            let lacks = |kind: FeatureKind| world.bodies.iter().all(|mesh| kind.count(mesh) == 0);
             let missing = if lacks(a) { a } else { b };
-            let plural = plural(missing);
+            let plural = missing.plural();
             bail!(
                 "there are no {} pairs to look for, since {} {plural}: choose other features by --pairs",
                 world.request.kind,
@@ -194,7 +195,7 @@ impl World {
 
     /// The kinds of the first and the second feature.
     pub(super) fn kinds(&self) -> (FeatureKind, FeatureKind) {
-        FeatureKind::of_pair(self.request.kind)
+        self.request.kind.features()
     }
 
     /// The bodies of the first and of the second feature, for every combination that can have pairs.
@@ -204,14 +205,14 @@ impl World {
         let couples = all.clone().flat_map(|a| all.clone().map(move |b| [a, b]));
         couples
             .filter(|&[a, b]| (a != b || self.request.within) && (a <= b || kind_a != kind_b))
-            .filter(|&[a, b]| count(&self.bodies[a], kind_a) > 0 && count(&self.bodies[b], kind_b) > 0)
+            .filter(|&[a, b]| kind_a.count(&self.bodies[a]) > 0 && kind_b.count(&self.bodies[b]) > 0)
             .collect()
     }
 
     /// The bodies without a feature of this kind.
     pub(super) fn without(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
         let bodies = self.bodies.iter().enumerate();
-        bodies.filter_map(move |(body, mesh)| (count(mesh, kind) == 0).then_some(body))
+        bodies.filter_map(move |(body, mesh)| (kind.count(mesh) == 0).then_some(body))
     }
 
     /// The scene for the exact methods.
@@ -252,7 +253,10 @@ impl World {
     pub(super) fn size(&self) -> u64 {
         let (kind_a, kind_b) = self.kinds();
         self.couples().into_iter().fold(0, |sum, [a, b]| {
-            let (m, n) = (count(&self.bodies[a], kind_a), count(&self.bodies[b], kind_b));
+            let (m, n) = (
+                kind_a.count(&self.bodies[a]) as u64,
+                kind_b.count(&self.bodies[b]) as u64,
+            );
             let pairs = if a == b && kind_a == kind_b {
                 m * (m - 1) / 2
             } else {
@@ -294,31 +298,5 @@ impl World {
         let job = jobs.iter().find(|job| job.bodies == [pair.a.body, pair.b.body]);
         let job = job.context("a pair of bodies of this scene")?;
         Ok(job.problem.fitness(&(pair.a.feature, pair.b.feature)))
-    }
-}
-
-/// How many features of a kind a mesh has.
-pub(super) fn count(mesh: &Mesh, kind: FeatureKind) -> u64 {
-    let count = match kind {
-        FeatureKind::Vertex => mesh.vertices().len(),
-        FeatureKind::Edge => mesh.edges().len(),
-        FeatureKind::Triangle => mesh.triangles().len(),
-    };
-    count as u64
-}
-
-pub(super) fn plural(kind: FeatureKind) -> &'static str {
-    match kind {
-        FeatureKind::Vertex => "vertices",
-        FeatureKind::Edge => "edges",
-        FeatureKind::Triangle => "triangles",
-    }
-}
-
-pub(super) fn singular(kind: FeatureKind) -> &'static str {
-    match kind {
-        FeatureKind::Vertex => "vertex",
-        FeatureKind::Edge => "edge",
-        FeatureKind::Triangle => "triangle",
     }
 }

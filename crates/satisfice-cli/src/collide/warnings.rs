@@ -2,7 +2,7 @@
 
 use satisfice_collision::Mesh;
 
-use super::scene::{World, plural};
+use super::scene::World;
 
 /// A file in single precision leaves fewer than 3 digits inside a body that lies so many sizes from the origin.
 const FAR: f64 = 1e4;
@@ -25,7 +25,7 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
             said.push(format!(
                 "{} has no {}: no pair has one of it there",
                 name(body),
-                plural(kind)
+                kind.plural()
             ));
         }
     }

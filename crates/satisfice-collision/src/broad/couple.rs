@@ -1,18 +1,15 @@
 //! Two posed bodies, or one with itself, and the question asked of every pair of their features.
 
 use super::boxes::Moved;
-use super::features::{FeatureKind, FeatureTree};
+use super::features::FeatureTree;
 use super::lanes::dispatch;
 use super::pair::Pair;
 use super::relative::Relative;
 use super::separate::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
 use super::trees::TreeWork;
-use crate::distance::{
-    Threshold, Triangle, TriangleBatch, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
-    vertex_triangle, vertex_vertex,
-};
-use crate::{Error, Placement};
+use crate::distance::{self, Threshold, Triangle, TriangleBatch};
+use crate::{Error, FeatureKind, Placement};
 
 /// Which pairs of features count at all; `None` for all of them.
 pub type Keep<'a> = Option<&'a (dyn Fn(u32, u32) -> bool + Sync)>;
@@ -154,38 +151,9 @@ impl Couple<'_> {
     /// Whether feature `i` of `a` and feature `j` of `b` are closer than the threshold: the exact decision.
     pub(crate) fn within(&self, i: u32, j: u32) -> bool {
         let ((a, pose_a), (b, pose_b), threshold) = (self.a, self.b, self.threshold);
-        let at_a = |p| pose_a.apply(p);
-        let at_b = |p| pose_b.apply(p);
-        match (a.kind(), b.kind()) {
-            (FeatureKind::Vertex, FeatureKind::Vertex) => {
-                vertex_vertex::within(&at_a(a.point(i)), &at_b(b.point(j)), threshold)
-            }
-            (FeatureKind::Vertex, FeatureKind::Edge) => {
-                vertex_edge::within(&at_a(a.point(i)), &b.segment(j).map(at_b), threshold)
-            }
-            (FeatureKind::Edge, FeatureKind::Vertex) => {
-                vertex_edge::within(&at_b(b.point(j)), &a.segment(i).map(at_a), threshold)
-            }
-            (FeatureKind::Vertex, FeatureKind::Triangle) => {
-                vertex_triangle::within(&at_a(a.point(i)), &b.triangle(j).map(at_b), threshold)
-            }
-            (FeatureKind::Triangle, FeatureKind::Vertex) => {
-                vertex_triangle::within(&at_b(b.point(j)), &a.triangle(i).map(at_a), threshold)
-            }
-            (FeatureKind::Edge, FeatureKind::Edge) => {
-                edge_edge::within(&a.segment(i).map(at_a), &b.segment(j).map(at_b), threshold)
-            }
-            (FeatureKind::Edge, FeatureKind::Triangle) => {
-                edge_triangle::within(&a.segment(i).map(at_a), &b.triangle(j).map(at_b), threshold)
-            }
-            (FeatureKind::Triangle, FeatureKind::Edge) => {
-                edge_triangle::within(&b.segment(j).map(at_b), &a.triangle(i).map(at_a), threshold)
-            }
-            (FeatureKind::Triangle, FeatureKind::Triangle) => {
-                let (p, q) = self.triangles(i, j);
-                triangle_triangle::within(&p, &q, threshold)
-            }
-        }
+        let a = a.shape(i).map(|p| pose_a.apply(p));
+        let b = b.shape(j).map(|p| pose_b.apply(p));
+        distance::within(&a, &b, threshold)
     }
 
     /// Triangle `i` of `a` and triangle `j` of `b` in the world.

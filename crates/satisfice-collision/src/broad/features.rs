@@ -1,66 +1,20 @@
 //! The vertices, edges or triangles of a body in a box tree that can be kept and refitted.
 
+use std::sync::Arc;
+
 use super::boxes::{Box32, BoxTree};
 use super::clip::Runs;
 use super::frame::Frame;
 use super::lanes::{Lanes, Work, dispatch};
 use super::separate::{self, Directions, Triangles};
-use crate::distance::{PairKind, Point, Segment, Triangle};
-use crate::{Error, Mesh};
-
-/// What a tree is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FeatureKind {
-    /// Vertices, by their number.
-    Vertex,
-    /// Unique edges, in the order of [`Mesh::edges`].
-    Edge,
-    /// Triangles, in the order of [`Mesh::triangles`].
-    Triangle,
-}
-
-impl FeatureKind {
-    /// The kinds of the first and the second feature of a pair.
-    #[must_use]
-    pub fn of_pair(kind: PairKind) -> (Self, Self) {
-        match kind {
-            PairKind::VertexVertex => (Self::Vertex, Self::Vertex),
-            PairKind::VertexEdge => (Self::Vertex, Self::Edge),
-            PairKind::VertexTriangle => (Self::Vertex, Self::Triangle),
-            PairKind::EdgeEdge => (Self::Edge, Self::Edge),
-            PairKind::EdgeTriangle => (Self::Edge, Self::Triangle),
-            PairKind::TriangleTriangle => (Self::Triangle, Self::Triangle),
-        }
-    }
-}
-
-/// The vertex numbers of the features.
-#[derive(Debug, Clone)]
-enum Elements {
-    Vertices,
-    Edges(Vec<[u32; 2]>),
-    Triangles(Vec<[u32; 3]>),
-}
-
-impl Elements {
-    /// The vertices of a feature, the last repeated to make three.
-    #[inline]
-    fn corners(&self, feature: u32) -> [u32; 3] {
-        match self {
-            Self::Vertices => [feature; 3],
-            Self::Edges(edges) => {
-                let [a, b] = edges[feature as usize];
-                [a, b, b]
-            }
-            Self::Triangles(triangles) => triangles[feature as usize],
-        }
-    }
-}
+use crate::mesh::{Features, Point, Shape, Topology, Triangle};
+use crate::{Error, FeatureKind, Mesh};
 
 /// A box tree over the features of one kind of one body, in the body's own coordinates.
 #[derive(Debug)]
 pub struct FeatureTree {
-    elements: Elements,
+    kind: FeatureKind,
+    topology: Arc<Topology>,
     vertices: Vec<Point>,
     runs: Runs,
     pub(crate) frame: Frame,
@@ -136,14 +90,10 @@ impl FeatureTree {
     /// Builds the tree. Cost: O(n log n).
     #[must_use]
     pub fn new(mesh: &Mesh, kind: FeatureKind) -> Self {
-        let elements = match kind {
-            FeatureKind::Vertex => Elements::Vertices,
-            FeatureKind::Edge => Elements::Edges(mesh.edges().to_vec()),
-            FeatureKind::Triangle => Elements::Triangles(mesh.triangles().to_vec()),
-        };
         let bounds = mesh.bounds();
         let mut tree = Self {
-            elements,
+            kind,
+            topology: Arc::clone(mesh.topology()),
             vertices: mesh.vertices().to_vec(),
             runs: Runs::default(),
             frame: Frame::unit(&bounds),
@@ -209,12 +159,13 @@ impl FeatureTree {
         } else {
             refit.motion.sqrt() * (1.0 + 1e-12) + 1e-153
         };
-        let (moved, elements) = (&self.moved, &self.elements);
+        let moved = &self.moved;
+        let features = self.topology.features(self.kind, moved.len());
         if refit.moved == 0 || refit.moved == moved.len() {
             self.tree.mark_all(refit.moved > 0);
         } else {
             self.tree
-                .mark(|feature| elements.corners(feature).iter().any(|&v| moved[v as usize]));
+                .mark(|feature| features.corners(feature).iter().any(|&v| moved[v as usize]));
         }
         Ok(refit)
     }
@@ -222,9 +173,10 @@ impl FeatureTree {
     /// Puts the features into the tree.
     fn fit(&mut self, vertices: &[Point]) {
         let threads = rayon::current_num_threads();
-        match self.elements {
-            Elements::Vertices => self.tree.refit_points(vertices, &self.frame, threads),
-            _ => self.tree.refit(&self.boxes, threads),
+        if self.kind == FeatureKind::Vertex {
+            self.tree.refit_points(vertices, &self.frame, threads);
+        } else {
+            self.tree.refit(&self.boxes, threads);
         }
     }
 
@@ -235,10 +187,12 @@ impl FeatureTree {
             placed,
             boxes,
             directions,
-            elements,
+            kind,
+            topology,
             ..
         } = self;
-        if matches!(elements, Elements::Vertices) {
+        let features = topology.features(*kind, vertices.len());
+        if matches!(features, Features::Vertices(_)) {
             return;
         }
         placed.clear();
@@ -246,10 +200,10 @@ impl FeatureTree {
         let at = |v: u32| placed[v as usize];
         boxes.clear();
         directions.clear();
-        match elements {
-            Elements::Vertices => {}
-            Elements::Edges(edges) => boxes.extend(edges.iter().map(|edge| Box32::around(edge.map(at)))),
-            Elements::Triangles(triangles) => {
+        match features {
+            Features::Vertices(_) => {}
+            Features::Edges(edges) => boxes.extend(edges.iter().map(|edge| Box32::around(edge.map(at)))),
+            Features::Triangles(triangles) => {
                 boxes.extend(triangles.iter().map(|triangle| Box32::around(triangle.map(at))));
                 directions.extend(
                     triangles
@@ -280,11 +234,7 @@ impl FeatureTree {
     /// What the features are.
     #[must_use]
     pub fn kind(&self) -> FeatureKind {
-        match self.elements {
-            Elements::Vertices => FeatureKind::Vertex,
-            Elements::Edges(_) => FeatureKind::Edge,
-            Elements::Triangles(_) => FeatureKind::Triangle,
-        }
+        self.kind
     }
 
     /// The vertices, where they were put last.
@@ -298,20 +248,22 @@ impl FeatureTree {
         self.vertices[v as usize]
     }
 
-    /// The ends of edge `e`; of a tree that is not about edges, a point.
     #[inline]
-    pub(crate) fn segment(&self, e: u32) -> Segment {
-        match &self.elements {
-            Elements::Edges(edges) => edges[e as usize].map(|v| self.point(v)),
-            _ => [self.point(e); 2],
-        }
+    fn features(&self) -> Features<'_> {
+        self.topology.features(self.kind, self.vertices.len())
+    }
+
+    /// Where a feature is, in the body's own coordinates.
+    #[inline]
+    pub(crate) fn shape(&self, feature: u32) -> Shape {
+        self.features().shape(feature, |v| self.point(v))
     }
 
     /// The corners of triangle `t`; of a tree that is not about triangles, a point.
     #[inline]
     pub(crate) fn triangle(&self, t: u32) -> Triangle {
-        match &self.elements {
-            Elements::Triangles(triangles) => triangles[t as usize].map(|v| self.point(v)),
+        match self.features() {
+            Features::Triangles(triangles) => triangles[t as usize].map(|v| self.point(v)),
             _ => [self.point(t); 3],
         }
     }
@@ -319,13 +271,13 @@ impl FeatureTree {
     /// The vertices of a feature, the last repeated to make three.
     #[inline]
     pub(crate) fn corners(&self, feature: u32) -> [u32; 3] {
-        self.elements.corners(feature)
+        self.features().corners(feature)
     }
 
     /// The triangles, if that is what the tree is about.
     pub(crate) fn triangles(&self) -> Option<Triangles<'_>> {
-        match &self.elements {
-            Elements::Triangles(corners) => Some(Triangles {
+        match self.features() {
+            Features::Triangles(corners) => Some(Triangles {
                 corners,
                 placed: &self.placed,
                 directions: &self.directions,

@@ -30,7 +30,7 @@ pub(crate) use boxes::Moved;
 pub(crate) use clip::{Runs, inflate, intersection};
 pub(crate) use couple::Couple;
 pub use couple::Keep;
-pub use features::{FeatureKind, FeatureTree, Refit};
+pub use features::{FeatureTree, Refit};
 pub(crate) use fixed::{FixedGrid, Found};
 pub use pair::Pair;
 pub use points::{PointGrid, PointWork};

@@ -4,9 +4,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{FeatureKind, FeatureTree, FixedGrid, Found, Pair, PointGrid, TreeJoin};
+use super::{FeatureTree, FixedGrid, Found, Pair, PointGrid, TreeJoin};
 use crate::distance::{Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex};
-use crate::{Error, Mesh, Placement, generate};
+use crate::{Error, FeatureKind, Mesh, Placement, generate};
 
 type Points = Vec<[f64; 3]>;
 

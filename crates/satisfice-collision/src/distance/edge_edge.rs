@@ -3,7 +3,7 @@
 use super::frame::{Frame, Limits, Verdict};
 use super::resolve::{self, Hulls};
 use super::vector::{dot, sub};
-use super::{Decision, FeaturePair, PairKind, Proximity, Segment, Threshold};
+use super::{Decision, FeaturePair, PairKind, Proximity, Segment, Threshold, measure};
 
 /// Two segments.
 #[derive(Debug, Clone, Copy)]
@@ -69,5 +69,9 @@ impl FeaturePair for EdgeEdge {
 
     fn proximity(a: &Segment, b: &Segment) -> Proximity {
         proximity(a, b)
+    }
+
+    fn measure(a: &Segment, b: &Segment) -> f64 {
+        measure::hulls(a, b)
     }
 }

@@ -3,7 +3,7 @@
 use super::frame::{Frame, Limits, Verdict};
 use super::gjk;
 use super::resolve::{self, Hulls};
-use super::{Decision, FeaturePair, PairKind, Proximity, Segment, Threshold, Triangle};
+use super::{Decision, FeaturePair, PairKind, Proximity, Segment, Threshold, Triangle, measure};
 
 /// A segment and a triangle.
 #[derive(Debug, Clone, Copy)]
@@ -45,5 +45,9 @@ impl FeaturePair for EdgeTriangle {
 
     fn proximity(a: &Segment, b: &Triangle) -> Proximity {
         proximity(a, b)
+    }
+
+    fn measure(a: &Segment, b: &Triangle) -> f64 {
+        measure::hulls(a, b)
     }
 }

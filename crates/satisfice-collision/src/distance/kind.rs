@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use super::{Decision, Proximity, Threshold};
 use crate::Error;
+use crate::mesh::FeatureKind;
 
 /// What is tested against what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -33,6 +34,19 @@ impl PairKind {
         Self::EdgeTriangle,
         Self::TriangleTriangle,
     ];
+
+    /// The kinds of the first and the second feature.
+    #[must_use]
+    pub const fn features(self) -> (FeatureKind, FeatureKind) {
+        match self {
+            Self::VertexVertex => (FeatureKind::Vertex, FeatureKind::Vertex),
+            Self::VertexEdge => (FeatureKind::Vertex, FeatureKind::Edge),
+            Self::VertexTriangle => (FeatureKind::Vertex, FeatureKind::Triangle),
+            Self::EdgeEdge => (FeatureKind::Edge, FeatureKind::Edge),
+            Self::EdgeTriangle => (FeatureKind::Edge, FeatureKind::Triangle),
+            Self::TriangleTriangle => (FeatureKind::Triangle, FeatureKind::Triangle),
+        }
+    }
 
     /// The name used on the command line, for example `vertex-triangle`.
     pub const fn name(self) -> &'static str {
@@ -81,6 +95,9 @@ pub trait FeaturePair {
 
     /// Distance and closest points.
     fn proximity(a: &Self::A, b: &Self::B) -> Proximity;
+
+    /// The distance within a relative error of [`measure::ACCURACY`](super::measure::ACCURACY), faster than a proximity.
+    fn measure(a: &Self::A, b: &Self::B) -> f64;
 
     /// Whether the distance is below the threshold; `false` if a coordinate is not finite.
     #[inline]

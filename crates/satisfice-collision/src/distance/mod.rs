@@ -26,6 +26,7 @@
 
 mod batch;
 mod candidates;
+mod dispatch;
 pub mod edge_edge;
 pub mod edge_triangle;
 mod exact;
@@ -45,6 +46,7 @@ pub mod vertex_triangle;
 pub mod vertex_vertex;
 
 pub use batch::TriangleBatch;
+pub use dispatch::{decide, proximity, within};
 pub use edge_edge::EdgeEdge;
 pub use edge_triangle::EdgeTriangle;
 pub use kind::{FeaturePair, PairKind};
@@ -54,12 +56,7 @@ pub use vertex_edge::VertexEdge;
 pub use vertex_triangle::VertexTriangle;
 pub use vertex_vertex::VertexVertex;
 
-/// A point, in the unit of the mesh.
-pub type Point = [f64; 3];
-/// A segment by its two ends; equal ends make it a point.
-pub type Segment = [Point; 2];
-/// A triangle by its three vertices, in any order.
-pub type Triangle = [Point; 3];
+pub use crate::mesh::{Point, Segment, Triangle};
 
 /// The stage that proved an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -114,4 +111,20 @@ pub struct Proximity {
     pub feature_b: Feature,
     /// The stage that proved `distance`.
     pub by: DecidedBy,
+}
+
+impl Proximity {
+    /// The same about the pair in the other order.
+    #[must_use]
+    pub fn swapped(self) -> Self {
+        Self {
+            point_a: self.point_b,
+            point_b: self.point_a,
+            weights_a: self.weights_b,
+            weights_b: self.weights_a,
+            feature_a: self.feature_b,
+            feature_b: self.feature_a,
+            ..self
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::frame::{Frame, Limits, Verdict};
 use super::gjk;
 use super::resolve::{self, Hulls};
-use super::{Decision, FeaturePair, PairKind, Proximity, Threshold, Triangle};
+use super::{Decision, FeaturePair, PairKind, Proximity, Threshold, Triangle, measure};
 
 /// Two triangles.
 #[derive(Debug, Clone, Copy)]
@@ -47,5 +47,9 @@ impl FeaturePair for TriangleTriangle {
 
     fn proximity(a: &Triangle, b: &Triangle) -> Proximity {
         proximity(a, b)
+    }
+
+    fn measure(a: &Triangle, b: &Triangle) -> f64 {
+        measure::hulls(a, b)
     }
 }

@@ -3,7 +3,7 @@
 use super::frame::{Frame, Limits, Verdict};
 use super::resolve::{self, Hulls};
 use super::vector::{dot, sub};
-use super::{Decision, FeaturePair, PairKind, Point, Proximity, Segment, Threshold};
+use super::{Decision, FeaturePair, PairKind, Point, Proximity, Segment, Threshold, measure};
 
 /// A point and a segment.
 #[derive(Debug, Clone, Copy)]
@@ -59,5 +59,9 @@ impl FeaturePair for VertexEdge {
 
     fn proximity(a: &Point, b: &Segment) -> Proximity {
         proximity(a, b)
+    }
+
+    fn measure(a: &Point, b: &Segment) -> f64 {
+        measure::hulls(&[*a], b)
     }
 }

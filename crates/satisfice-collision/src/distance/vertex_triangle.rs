@@ -3,7 +3,7 @@
 use super::frame::{Frame, Limits, Verdict};
 use super::resolve::{self, Hulls};
 use super::vector::{dot, sub};
-use super::{Decision, FeaturePair, PairKind, Point, Proximity, Threshold, Triangle};
+use super::{Decision, FeaturePair, PairKind, Point, Proximity, Threshold, Triangle, measure};
 
 /// A point and a triangle.
 #[derive(Debug, Clone, Copy)]
@@ -100,5 +100,9 @@ impl FeaturePair for VertexTriangle {
 
     fn proximity(a: &Point, b: &Triangle) -> Proximity {
         proximity(a, b)
+    }
+
+    fn measure(a: &Point, b: &Triangle) -> f64 {
+        measure::hulls(&[*a], b)
     }
 }

@@ -3,7 +3,7 @@
 use super::frame::{Frame, Limits, Verdict};
 use super::resolve::{self, Hulls};
 use super::vector::{dot, sub};
-use super::{DecidedBy, Decision, FeaturePair, PairKind, Point, Proximity, Threshold};
+use super::{DecidedBy, Decision, FeaturePair, PairKind, Point, Proximity, Threshold, measure};
 
 /// Two points.
 #[derive(Debug, Clone, Copy)]
@@ -66,5 +66,9 @@ impl FeaturePair for VertexVertex {
 
     fn proximity(a: &Point, b: &Point) -> Proximity {
         proximity(a, b)
+    }
+
+    fn measure(a: &Point, b: &Point) -> f64 {
+        measure::hulls(&[*a], &[*b])
     }
 }

@@ -2,12 +2,14 @@
 
 mod aabb;
 mod adjacency;
+mod feature;
 mod weld;
 
 use std::sync::Arc;
 
 pub use aabb::Aabb;
 pub use adjacency::Adjacency;
+pub use feature::{FeatureKind, Features, Point, Segment, Shape, Triangle};
 pub use weld::weld;
 
 use crate::error::{Element, Error};
@@ -36,7 +38,7 @@ pub struct Mesh {
 }
 
 #[derive(Debug, PartialEq)]
-struct Topology {
+pub(crate) struct Topology {
     lines: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
@@ -123,6 +125,27 @@ impl Mesh {
         &self.topology.edges
     }
 
+    /// The features of one kind, by the numbers of their corners.
+    ///
+    /// ```
+    /// use satisfice_collision::{FeatureKind, generate};
+    /// let ball = generate::icosphere(1.0, 0)?;
+    /// let edges = ball.features(FeatureKind::Edge);
+    /// let [a, b, _] = edges.corners(7);
+    /// assert_eq!([a, b], ball.edges()[7]);
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn features(&self, kind: FeatureKind) -> Features<'_> {
+        self.topology.features(kind, self.vertices.len())
+    }
+
+    /// What the poses and frames of one body share.
+    pub(crate) fn topology(&self) -> &Arc<Topology> {
+        &self.topology
+    }
+
     /// Which vertices are joined by an edge.
     #[must_use]
     pub fn adjacency(&self) -> &Adjacency {
@@ -158,6 +181,14 @@ impl Mesh {
     #[must_use]
     pub fn same_body(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.topology, &other.topology)
+    }
+}
+
+impl Topology {
+    /// The features of one kind of a body with so many vertices.
+    #[inline]
+    pub(crate) fn features(&self, kind: FeatureKind, vertices: usize) -> Features<'_> {
+        Features::new(self, kind, vertices)
     }
 }
 

@@ -6,14 +6,10 @@ use satisfice::{Axis, Region, SatisficingProblem, Space};
 use super::metric::{PointMetric, far};
 use super::ranges;
 use super::side::Side;
-use crate::broad::{FeatureKind, FeatureTree, TreeJoin};
-use crate::distance::measure::{self, Shape};
-use crate::distance::{
-    PairKind, Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge, vertex_triangle,
-    vertex_vertex,
-};
+use crate::broad::{FeatureTree, TreeJoin};
+use crate::distance::{self, PairKind, Threshold, measure};
 use crate::error::Error;
-use crate::mesh::{Adjacency, Mesh};
+use crate::mesh::{Adjacency, Mesh, Shape};
 use crate::order::VertexOrder;
 use crate::placement::Placement;
 
@@ -71,7 +67,7 @@ impl FeaturePairs {
     /// # Errors
     /// [`Error::Parameter`] unless `delta` is finite and above 0, and for a body without such a feature.
     pub fn between(kind: PairKind, a: &Mesh, b: &Mesh, delta: f64) -> Result<Self, Error> {
-        let (kind_a, kind_b) = FeatureKind::of_pair(kind);
+        let (kind_a, kind_b) = kind.features();
         let order = VertexOrder::default();
         let sides = (Side::new(a, kind_a, order)?, Some(Side::new(b, kind_b, order)?));
         Self::new(kind, sides, None, Threshold::new(delta)?)
@@ -84,7 +80,7 @@ impl FeaturePairs {
     /// As [`FeaturePairs::between`].
     pub fn within(kind: PairKind, mesh: &Mesh, delta: f64, ring_width: usize) -> Result<Self, Error> {
         let threshold = Threshold::new(delta)?;
-        let (kind_a, kind_b) = FeatureKind::of_pair(kind);
+        let (kind_a, kind_b) = kind.features();
         let order = VertexOrder::default();
         let second = (kind_a != kind_b).then(|| Side::new(mesh, kind_b, order));
         let sides = (Side::new(mesh, kind_a, order)?, second.transpose()?);
@@ -195,7 +191,7 @@ impl FeaturePairs {
     #[must_use]
     pub fn exact_pairs(&self) -> Vec<(u32, u32)> {
         let keep = |i: u32, j: u32| !self.no_pair(i, j);
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         let a = FeatureTree::new(&self.a.mesh, kind_a);
         let mut join = TreeJoin::new();
         let pairs = match &self.b {
@@ -238,21 +234,7 @@ impl FeaturePairs {
 
     /// The exact decision; the features exist.
     fn is_within(&self, i: u32, j: u32) -> bool {
-        let delta = self.threshold;
-        match (&self.a.shape(i), &self.second().shape(j)) {
-            (Shape::Vertex(p), Shape::Vertex(q)) => vertex_vertex::within(p, q, delta),
-            (Shape::Vertex(p), Shape::Edge(e)) | (Shape::Edge(e), Shape::Vertex(p)) => {
-                vertex_edge::within(p, e, delta)
-            }
-            (Shape::Vertex(p), Shape::Triangle(t)) | (Shape::Triangle(t), Shape::Vertex(p)) => {
-                vertex_triangle::within(p, t, delta)
-            }
-            (Shape::Edge(e), Shape::Edge(f)) => edge_edge::within(e, f, delta),
-            (Shape::Edge(e), Shape::Triangle(t)) | (Shape::Triangle(t), Shape::Edge(e)) => {
-                edge_triangle::within(e, t, delta)
-            }
-            (Shape::Triangle(t), Shape::Triangle(s)) => triangle_triangle::within(t, s, delta),
-        }
+        distance::within(&self.a.shape(i), &self.second().shape(j), self.threshold)
     }
 
     #[inline]

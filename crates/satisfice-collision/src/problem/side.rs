@@ -2,10 +2,8 @@
 
 use super::metric::square;
 use super::ranges::Ranges;
-use crate::broad::FeatureKind;
-use crate::distance::measure::Shape;
 use crate::error::Error;
-use crate::mesh::{Aabb, Adjacency, Mesh};
+use crate::mesh::{Aabb, Adjacency, FeatureKind, Mesh, Shape};
 use crate::order::VertexOrder;
 
 /// A feature that was not chosen has no position.
@@ -53,14 +51,9 @@ impl Side {
                 t.iter().filter(|v| s.contains(v)).count() > 1
             })),
         };
-        let allowed = match kind {
-            FeatureKind::Vertex => "at least one in a body",
-            FeatureKind::Edge => "at least one in a body that is asked for edges",
-            FeatureKind::Triangle => "at least one in a body that is asked for triangles",
-        };
-        let count = count(mesh, kind);
+        let count = kind.count(mesh);
         if count == 0 {
-            return Err(Error::parameter(number(kind), 0, allowed));
+            return Err(Error::parameter(kind.plural(), 0, "at least one in each body"));
         }
         let mut side = Self {
             mesh: mesh.clone(),
@@ -78,7 +71,10 @@ impl Side {
 
     /// Puts some features, given in the order of their numbers, into an order.
     fn arrange(&mut self, order: VertexOrder, chosen: &[u32]) {
-        let middles: Vec<[f64; 3]> = chosen.iter().map(|&feature| self.middle(feature)).collect();
+        let middles: Vec<[f64; 3]> = chosen
+            .iter()
+            .map(|&feature| self.shape(feature).middle())
+            .collect();
         let places = order.permutation(&middles);
         self.order = order;
         self.feature_at = places.into_iter().map(|k| chosen[k as usize]).collect();
@@ -166,49 +162,21 @@ impl Side {
     /// The vertices of a feature, the last repeated to make three; the feature exists.
     #[inline]
     pub(super) fn corners(&self, feature: u32) -> [u32; 3] {
-        match self.kind {
-            FeatureKind::Vertex => [feature; 3],
-            FeatureKind::Edge => {
-                let [a, b] = self.mesh.edges()[feature as usize];
-                [a, b, b]
-            }
-            FeatureKind::Triangle => self.mesh.triangles()[feature as usize],
-        }
+        self.mesh.features(self.kind).corners(feature)
     }
 
     /// Where a feature is; it exists.
     #[inline]
     pub(super) fn shape(&self, feature: u32) -> Shape {
-        let at = |v: u32| self.mesh.vertices()[v as usize];
-        match self.kind {
-            FeatureKind::Vertex => Shape::Vertex(at(feature)),
-            FeatureKind::Edge => Shape::Edge(self.mesh.edges()[feature as usize].map(at)),
-            FeatureKind::Triangle => Shape::Triangle(self.mesh.triangles()[feature as usize].map(at)),
-        }
-    }
-
-    fn middle(&self, feature: u32) -> [f64; 3] {
-        let [a, b, c] = match self.kind {
-            FeatureKind::Vertex => return self.mesh.vertex(feature),
-            // An edge repeats its end, which would pull the middle.
-            FeatureKind::Edge => {
-                let [a, b] = self.mesh.edges()[feature as usize].map(|v| self.mesh.vertex(v));
-                return std::array::from_fn(|k| a[k] / 2.0 + b[k] / 2.0);
-            }
-            FeatureKind::Triangle => self.corners(feature).map(|v| self.mesh.vertex(v)),
-        };
-        std::array::from_fn(|k| a[k] / 3.0 + b[k] / 3.0 + c[k] / 3.0)
+        let vertices = self.mesh.vertices();
+        self.mesh
+            .features(self.kind)
+            .shape(feature, |v| vertices[v as usize])
     }
 
     /// The box of the feature at a position.
     fn bounds(&self, position: usize) -> Aabb {
-        let [a, b, c] = self
-            .corners(self.feature_at[position])
-            .map(|v| self.mesh.vertex(v));
-        let mut bounds = Aabb::point(a);
-        bounds.include(b);
-        bounds.include(c);
-        bounds
+        self.shape(self.feature_at[position]).bounds()
     }
 
     /// The box around the features at the positions from `first` to `last`, as they stand on an axis.
@@ -255,23 +223,5 @@ impl Side {
         }
         let middle = squares.len() / 2;
         squares.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt()
-    }
-}
-
-/// What is counted.
-fn number(kind: FeatureKind) -> &'static str {
-    match kind {
-        FeatureKind::Vertex => "number of vertices",
-        FeatureKind::Edge => "number of edges",
-        FeatureKind::Triangle => "number of triangles",
-    }
-}
-
-/// How many features of a kind a mesh has.
-fn count(mesh: &Mesh, kind: FeatureKind) -> usize {
-    match kind {
-        FeatureKind::Vertex => mesh.vertices().len(),
-        FeatureKind::Edge => mesh.edges().len(),
-        FeatureKind::Triangle => mesh.triangles().len(),
     }
 }

@@ -8,11 +8,9 @@ use super::measured::Measured;
 use super::state::State;
 use super::{Contact, Scene, Skips};
 use crate::Error;
-use crate::broad::{Couple, FeatureKind, Method, Moved, Pair, Watch, inflate, intersection};
-use crate::distance::{
-    PairKind, Proximity, Threshold, edge_edge, edge_triangle, triangle_triangle, vertex_edge,
-    vertex_triangle, vertex_vertex,
-};
+use crate::FeatureKind;
+use crate::broad::{Couple, Method, Moved, Pair, Watch, inflate, intersection};
+use crate::distance::{self, PairKind, Proximity, Threshold};
 
 /// A list is made with a margin of so many frames' motion.
 const FRAMES: f64 = 6.0;
@@ -76,7 +74,7 @@ impl Scene {
         self.filtered = 0;
         self.linked = true;
         self.answers += 1;
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         for a in 0..self.states.len() {
             for b in 0..self.states.len() {
                 if a > b && kind_a == kind_b {
@@ -261,7 +259,7 @@ impl Scene {
         }
         self.ready(a, b)?;
         let (one, two) = (&self.states[a], &self.states[b]);
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         let moved = [one.marks(kind_a), two.marks(kind_b)];
         let partial = last && method == Method::Tree && moved != [Moved::All; 2];
         let keep = |i: u32, j: u32| keeps(self.kind, one, two, a == b, Pair { a: i, b: j }, &near);
@@ -297,7 +295,7 @@ impl Scene {
         let Link { a, b, seen, .. } = self.links[at];
         let (one, two) = (&self.states[a], &self.states[b]);
         let points = self.kind == PairKind::VertexVertex;
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         let churns = |state: &State| state.body.motion == Motion::Deforming && state.share > MOST_MOVED;
         match self.method {
             Method::Grid if !points => Method::Tree,
@@ -310,7 +308,7 @@ impl Scene {
 
     /// Builds or refits the trees of a pair of bodies.
     pub(super) fn ready(&mut self, a: usize, b: usize) -> Result<(), Error> {
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         self.states[a].ready(kind_a)?;
         self.states[b].ready(kind_b)
     }
@@ -325,35 +323,15 @@ impl Scene {
     /// Whether a pair of features is within the threshold now: the exact decision.
     pub(super) fn decide(&self, link: &Link, pair: Pair) -> bool {
         let (a, b) = (&self.states[link.a], &self.states[link.b]);
-        let threshold = self.threshold;
-        match self.kind {
-            PairKind::VertexVertex => vertex_vertex::within(&a.vertex(pair.a), &b.vertex(pair.b), threshold),
-            PairKind::VertexEdge => vertex_edge::within(&a.vertex(pair.a), &b.segment(pair.b), threshold),
-            PairKind::VertexTriangle => {
-                vertex_triangle::within(&a.vertex(pair.a), &b.triangle(pair.b), threshold)
-            }
-            PairKind::EdgeEdge => edge_edge::within(&a.segment(pair.a), &b.segment(pair.b), threshold),
-            PairKind::EdgeTriangle => {
-                edge_triangle::within(&a.segment(pair.a), &b.triangle(pair.b), threshold)
-            }
-            PairKind::TriangleTriangle => {
-                triangle_triangle::within(&a.triangle(pair.a), &b.triangle(pair.b), threshold)
-            }
-        }
+        let (kind_a, kind_b) = self.kind.features();
+        distance::within(&a.shape(kind_a, pair.a), &b.shape(kind_b, pair.b), self.threshold)
     }
 
     /// Distance and closest points; the features exist.
     pub(super) fn proximity_of(&self, contact: Contact) -> Proximity {
         let (a, b) = (&self.states[contact.body_a], &self.states[contact.body_b]);
-        let (i, j) = (contact.a, contact.b);
-        match self.kind {
-            PairKind::VertexVertex => vertex_vertex::proximity(&a.vertex(i), &b.vertex(j)),
-            PairKind::VertexEdge => vertex_edge::proximity(&a.vertex(i), &b.segment(j)),
-            PairKind::VertexTriangle => vertex_triangle::proximity(&a.vertex(i), &b.triangle(j)),
-            PairKind::EdgeEdge => edge_edge::proximity(&a.segment(i), &b.segment(j)),
-            PairKind::EdgeTriangle => edge_triangle::proximity(&a.segment(i), &b.triangle(j)),
-            PairKind::TriangleTriangle => triangle_triangle::proximity(&a.triangle(i), &b.triangle(j)),
-        }
+        let (kind_a, kind_b) = self.kind.features();
+        distance::proximity(&a.shape(kind_a, contact.a), &b.shape(kind_b, contact.b))
     }
 }
 
@@ -366,7 +344,7 @@ pub(super) fn couple<'a>(
     threshold: Threshold,
     keep: &'a (dyn Fn(u32, u32) -> bool + Sync),
 ) -> Option<Couple<'a>> {
-    let (kind_a, kind_b) = FeatureKind::of_pair(kind);
+    let (kind_a, kind_b) = kind.features();
     Some(Couple {
         a: (a.tree(kind_a)?, &a.placement),
         b: (b.tree(kind_b)?, &b.placement),
@@ -412,7 +390,7 @@ pub(super) fn keeps(kind: PairKind, a: &State, b: &State, one_body: bool, pair: 
         near.neighbours.fetch_add(u64::from(close), Ordering::Relaxed);
         return !close;
     }
-    let (kind_a, kind_b) = FeatureKind::of_pair(kind);
+    let (kind_a, kind_b) = kind.features();
     let (corners_a, corners_b) = (a.corners_of(kind_a, pair.a), b.corners_of(kind_b, pair.b));
     let counts = |state: &State, corners: &[u32; 3]| {
         state

@@ -4,7 +4,7 @@ use super::body::Motion;
 use super::link::Link;
 use super::{Contact, Scene};
 use crate::Placement;
-use crate::broad::{FeatureKind, Pair, Witnesses};
+use crate::broad::{Pair, Witnesses};
 use crate::distance::{Point, Proximity};
 
 /// How far below the threshold the distances of a link's pairs are expected to be in the frame after `frame`, rounded down.
@@ -116,7 +116,7 @@ impl Scene {
 
     /// The closest points of a pair in the bodies' own coordinates.
     fn witness(&self, link: &Link, pair: Pair, nearest: &Proximity) -> [Point; 2] {
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         [
             (link.a, kind_a, pair.a, nearest.weights_a),
             (link.b, kind_b, pair.b, nearest.weights_b),

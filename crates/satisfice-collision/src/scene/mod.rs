@@ -37,7 +37,7 @@ pub use skips::Skips;
 
 use std::collections::BTreeSet;
 
-use crate::broad::{FeatureKind, Found, Method, PointGrid, Sorter, TreeJoin, Watch};
+use crate::broad::{Found, Method, PointGrid, Sorter, TreeJoin, Watch};
 use crate::distance::{PairKind, Point, Proximity, Threshold};
 use crate::{Error, Placement};
 use link::Link;
@@ -255,7 +255,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Parameter`] if a body or a feature does not exist.
     pub fn proximity(&self, contact: Contact) -> Result<Proximity, Error> {
-        let (kind_a, kind_b) = FeatureKind::of_pair(self.kind);
+        let (kind_a, kind_b) = self.kind.features();
         for (body, kind, feature) in [
             (contact.body_a, kind_a, contact.a),
             (contact.body_b, kind_b, contact.b),

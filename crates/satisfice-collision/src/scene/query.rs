@@ -3,7 +3,8 @@
 use super::link::{Near, couple, keeps};
 use super::{Completeness, Contact, Scene};
 use crate::Error;
-use crate::broad::{FeatureKind, Pair, Watch, inflate, intersection};
+use crate::FeatureKind;
+use crate::broad::{Pair, Watch, inflate, intersection};
 use crate::distance::{Proximity, Threshold};
 
 /// Visits of a tree between two looks at the watch: some 0.2 ms.
@@ -208,6 +209,6 @@ impl Scene {
     /// The kinds of the two features of a pair.
     #[must_use]
     pub fn feature_kinds(&self) -> (FeatureKind, FeatureKind) {
-        FeatureKind::of_pair(self.kind)
+        self.kind.features()
     }
 }

@@ -2,9 +2,9 @@
 
 use super::body::{Body, Motion};
 use super::forecast::Forecast;
-use crate::broad::{FeatureKind, FeatureTree, Moved, Runs};
-use crate::distance::{Point, Segment, Triangle};
-use crate::{Aabb, Adjacency, Error, Placement};
+use crate::broad::{FeatureTree, Moved, Runs};
+use crate::mesh::Point;
+use crate::{Aabb, Adjacency, Error, FeatureKind, Placement, Shape};
 
 /// A body, its place at the last frame, and what is kept about it.
 pub(super) struct State {
@@ -304,29 +304,16 @@ impl State {
         }
     }
 
-    /// The ends of an edge in the world.
+    /// Where a feature is in the world.
     #[inline]
-    pub(super) fn segment(&self, e: u32) -> Segment {
-        self.body.mesh.edges()[e as usize].map(|v| self.vertex(v))
-    }
-
-    /// The corners of a triangle in the world.
-    #[inline]
-    pub(super) fn triangle(&self, t: u32) -> Triangle {
-        self.body.mesh.triangles()[t as usize].map(|v| self.vertex(v))
+    pub(super) fn shape(&self, kind: FeatureKind, feature: u32) -> Shape {
+        self.body.mesh.features(kind).shape(feature, |v| self.vertex(v))
     }
 
     /// The vertices of a feature, the last repeated to make three.
     #[inline]
     pub(super) fn corners_of(&self, kind: FeatureKind, feature: u32) -> [u32; 3] {
-        match kind {
-            FeatureKind::Vertex => [feature; 3],
-            FeatureKind::Edge => {
-                let [a, b] = self.body.mesh.edges()[feature as usize];
-                [a, b, b]
-            }
-            FeatureKind::Triangle => self.body.mesh.triangles()[feature as usize],
-        }
+        self.body.mesh.features(kind).corners(feature)
     }
 
     /// The point of a feature with these weights, before the placement.
@@ -350,11 +337,7 @@ impl State {
 
     /// How many features of a kind there are.
     pub(super) fn count(&self, kind: FeatureKind) -> usize {
-        match kind {
-            FeatureKind::Vertex => self.vertices.len(),
-            FeatureKind::Edge => self.body.mesh.edges().len(),
-            FeatureKind::Triangle => self.body.mesh.triangles().len(),
-        }
+        kind.count(&self.body.mesh)
     }
 
     fn corners(&self) -> [Point; 8] {

@@ -8,52 +8,32 @@ pub mod referee;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::Rng;
-use satisfice_collision::distance::{
-    Decision, EdgeEdge, EdgeTriangle, FeaturePair, PairKind, Proximity, Threshold, TriangleTriangle,
-    VertexEdge, VertexTriangle, VertexVertex,
-};
+use satisfice_collision::Shape;
+use satisfice_collision::distance::{self, Decision, PairKind, Proximity, Threshold};
 
 pub type Point = [f64; 3];
 
-/// The first points of each triangle that a kind of pair takes.
+/// How many points of each triangle a kind of pair takes.
 pub fn sizes(kind: PairKind) -> (usize, usize) {
-    match kind {
-        PairKind::VertexVertex => (1, 1),
-        PairKind::VertexEdge => (1, 2),
-        PairKind::VertexTriangle => (1, 3),
-        PairKind::EdgeEdge => (2, 2),
-        PairKind::EdgeTriangle => (2, 3),
-        PairKind::TriangleTriangle => (3, 3),
-    }
+    let (a, b) = kind.features();
+    (a.corners(), b.corners())
 }
 
-fn first<const N: usize>(points: &[Point]) -> [Point; N] {
-    points[..N].try_into().unwrap()
+fn shapes(kind: PairKind, a: &[Point], b: &[Point]) -> (Shape, Shape) {
+    let (kind_a, kind_b) = kind.features();
+    (Shape::new(kind_a, |k| a[k]), Shape::new(kind_b, |k| b[k]))
 }
 
 /// The decision of the crate.
 pub fn decide(kind: PairKind, a: &[Point], b: &[Point], delta: f64) -> Decision {
-    let threshold = Threshold::new(delta).unwrap();
-    match kind {
-        PairKind::VertexVertex => VertexVertex::decide(&a[0], &b[0], threshold),
-        PairKind::VertexEdge => VertexEdge::decide(&a[0], &first(b), threshold),
-        PairKind::VertexTriangle => VertexTriangle::decide(&a[0], &first(b), threshold),
-        PairKind::EdgeEdge => EdgeEdge::decide(&first(a), &first(b), threshold),
-        PairKind::EdgeTriangle => EdgeTriangle::decide(&first(a), &first(b), threshold),
-        PairKind::TriangleTriangle => TriangleTriangle::decide(&first(a), &first(b), threshold),
-    }
+    let (a, b) = shapes(kind, a, b);
+    distance::decide(&a, &b, Threshold::new(delta).unwrap())
 }
 
 /// The proximity of the crate.
 pub fn proximity(kind: PairKind, a: &[Point], b: &[Point]) -> Proximity {
-    match kind {
-        PairKind::VertexVertex => VertexVertex::proximity(&a[0], &b[0]),
-        PairKind::VertexEdge => VertexEdge::proximity(&a[0], &first(b)),
-        PairKind::VertexTriangle => VertexTriangle::proximity(&a[0], &first(b)),
-        PairKind::EdgeEdge => EdgeEdge::proximity(&first(a), &first(b)),
-        PairKind::EdgeTriangle => EdgeTriangle::proximity(&first(a), &first(b)),
-        PairKind::TriangleTriangle => TriangleTriangle::proximity(&first(a), &first(b)),
-    }
+    let (a, b) = shapes(kind, a, b);
+    distance::proximity(&a, &b)
 }
 
 /// Uniform on 0..n.

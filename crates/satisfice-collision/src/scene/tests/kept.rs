@@ -1,7 +1,7 @@
 //! What is kept of a deforming body from frame to frame, against brute force over all pairs.
 
 use super::*;
-use crate::broad::FeatureKind;
+use crate::FeatureKind;
 
 /// A sheet that falls, ripples, folds over itself and jumps, over a ball that stays: what is kept from frame to frame against
 /// brute force over all pairs.
