@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use satisfice::SatisficingProblem;
 use satisfice::catalogue::Catalogued;
-use satisfice_bench::plot::{Colour, Layer, Map, Maps, Marker, draw_maps};
+use satisfice_draw::plot::{Colour, Layer, Map, Maps, Marker, draw_maps};
 use satisfice_problems::{Arm, SevenJoints};
 
 mod gallery;

@@ -10,11 +10,11 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use satisfice_bench::picture::{Picture, View};
 use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, Completeness, Contact, Scene, Skips};
 use satisfice_collision::{Mesh, Placement, generate};
+use satisfice_draw::picture::{Picture, View};
 
 const KIND: PairKind = PairKind::TriangleTriangle;
 /// The flat cloth is 3 long and 1 wide.

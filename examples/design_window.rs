@@ -6,7 +6,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use satisfice::SatisficingProblem;
-use satisfice_bench::plot::{Colour, Layer, Map, Maps, Marker, draw_maps};
+use satisfice_draw::plot::{Colour, Layer, Map, Maps, Marker, draw_maps};
 use satisfice_problems::{Parts, SallenKey, Window};
 
 mod gallery;

@@ -6,7 +6,7 @@ use std::error::Error;
 
 use satisfice::SatisficingProblem;
 use satisfice::catalogue::Catalogued;
-use satisfice_bench::plot::{Colour, Layer, Map, Maps, draw_maps};
+use satisfice_draw::plot::{Colour, Layer, Map, Maps, draw_maps};
 use satisfice_problems::{Falsification, Transmission};
 
 mod gallery;

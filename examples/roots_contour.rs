@@ -6,7 +6,7 @@
 use std::error::Error;
 
 use satisfice::{Located, SatisficingProblem};
-use satisfice_bench::plot::{Colour, Layer, Map, Maps, Shape, draw_maps};
+use satisfice_draw::plot::{Colour, Layer, Map, Maps, Shape, draw_maps};
 use satisfice_problems::System;
 
 mod gallery;

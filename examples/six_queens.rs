@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use satisfice_bench::plot::{Board, Boards, draw_boards};
+use satisfice_draw::plot::{Board, Boards, draw_boards};
 use satisfice_problems::{Queens, backtrack};
 
 mod gallery;

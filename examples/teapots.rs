@@ -12,11 +12,11 @@ use std::{env, fs, thread};
 
 use satisfice::catalogue::{Catalogued, Params};
 use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
-use satisfice_bench::picture::{Picture, View};
-use satisfice_bench::plot::{self, Chart, Curve, Format, Panel};
 use satisfice_collision::broad::PointGrid;
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::Teapots;
+use satisfice_draw::picture::{Picture, View};
+use satisfice_draw::plot::{self, Chart, Curve, Format, Panel};
 
 type Pair = (u32, u32);
 type Found = Report<Pair>;
@@ -293,7 +293,7 @@ fn picture(
     problem: &Teapots,
     report: &Found,
     truth: &BTreeSet<Pair>,
-) -> Result<Vec<u8>, satisfice_bench::Error> {
+) -> Result<Vec<u8>, satisfice_draw::Error> {
     let pairs = problem.pairs();
     let mut picture = Picture::new(1000, 560, View::default());
     picture.body(pairs.a());

@@ -3,11 +3,13 @@
 //!
 //! `cargo run --release --example time_slices`
 
+mod moving_teapots;
+
 use std::env;
 use std::error::Error;
 
+use moving_teapots::{MovingTeapots, Way};
 use satisfice::WarmStart;
-use satisfice_bench::moving_teapots::{MovingTeapots, Way};
 
 const EVALUATIONS: u64 = 20_000;
 const FRAMES: usize = 10;

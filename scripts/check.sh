@@ -36,15 +36,17 @@ cargo test -p satisfice --quiet --no-default-features --features serde --test ch
 step "every example, as a user runs it ($profile)"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-for example in examples/*.rs; do
+for example in examples/*.rs crates/satisfice-bench/examples/*.rs; do
   name=$(basename "$example" .rs)
+  package=satisfice-workspace
+  case $example in crates/*) package=satisfice-bench ;; esac
   echo "-- $name"
-  SATISFICE_QUICK=1 SATISFICE_OUT="$out/$name" cargo run --profile "$profile" --quiet --example "$name" > "$out/$name.txt" \
+  SATISFICE_QUICK=1 SATISFICE_OUT="$out/$name" cargo run --profile "$profile" --quiet -p "$package" --example "$name" > "$out/$name.txt" \
     || { tail -n 40 "$out/$name.txt"; exit 1; }
   tail -n 3 "$out/$name.txt"
 done
 
 step "every bench, once, as a test ($profile)"
-cargo test --profile "$profile" --bench '*' --quiet
+cargo test --profile "$profile" -p satisfice-benches --bench '*' --quiet
 
 step "all green"

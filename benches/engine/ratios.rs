@@ -88,7 +88,7 @@ pub(crate) fn run(full: bool) {
         text: String::new(),
     };
     table.line("# What an evaluation costs, beside what else could be done\n");
-    let facts = satisfice_bench::machine()
+    let facts = satisfice_catalogue::machine()
         .into_iter()
         .fold(String::new(), |mut text, (what, value)| {
             let _ = write!(text, "{what}: {value}; ");
@@ -154,7 +154,7 @@ pub(crate) fn run(full: bool) {
     }
     overshoots(&mut table, full);
     if full {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results/engine.md");
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/engine.md");
         match std::fs::write(&path, &table.text) {
             Ok(()) => println!("\nwritten to docs/results/engine.md"),
             Err(error) => eprintln!("cannot write {}: {error}", path.display()),

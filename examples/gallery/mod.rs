@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
-use satisfice_bench::plot::Format;
+use satisfice_draw::plot::Format;
 
 /// Whether to run a short form that only shows that the example works.
 pub(crate) fn is_quick() -> bool {
@@ -26,7 +26,7 @@ pub(crate) fn search<P: SatisficingProblem<Scalar = f64>>(
 /// Writes a picture as SVG and as PNG into `out/NAME`, or the folder in `SATISFICE_OUT`.
 pub(crate) fn save(
     name: &str,
-    draw: impl Fn(Format) -> Result<Vec<u8>, satisfice_bench::Error>,
+    draw: impl Fn(Format) -> Result<Vec<u8>, satisfice_draw::Error>,
 ) -> Result<(), Box<dyn Error>> {
     let out = env::var_os("SATISFICE_OUT");
     let folder = out.map_or_else(|| PathBuf::from("out").join(name), PathBuf::from);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueHint};
 use satisfice::{Budget, Cancel};
-use satisfice_bench::{Request, Saved};
+use satisfice_catalogue::{Request, Saved};
 
 pub(crate) use crate::collide::arguments::CollideArguments;
 use crate::quantity;

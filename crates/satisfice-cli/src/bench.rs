@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use satisfice_bench::quantity::shown;
 use satisfice_bench::studies;
 use satisfice_bench::sweep::{self, Event, Plan, Suite};
+use satisfice_catalogue::quantity::shown;
 
 use crate::arguments::BenchArguments;
 use crate::progress::{Counting, Runs};

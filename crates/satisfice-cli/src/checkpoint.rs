@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 use satisfice::Cancel;
-use satisfice_bench::{Request, Saved};
+use satisfice_catalogue::{Request, Saved};
 
 use crate::arguments::RunArguments;
 use crate::output::Output;

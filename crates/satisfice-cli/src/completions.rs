@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 use clap::builder::PossibleValuesParser;
 use satisfice::engine;
-use satisfice_bench::catalogue;
+use satisfice_catalogue::catalogue;
 
 use crate::arguments::{CompletionsArguments, Satisfice};
 use crate::output;

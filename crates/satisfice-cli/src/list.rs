@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use satisfice_bench::json;
-use satisfice_bench::listing::{Item, Range, Row, listing};
+use satisfice_catalogue::json;
+use satisfice_catalogue::listing::{Item, Range, Row, listing};
 
 use crate::arguments::ListArguments;
 use crate::output;

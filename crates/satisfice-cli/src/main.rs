@@ -9,6 +9,7 @@ mod failure;
 mod interrupt;
 mod list;
 mod output;
+mod plot;
 mod progress;
 mod quantity;
 mod reference;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use satisfice_bench::Progress;
+use satisfice_catalogue::Progress;
 
 const STEPS: u64 = 1000;
 /// How often a sweep is told of where there is no terminal.

@@ -1,5 +1,5 @@
 //! Times, counts and settings as they are written on a command line.
 
-pub(crate) use satisfice_bench::quantity::{
+pub(crate) use satisfice_catalogue::quantity::{
     count, islands, positive, seed, setting, share, threads, time, width,
 };

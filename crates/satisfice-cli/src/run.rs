@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use satisfice_bench::{Instance, Keeping, Progress, Record, catalogue, json, plot};
+use satisfice_catalogue::{Instance, Keeping, Progress, Record, catalogue, json};
+use satisfice_draw::plot;
 
 use crate::arguments::{DEFAULT_ENGINE, RunArguments};
 use crate::output::{self, Output};
@@ -67,7 +68,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         report.write(&json::to_vec(&record)?)?;
     }
     if let Some((format, figure)) = &mut figure {
-        figure.write(&plot::draw(&plot::chart(&record), *format)?)?;
+        figure.write(&plot::draw(&crate::plot::chart(&record), *format)?)?;
     }
     let shown = show(&record, arguments.json.as_deref())?;
     keeper.map_or(Ok(()), checkpoint::Keeper::finish)?;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::process::ExitCode;
 
 use satisfice::Completeness;
-use satisfice_bench::Record;
-use satisfice_bench::record::Solution;
+use satisfice_catalogue::Record;
+use satisfice_catalogue::record::Solution;
 
 /// So many hits are shown; all of them are in the JSON report.
 const SHOWN: usize = 5;

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use satisfice_bench::{Mismatch, Record, catalogue};
+use satisfice_catalogue::{Mismatch, Record, catalogue};
 
 use crate::arguments::VerifyArguments;
 use crate::{collide, output};

@@ -9,7 +9,7 @@ use std::process::Stdio;
 
 use common::{command, error, error_in, report, satisfice, satisfice_in, without_times};
 use satisfice::engine;
-use satisfice_bench::catalogue;
+use satisfice_catalogue::catalogue;
 use serde_json::Value;
 
 /// A quick run with hits.

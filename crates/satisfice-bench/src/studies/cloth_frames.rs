@@ -9,14 +9,14 @@ use satisfice_cloth::{Response, Settings, Simulation};
 use satisfice_collision::distance::{Point, Threshold};
 use satisfice_collision::{VertexPairs, oracle};
 
-use super::Finding;
 use crate::error::Error;
-use crate::picture::{Picture, View, strip};
+use crate::finding::Figure;
+use crate::finding::Finding;
 use crate::plain_grid;
-use crate::plot::{Chart, Curve, Panel};
-use crate::quantity::shown;
-use crate::sweep::figures::Figure;
-use crate::sweep::statistics::{Estimate, median};
+use crate::statistics::{Estimate, median};
+use satisfice_catalogue::quantity::shown;
+use satisfice_draw::picture::{Picture, View, strip};
+use satisfice_draw::plot::{Chart, Curve, Panel};
 
 /// Engines whose recall is followed from frame to frame.
 const ENGINES: [&str; 6] = [
@@ -257,7 +257,7 @@ fn picture(cloth: &Simulation) -> Result<Vec<u8>, Error> {
     for &(i, j) in &cloth.contacts().within {
         picture.pair(mesh.vertex(i), mesh.vertex(j), true);
     }
-    picture.png()
+    Ok(picture.png()?)
 }
 
 #[expect(clippy::cast_precision_loss, reason = "small counts")]

@@ -14,8 +14,8 @@ use super::plan::{Plan, Planned};
 use super::results::{Known, Results};
 use super::row::Row;
 use crate::error::Error;
-use crate::exact;
-use crate::instance::Instance;
+use satisfice_catalogue::Instance;
+use satisfice_catalogue::exact;
 
 /// How often a count that takes long looks whether it is still wanted.
 const LOOK_EVERY: Duration = Duration::from_millis(20);

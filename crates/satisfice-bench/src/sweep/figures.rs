@@ -2,9 +2,10 @@
 
 use super::metrics::Moment;
 use super::row::Row;
-use super::statistics::median;
 use super::summary::{Group, rows_of};
-use crate::plot::{Chart, Curve, Panel};
+use crate::finding::Figure;
+use crate::statistics::median;
+use satisfice_draw::plot::{Chart, Curve, Panel};
 
 /// Points of a curve.
 const POINTS: usize = 64;
@@ -12,17 +13,6 @@ const POINTS: usize = 64;
 const BANDS: usize = 8;
 /// Recalls whose costs make a run-length distribution.
 const TARGETS: usize = 50;
-
-/// A chart with the name of its file and what it shows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
-    /// Without extension.
-    pub name: &'static str,
-    /// What is seen.
-    pub caption: String,
-    /// The picture.
-    pub chart: Chart,
-}
 
 /// What the horizontal axis counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::{Record, Solution, recall};
+use satisfice_catalogue::record::{Record, Solution, recall};
 
 /// Evaluations, seconds, |C|.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -152,7 +152,7 @@ mod tests {
     use satisfice::Budget;
 
     use super::*;
-    use crate::{Request, catalogue};
+    use satisfice_catalogue::{Request, catalogue};
 
     /// Against the definitions, counted hit by hit in another way.
     #[test]

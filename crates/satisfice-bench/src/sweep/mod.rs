@@ -33,7 +33,6 @@ mod publish;
 mod report;
 mod results;
 mod row;
-pub mod statistics;
 mod suite;
 mod summary;
 

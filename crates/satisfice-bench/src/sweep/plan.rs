@@ -6,14 +6,14 @@ use satisfice::{Budget, engine};
 
 use super::row::Key;
 use super::suite::{Choice, Part, Suite};
-use crate::catalogue;
 use crate::error::Error;
-use crate::exact;
-use crate::instance::Instance;
-use crate::record::Limits;
-use crate::run::Request;
-use crate::settings::Settings;
 use crate::studies;
+use satisfice_catalogue::Instance;
+use satisfice_catalogue::Request;
+use satisfice_catalogue::Settings;
+use satisfice_catalogue::catalogue;
+use satisfice_catalogue::exact;
+use satisfice_catalogue::record::Limits;
 
 /// All runs of a suite.
 pub struct Plan {
@@ -100,10 +100,11 @@ impl Plan {
         {
             let plain = |(place, _): &&(usize, String)| !self.instances[*place].is_geometric();
             if let Some((place, _)) = problems.iter().find(plain) {
-                return Err(Error::Exact {
+                return Err(satisfice_catalogue::Error::Exact {
                     method: method.name.clone(),
                     problem: self.instances[*place].name(),
-                });
+                }
+                .into());
             }
         }
         let limits = Limits {

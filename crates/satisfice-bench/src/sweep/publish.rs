@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use super::figures::{Figure, figures};
+use super::figures::figures;
 use super::plan::Plan;
 use super::row::Row;
 use super::summary::{Group, groups};
 use super::{files, ioh, report};
 use crate::error::Error;
-use crate::plot::{Format, draw};
-use crate::studies::Finding;
+use crate::finding::Figure;
+use crate::finding::Finding;
+use satisfice_draw::plot::{Format, draw};
 
 /// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, and `report.html`, which holds all of
 /// it with the findings of studies and says that `command` made it; returns the groups of the summary.
@@ -25,7 +26,10 @@ pub fn publish(
 ) -> Result<Vec<Group>, Error> {
     let groups = groups(plan, rows);
     files::write(&folder.join("suite.toml"), plan.suite.text.as_bytes())?;
-    files::write(&folder.join("summary.json"), &crate::json::to_vec(&groups)?)?;
+    files::write(
+        &folder.join("summary.json"),
+        &satisfice_catalogue::json::to_vec(&groups)?,
+    )?;
     ioh::export(&folder.join("ioh"), &groups, rows)?;
     let place = folder.join("figures");
     let mut shown = Vec::new();

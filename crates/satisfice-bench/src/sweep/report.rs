@@ -5,12 +5,12 @@ use std::fmt::Write;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::figures::Figure;
+use crate::finding::Figure;
 
 use super::plan::Plan;
 use super::summary::{Group, cells, heading};
-use crate::quantity::shown;
-use crate::studies::Finding;
+use crate::finding::Finding;
+use satisfice_catalogue::quantity::shown;
 
 const PAGE: &str = include_str!("report.html");
 /// Groups of a part that are shown unfolded.
@@ -84,7 +84,7 @@ pub(super) fn page(
         .iter()
         .for_each(|(finding, figures)| line(study(finding, figures)));
     line("<h2>The machine</h2><table>".to_owned());
-    for (what, value) in crate::machine() {
+    for (what, value) in satisfice_catalogue::machine() {
         line(format!(
             "<tr><td>{}</td><td class=\"text\">{}</td></tr>",
             escape(&what),

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::metrics::{Metrics, Moment};
 use super::plan::Planned;
-use crate::record::{Limits, Record};
-use crate::settings::Settings;
+use satisfice_catalogue::Settings;
+use satisfice_catalogue::record::{Limits, Record};
 
 /// What tells a run from all others; a run whose key is in the file is not run again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

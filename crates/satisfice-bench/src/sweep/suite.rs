@@ -8,7 +8,7 @@ use satisfice::Error as SearchError;
 use toml::{Table, Value};
 
 use crate::error::Error;
-use crate::quantity;
+use satisfice_catalogue::quantity;
 
 /// A set of parts, each a grid of engines x problems x parameters x seeds under one budget.
 ///

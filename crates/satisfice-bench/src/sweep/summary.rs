@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::metrics::{Cost, RECALLS};
 use super::plan::Plan;
 use super::row::Row;
-use super::statistics::{Estimate, Paired};
-use crate::quantity::shown;
+use crate::statistics::{Estimate, Paired};
+use satisfice_catalogue::quantity::shown;
 
 /// One problem of one part under its budget.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use satisfice::{Cancel, Completeness, Counts, Method as Estimate, StopReason, TracePoint};
-use satisfice_bench::record::{Limits, Solution};
-use satisfice_bench::{Record, Settings};
+use satisfice_catalogue::record::{Limits, Solution};
+use satisfice_catalogue::{Record, Settings};
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::{self, Contact, Frame, Scene, Skips};
 use serde_json::json;

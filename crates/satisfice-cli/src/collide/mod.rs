@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex};
 
 use anyhow::{Context, bail};
 use satisfice::engine;
-use satisfice_bench::{Mismatch, Record, json};
+use satisfice_catalogue::{Mismatch, Record, json};
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::{Completeness, Contact, Skips};
 use serde::Deserialize;

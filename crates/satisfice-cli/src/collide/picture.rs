@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use anyhow::bail;
-use satisfice_bench::picture::{Picture, Up, View};
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::Contact;
+use satisfice_draw::picture::{Picture, Up, View};
 
 use super::arguments::Axis;
 use super::scene::World;

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use satisfice::StopReason;
-use satisfice_bench::verify::{self, LISTED_BEFORE, Mismatch};
-use satisfice_bench::{Record, record};
+use satisfice_catalogue::verify::{self, LISTED_BEFORE, Mismatch};
+use satisfice_catalogue::{Record, record};
 use satisfice_collision::FeatureKind;
 use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Serialize};

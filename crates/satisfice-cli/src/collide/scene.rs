@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use satisfice::SatisficingProblem;
-use satisfice_bench::{Record, Settings};
+use satisfice_catalogue::{Record, Settings};
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};

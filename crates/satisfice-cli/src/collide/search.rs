@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use anyhow::bail;
 use satisfice::StopReason;
-use satisfice_bench::record::Limits;
-use satisfice_bench::{Record, Request, search};
+use satisfice_catalogue::record::Limits;
+use satisfice_catalogue::{Record, Request, search};
 use satisfice_collision::broad::Method;
 use serde_json::json;
 

@@ -4,9 +4,8 @@
 
 use satisfice::catalogue::{Catalogued, Parameter, Params};
 use satisfice::{Axis, Budget, Cancel, Error, SatisficingProblem, Space};
-use satisfice_bench::catalogue::{Entry, entry};
-use satisfice_bench::plot::{self, Format};
-use satisfice_bench::{Record, Request, catalogue};
+use satisfice_catalogue::catalogue::{Entry, entry};
+use satisfice_catalogue::{Record, Request, catalogue};
 
 /// Lattice points below a diagonal: `x + y < sum` in `[0, width)^2`.
 struct Corner {
@@ -187,7 +186,7 @@ fn a_run_ends_with_enough_hits_and_when_cancelled() {
 #[test]
 fn what_is_misspelt_or_out_of_range_is_named() {
     let budget = || Budget::evaluations(10);
-    let error = |result: Result<Record, satisfice_bench::Error>| result.unwrap_err().to_string();
+    let error = |result: Result<Record, satisfice_catalogue::Error>| result.unwrap_err().to_string();
     let instance = CORNER.build([]).unwrap();
     let text = error(instance.run(&Request::new("randon", budget()), &mut |_| {}));
     assert!(text.contains("did you mean `random`?"), "{text}");
@@ -287,44 +286,4 @@ fn every_problem_of_the_catalogue_runs_and_verifies() {
         let rebuilt = entry.build(settings).unwrap();
         assert_eq!(rebuilt.parameters(), instance.parameters(), "{}", entry.name);
     }
-}
-
-#[test]
-fn the_chart_of_a_record_is_drawn_the_same_twice_in_both_formats() {
-    let mut record = run(&Request::new("random", Budget::evaluations(20_000)));
-    record.set_reference(Some(15));
-    let chart = plot::chart(&record);
-    assert_eq!(chart.panels.len(), 2);
-    assert_eq!(chart.panels[0].curves[0].points.last(), Some(&(20_000.0, 15.0)));
-    let svg = String::from_utf8(plot::draw(&chart, Format::Svg).unwrap()).unwrap();
-    for text in [
-        "<svg",
-        "evaluations",
-        "time (ms)",
-        "all 15 hits",
-        "recall 100.0 %",
-    ] {
-        assert!(svg.contains(text), "{text}");
-    }
-    let png = plot::draw(&chart, Format::Png).unwrap();
-    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
-    assert!(plot::draw(&chart, Format::Png).unwrap() == png);
-    assert!(plot::draw(&chart, Format::Svg).unwrap() == svg.into_bytes());
-    if let Some(folder) = std::env::var_os("SATISFICE_KEEP_CHARTS") {
-        std::fs::write(std::path::Path::new(&folder).join("record.png"), png).unwrap();
-    }
-}
-
-#[test]
-fn charts_with_little_or_nothing_in_them_are_drawn() {
-    let mut record = run(&Request::new("random", Budget::evaluations(1)));
-    for points in [0, 1] {
-        record.trace.truncate(points);
-        for format in [Format::Svg, Format::Png] {
-            assert!(plot::draw(&plot::chart(&record), format).unwrap().len() > 1000);
-        }
-    }
-    let text = Format::of("figure.pdf".as_ref()).unwrap_err().to_string();
-    assert_eq!(text, "cannot draw figure.pdf: a chart is an .svg or a .png file");
-    assert_eq!(Format::of("a.b/figure.PNG".as_ref()).unwrap(), Format::Png);
 }

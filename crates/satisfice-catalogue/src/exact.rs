@@ -124,17 +124,10 @@ impl<'a> Scene<'a> {
         });
         let of = |mesh: &Mesh, numbers: &[u32]| numbers.iter().map(|&v| mesh.vertex(v)).collect::<Vec<_>>();
         let points = [of(a, &numbers[0]), of(b, &numbers[1])];
-        let cloud = |points: &[[f64; 3]]| {
-            Mesh::new(points.to_vec(), vec![], vec![]).map_err(|error| Error::Suite {
-                place: "vertex pairs".to_owned(),
-                what: error.to_string(),
-            })
-        };
+        let cloud =
+            |points: &[[f64; 3]]| Mesh::new(points.to_vec(), vec![], vec![]).map_err(Error::VertexPairs);
         let clouds = [cloud(&points[0])?, cloud(&points[1])?];
-        let threshold = Threshold::new(problem.threshold()).map_err(|error| Error::Suite {
-            place: "vertex pairs".to_owned(),
-            what: error.to_string(),
-        })?;
+        let threshold = Threshold::new(problem.threshold()).map_err(Error::VertexPairs)?;
         Ok(Self {
             problem,
             numbers,
@@ -156,10 +149,7 @@ impl<'a> Scene<'a> {
         let start = Instant::now();
         let found = method(self);
         let seconds = start.elapsed().as_secs_f64();
-        let found = found.map_err(|error| Error::Suite {
-            place: "vertex pairs".to_owned(),
-            what: error.to_string(),
-        })?;
+        let found = found.map_err(Error::VertexPairs)?;
         Ok((found, seconds))
     }
 

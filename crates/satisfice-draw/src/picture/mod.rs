@@ -1,7 +1,7 @@
 //! Pictures of a scene: shaded bodies, with the pairs that were found, and those that were not, marked.
 //!
 //! ```
-//! use satisfice_bench::picture::{Picture, View};
+//! use satisfice_draw::picture::{Picture, View};
 //! use satisfice_collision::{Placement, generate};
 //! let ball = generate::icosphere(1.0, 2)?;
 //! let other = Placement::from_translation([1.9, 0.0, 0.0])?.place(&ball)?;

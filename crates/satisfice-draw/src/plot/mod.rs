@@ -3,14 +3,12 @@
 mod boards;
 mod draw;
 mod map;
-mod record;
 
 use std::path::Path;
 
 pub use boards::{Board, Boards};
 pub use draw::{draw, draw_boards, draw_maps};
 pub use map::{Colour, Layer, Map, Maps, Marker, Shape};
-pub use record::chart;
 
 use crate::error::Error;
 
@@ -76,5 +74,17 @@ impl Format {
             Some("png") => Ok(Self::Png),
             _ => Err(Error::ChartFormat(path.to_owned())),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_format_is_known_by_the_extension_in_either_case() {
+        let text = Format::of("figure.pdf".as_ref()).unwrap_err().to_string();
+        assert_eq!(text, "cannot draw figure.pdf: a chart is an .svg or a .png file");
+        assert_eq!(Format::of("a.b/figure.PNG".as_ref()).unwrap(), Format::Png);
     }
 }

@@ -1,17 +1,20 @@
-//! Two teapots of which one moves: the scene by which warm starts are judged.
+//! Two teapots, one of them moving: the scene by which warm starts are judged.
 
 use std::collections::BTreeSet;
+use std::error::Error;
 
 use satisfice::catalogue::{Catalogued, Params};
 use satisfice::{Budget, Search, WarmStart, engine};
 use satisfice_collision::problem::Teapots;
 use satisfice_collision::{Placement, generate};
 
-use crate::error::Error;
-
 /// Which way the second teapot moves.
+#[allow(
+    dead_code,
+    reason = "not every example that includes this file moves it both ways"
+)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub(crate) enum Way {
     /// Towards the first, along the longest extent: from frame to frame there are more hits.
     Towards,
     /// Past it, along the next axis, as far on one side in the first frame as on the other in the last: about as many hits in
@@ -20,7 +23,7 @@ pub enum Way {
 }
 
 /// A teapot, one that moves, and the hits of each frame.
-pub struct MovingTeapots {
+pub(crate) struct MovingTeapots {
     frames: Vec<Teapots>,
     hits: Vec<BTreeSet<(u32, u32)>>,
 }
@@ -30,7 +33,7 @@ impl MovingTeapots {
     ///
     /// # Errors
     /// Any that building the scene gives, such as for a `step` that is not finite.
-    pub fn new(frames: usize, step: f64, way: Way) -> Result<Self, Error> {
+    pub(crate) fn new(frames: usize, step: f64, way: Way) -> Result<Self, Box<dyn Error>> {
         let teapot = generate::teapot(13)?;
         let size = teapot.size();
         let along = teapot.bounds().longest_axis();
@@ -61,18 +64,12 @@ impl MovingTeapots {
         Ok(scene)
     }
 
-    /// Number of frames.
-    #[must_use]
-    pub fn frames(&self) -> usize {
-        self.frames.len()
-    }
-
     /// Number of hits of a frame, by exact enumeration.
     ///
     /// # Panics
     /// If there is no such frame.
     #[must_use]
-    pub fn hits(&self, frame: usize) -> usize {
+    pub(crate) fn hits(&self, frame: usize) -> usize {
         self.hits[frame].len()
     }
 
@@ -81,7 +78,7 @@ impl MovingTeapots {
     /// # Panics
     /// If there is no such frame.
     #[must_use]
-    pub fn kept(&self, frame: usize) -> f64 {
+    pub(crate) fn kept(&self, frame: usize) -> f64 {
         let Some(before) = frame.checked_sub(1) else {
             return 0.0;
         };
@@ -94,13 +91,13 @@ impl MovingTeapots {
     ///
     /// # Errors
     /// As [`Search::run`], and for an engine that finds what is no hit.
-    pub fn recalls(
+    pub(crate) fn recalls(
         &self,
         (engine, settings): (&str, &[(&str, &str)]),
         rule: WarmStart,
         evaluations: u64,
         seeds: u64,
-    ) -> Result<Vec<f64>, Error> {
+    ) -> Result<Vec<f64>, Box<dyn Error>> {
         let mut recalls = vec![0.0; self.frames.len()];
         for seed in 1..=seeds {
             let mut search = Search::new(engine::find(engine)?.build(settings.iter().copied())?)
@@ -109,10 +106,11 @@ impl MovingTeapots {
             for (frame, problem) in self.frames.iter().enumerate() {
                 let report = search.run(problem, &Budget::evaluations(evaluations))?;
                 if let Some(hit) = report.hits().find(|hit| !self.hits[frame].contains(hit.solution)) {
-                    return Err(Error::NoHit {
-                        solution: format!("{:?}", hit.solution),
-                        frame,
-                    });
+                    return Err(format!(
+                        "{:?} was reported as a hit of frame {frame}, and is none",
+                        hit.solution
+                    )
+                    .into());
                 }
                 recalls[frame] += 100.0 * report.hit_count() as f64 / self.hits(frame).max(1) as f64;
             }

@@ -1,17 +1,20 @@
 //! What each part of the default engine contributes: each is left out in turn, and rival engines run beside it. Then the
 //! teapots in every vertex order, moving teapots, and the composed functions of CEC2013 if their data are available.
 //!
-//! `cargo run --release --example ablation` prints the table and writes it to `docs/results/ablation.md` (or to the folder
+//! `cargo run --release -p satisfice-bench --example ablation` prints the table and writes it to `docs/results/ablation.md` (or to the folder
 //! `SATISFICE_OUT`). Sixteen seeds, the same for every engine; with `SATISFICE_QUICK=1` two seeds and a tenth of the evaluations.
 //! `SATISFICE_CEC2013=DIR` names the folder with that suite's data.
+
+#[path = "../../../examples/moving_teapots/mod.rs"]
+mod moving_teapots;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use moving_teapots::{MovingTeapots, Way};
 use rayon::prelude::*;
 use satisfice::{Budget, WarmStart};
-use satisfice_bench::moving_teapots::{MovingTeapots, Way};
-use satisfice_bench::{Instance, Request, catalogue};
+use satisfice_catalogue::{Instance, Request, catalogue};
 use satisfice_problems::Cec2013;
 
 /// Ten problems for the geometric mean and the teapots; then problems of other structure: many optima of a smooth function,
@@ -134,7 +137,7 @@ fn mean_hits(
     (engine, setting): (&str, &str),
     seeds: u64,
     evaluations: u64,
-) -> Result<f64, satisfice_bench::Error> {
+) -> Result<f64, satisfice_catalogue::Error> {
     // A busy core does not affect results under a budget of evaluations.
     let hits = (0..seeds).into_par_iter().map(|seed| {
         let mut request = Request::new(engine, Budget::evaluations(evaluations)).seed(seed);
@@ -143,7 +146,7 @@ fn mean_hits(
         }
         Ok(problem.run(&request, &mut |_| {})?.hits)
     });
-    let hits: Vec<u64> = hits.collect::<Result<_, satisfice_bench::Error>>()?;
+    let hits: Vec<u64> = hits.collect::<Result<_, satisfice_catalogue::Error>>()?;
     Ok(hits.iter().sum::<u64>() as f64 / seeds as f64)
 }
 

@@ -1,0 +1,56 @@
+//! What a study or a group of runs has to show: text, tables, figures, pictures.
+
+use satisfice_draw::plot::Chart;
+
+/// A chart with the name of its file and what it shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Without extension.
+    pub name: &'static str,
+    /// What is seen.
+    pub caption: String,
+    /// The picture.
+    pub chart: Chart,
+}
+
+/// What a study found.
+#[derive(Debug, Clone, Default)]
+pub struct Finding {
+    /// Heading.
+    pub title: String,
+    /// Paragraphs.
+    pub text: Vec<String>,
+    /// Tables: a caption, and rows of which the first is the heading.
+    pub tables: Vec<(String, Vec<Vec<String>>)>,
+    /// Figures.
+    pub figures: Vec<Figure>,
+    /// Pictures as PNG with caption and file name without extension.
+    pub pictures: Vec<(String, String, Vec<u8>)>,
+}
+
+impl Finding {
+    /// The tables for a terminal.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut text = format!("{}\n", self.title);
+        for (caption, rows) in &self.tables {
+            text.push_str(&format!("  {caption}\n"));
+            let columns = rows.first().map_or(0, Vec::len);
+            let width = |column: usize| {
+                rows.iter()
+                    .map(|row| row[column].chars().count())
+                    .max()
+                    .unwrap_or(0)
+            };
+            let widths: Vec<usize> = (0..columns).map(width).collect();
+            for row in rows {
+                let cells = row
+                    .iter()
+                    .zip(&widths)
+                    .map(|(cell, width)| format!("{cell:>width$}"));
+                text.push_str(&format!("    {}\n", cells.collect::<Vec<_>>().join("  ")));
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,40 @@
+//! Every error of this crate, as data.
+
+/// What was wrong with a request, a record or a checkpoint.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The framework refused it: an unknown name, a value out of range, a budget.
+    #[error(transparent)]
+    Search(#[from] satisfice::Error),
+    /// A solution cannot be written as JSON.
+    #[error("a solution cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The file is not a checkpoint of this problem.
+    #[error("no checkpoint of a run of this problem: {0}")]
+    Checkpoint(String),
+    /// The checkpoint belongs to another run.
+    #[error("the checkpoint's {what} is {saved}, not {now}: give the arguments that the run was begun with")]
+    Other {
+        /// What differs.
+        what: &'static str,
+        /// What the checkpoint says.
+        saved: String,
+        /// What was asked for.
+        now: String,
+    },
+    /// The request has 0 slices.
+    #[error("0 slices leave nothing to run: give at least 1")]
+    NoSlices,
+    /// An exact method was asked for on a problem that does not search for vertex pairs.
+    #[error("`{method}` finds pairs of vertices, and `{problem}` has none: take an engine")]
+    Exact {
+        /// The method.
+        method: String,
+        /// The problem.
+        problem: &'static str,
+    },
+    /// The vertices or the threshold of a problem of vertex pairs are refused by the collision library.
+    #[error("vertex pairs: {0}")]
+    VertexPairs(#[from] satisfice_collision::Error),
+}

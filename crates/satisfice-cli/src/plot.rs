@@ -1,0 +1,91 @@
+//! The chart of one record: |C| against evaluations and against time.
+
+use satisfice_catalogue::Record;
+use satisfice_draw::plot::{Chart, Curve, Panel};
+
+/// |C| against evaluations (logarithmic) and against running time, with the number of hits that there are where it is
+/// known.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "a pixel is coarser than 53 bits")]
+pub(crate) fn chart(record: &Record) -> Chart {
+    let mark = record
+        .reference_hits
+        .map(|reference| (reference as f64, format!("all {reference} hits")));
+    let recall = record
+        .recall
+        .map_or_else(String::new, |recall| format!(", recall {:.1} %", 100.0 * recall));
+    let curve = |points: Vec<(f64, f64)>| Curve {
+        points,
+        ..Curve::default()
+    };
+    let by_evaluations = record.trace.iter().map(|p| (p.evaluations as f64, p.hits as f64));
+    let by_time = record
+        .trace
+        .iter()
+        .map(|p| (1e3 * p.elapsed_seconds, p.hits as f64));
+    let panel = |x_label: &str, log_x, points| Panel {
+        x_label: x_label.to_owned(),
+        y_label: "distinct hits |C|".to_owned(),
+        log_x,
+        curves: vec![curve(points)],
+        mark: mark.clone(),
+        ..Panel::default()
+    };
+    Chart {
+        title: format!(
+            "{} by {}, seed {}: {} hits{recall}",
+            record.problem, record.engine, record.seed, record.hits
+        ),
+        panels: vec![
+            panel("evaluations", true, by_evaluations.collect()),
+            panel(
+                "time (ms)",
+                false,
+                std::iter::once((0.0, 0.0)).chain(by_time).collect(),
+            ),
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use satisfice::Budget;
+    use satisfice_catalogue::{Request, catalogue};
+    use satisfice_draw::plot::{Format, draw};
+
+    use super::*;
+
+    fn queens(evaluations: u64) -> Record {
+        let problem = catalogue::find("queens").unwrap().build([("n", "4")]).unwrap();
+        let request = Request::new("random", Budget::evaluations(evaluations));
+        let mut record = problem.run(&request, &mut |_| {}).unwrap();
+        record.set_reference(problem.reference_hits());
+        record
+    }
+
+    #[test]
+    fn the_chart_of_a_record_is_drawn_the_same_twice_in_both_formats() {
+        let chart = chart(&queens(20_000));
+        assert_eq!(chart.panels.len(), 2);
+        assert_eq!(chart.panels[0].curves[0].points.last(), Some(&(20_000.0, 2.0)));
+        let svg = String::from_utf8(draw(&chart, Format::Svg).unwrap()).unwrap();
+        for text in ["<svg", "evaluations", "time (ms)", "all 2 hits", "recall 100.0 %"] {
+            assert!(svg.contains(text), "{text}");
+        }
+        let png = draw(&chart, Format::Png).unwrap();
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        assert!(draw(&chart, Format::Png).unwrap() == png);
+        assert!(draw(&chart, Format::Svg).unwrap() == svg.into_bytes());
+    }
+
+    #[test]
+    fn charts_with_little_or_nothing_in_them_are_drawn() {
+        let mut record = queens(1);
+        for points in [0, 1] {
+            record.trace.truncate(points);
+            for format in [Format::Svg, Format::Png] {
+                assert!(draw(&chart(&record), format).unwrap().len() > 1000);
+            }
+        }
+    }
+}
