@@ -4,6 +4,7 @@
 //! Points are plain `[f64; 3]`. "Size" means the longest extent of the bounding box everywhere.
 
 pub mod broad;
+pub mod continuous;
 pub mod distance;
 mod error;
 pub mod generate;

@@ -1,0 +1,167 @@
+//! Common divisors of forms: common roots, and roots counted once.
+//!
+//! Only roots with `0 < t < 1` matter here, so a form is read as the polynomial `sum_i c_i x^i` of `x = t / (1 - t)`, which
+//! runs from 0 to infinity, and factors `x` are dropped.
+
+use dashu_int::IBig;
+use dashu_int::ops::{Abs, Gcd};
+
+use super::form::Form;
+
+/// A form with the same roots inside the step, each once.
+pub(super) fn squarefree(form: &Form) -> Form {
+    let polynomial = trimmed(form.coefficients());
+    let derivative: Vec<IBig> = (1..)
+        .zip(polynomial.iter().skip(1))
+        .map(|(power, c)| c * IBig::from(power))
+        .collect();
+    let repeated = gcd(polynomial.clone(), derivative);
+    Form::new(quotient(polynomial, &repeated))
+}
+
+/// The roots of `form` inside the step that are no roots of `other`. `form` is square-free.
+pub(super) fn without_roots_of(form: &Form, other: &Form) -> Form {
+    let polynomial = trimmed(form.coefficients());
+    let common = gcd(polynomial.clone(), trimmed(other.coefficients()));
+    Form::new(quotient(polynomial, &common))
+}
+
+/// A form whose roots with `0 <= t <= 1` are the common ones of all forms; `None` if all are 0 everywhere.
+pub(super) fn common(forms: &[Form]) -> Option<Form> {
+    let forms = || forms.iter().filter(|form| !form.is_zero());
+    let at_the_end = forms()
+        .map(|form| {
+            form.coefficients()
+                .iter()
+                .rev()
+                .take_while(|c| c.is_zero())
+                .count()
+        })
+        .min()?;
+    let mut common = forms()
+        .map(|form| primitive(strip(form.coefficients().to_vec())))
+        .reduce(gcd)?;
+    common.resize(common.len() + at_the_end, IBig::ZERO);
+    Some(Form::new(common))
+}
+
+/// Without the factors `x` (roots at the start) and the zero leading coefficients (roots at the end).
+fn trimmed(coefficients: &[IBig]) -> Vec<IBig> {
+    let zeros = coefficients.iter().take_while(|c| c.is_zero()).count();
+    primitive(strip(coefficients[zeros..].to_vec()))
+}
+
+/// Without zero leading coefficients.
+fn strip(mut coefficients: Vec<IBig>) -> Vec<IBig> {
+    while coefficients.last().is_some_and(IBig::is_zero) {
+        coefficients.pop();
+    }
+    coefficients
+}
+
+/// Divided by the greatest common divisor of the coefficients.
+fn primitive(mut coefficients: Vec<IBig>) -> Vec<IBig> {
+    let mut content = IBig::ZERO;
+    for c in &coefficients {
+        content = if content.is_zero() {
+            c.clone().abs()
+        } else if c.is_zero() {
+            content
+        } else {
+            IBig::from((&content).gcd(c))
+        };
+    }
+    if content > IBig::ONE {
+        for c in &mut coefficients {
+            *c /= &content;
+        }
+    }
+    coefficients
+}
+
+/// The greatest common divisor, by Euclid's algorithm with primitive pseudo-remainders. Neither argument has zero leading
+/// coefficients; the empty one is the zero polynomial.
+fn gcd(mut a: Vec<IBig>, mut b: Vec<IBig>) -> Vec<IBig> {
+    if a.len() < b.len() {
+        std::mem::swap(&mut a, &mut b);
+    }
+    while !b.is_empty() {
+        let rest = primitive(pseudo_remainder(a, &b));
+        a = b;
+        b = rest;
+    }
+    primitive(a)
+}
+
+fn pseudo_remainder(mut a: Vec<IBig>, b: &[IBig]) -> Vec<IBig> {
+    let lead = &b[b.len() - 1];
+    while a.len() >= b.len() {
+        let top = a.pop().unwrap_or_default();
+        for c in &mut a {
+            *c *= lead;
+        }
+        let offset = a.len() + 1 - b.len();
+        for (c, d) in a[offset..].iter_mut().zip(b) {
+            *c -= &top * d;
+        }
+        a = strip(a);
+    }
+    a
+}
+
+/// `a / b` up to a constant, for a divisor `b` of `a`.
+fn quotient(mut a: Vec<IBig>, b: &[IBig]) -> Vec<IBig> {
+    if b.len() < 2 {
+        return a;
+    }
+    let lead = &b[b.len() - 1];
+    let mut result = vec![IBig::ZERO; a.len() + 1 - b.len()];
+    for k in (0..result.len()).rev() {
+        let top = a.pop().unwrap_or_default();
+        for c in a.iter_mut().chain(&mut result[k + 1..]) {
+            *c *= lead;
+        }
+        for (c, d) in a[k..].iter_mut().zip(b) {
+            *c -= &top * d;
+        }
+        result[k] = top;
+    }
+    primitive(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(coefficients: &[i32]) -> Form {
+        Form::new(coefficients.iter().map(|&c| IBig::from(c)).collect())
+    }
+
+    /// Up to a constant.
+    fn proportional(a: &Form, b: &Form) -> bool {
+        let (a, b) = (a.coefficients(), b.coefficients());
+        a.len() == b.len() && (0..a.len()).all(|k| &a[k] * &b[0] == &a[0] * &b[k])
+    }
+
+    #[test]
+    fn repeated_roots_are_left_once() {
+        let (p, q) = (form(&[-1, 3]), form(&[2, -5]));
+        let cubic = &(&p * &p) * &q;
+        assert!(proportional(&squarefree(&cubic), &(&p * &q)));
+        // A root at the start and one at the end are no roots inside.
+        let ends = &(&form(&[0, 1]) * &form(&[1, 0])) * &p;
+        assert!(proportional(&squarefree(&ends), &p));
+    }
+
+    #[test]
+    fn common_roots_are_found_and_removed() {
+        let (p, q, r) = (form(&[-7, 3]), form(&[2, -5]), form(&[1, 1, -9]));
+        let (a, b) = (&(&p * &q) * &r, &(&p * &form(&[4, 1])) * &p);
+        assert!(proportional(&without_roots_of(&a, &b), &(&q * &r)));
+        assert!(common(&[a.clone(), form(&[0, 0]), b]).is_some_and(|c| proportional(&c, &p)));
+        assert_eq!(common(&[form(&[0, 0])]), None);
+        let end = common(&[form(&[3, 0]), form(&[-5, 0])]);
+        assert!(end.is_some_and(|c| c.sign_at_end() == 0 && c.sign_at_start() != 0));
+        assert!(common(&[a, form(&[0, 3, 0])]).is_some_and(|c| c.coefficients().len() == 1));
+    }
+}

@@ -1,0 +1,78 @@
+//! Who decides a query: floating point where it proves the answer, integers where it does not.
+
+use super::advance::{Goal, Reached, advance};
+use super::exact;
+use super::hull::Hull;
+use super::integers::Part;
+use super::motion::Motion;
+use super::swept::Swept;
+use crate::distance::DecidedBy;
+
+/// Pieces of the step, as a power of two, at which the part left to integers begins: a rounded start keeps the integers short.
+const SHIFT: u32 = 6;
+/// The finest piece of the step that an answer names, as a power of two.
+const FINEST: u32 = 50;
+
+/// The answer to a query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solved {
+    /// Bounds of the first time of a hit, if there is one.
+    pub(super) time: Option<[f64; 2]>,
+    pub(super) by: DecidedBy,
+}
+
+/// Whether and when a hull comes near the origin.
+#[inline]
+pub(super) fn solve<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
+    motion: &Motion<M, N>,
+    delta: f64,
+    goal: Goal,
+) -> Solved {
+    let reached = match Swept::<K>::new(motion, delta) {
+        Some(swept) => advance::<H, K>(&swept, goal),
+        None if motion.coordinates().all(f64::is_finite) => Reached::NOTHING,
+        None => {
+            return Solved {
+                time: None,
+                by: DecidedBy::NotFinite,
+            };
+        }
+    };
+    if reached.is_decided {
+        return Solved {
+            time: reached.hit.map(|hit| [reached.free, hit]),
+            by: DecidedBy::Filter,
+        };
+    }
+    Solved {
+        time: exactly::<H, K, M, N>(motion, delta, goal, reached),
+        by: DecidedBy::Exact,
+    }
+}
+
+#[cold]
+fn exactly<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
+    motion: &Motion<M, N>,
+    delta: f64,
+    goal: Goal,
+    reached: Reached,
+) -> Option<[f64; 2]> {
+    let end = reached.hit.unwrap_or(goal.until);
+    let part = Part::around(reached.free, end, SHIFT);
+    if goal.tolerance.is_infinite() {
+        return exact::is_hit(motion, delta, H::PARTS, part).then(|| [reached.free, part.end()]);
+    }
+    if reached.free == 0.0 && exact::is_hit(&motion.at_rest(), delta, H::PARTS, Part::WHOLE) {
+        return Some([0.0, 0.0]);
+    }
+    let length = part.end() - part.start();
+    let levels = (length / goal.tolerance)
+        .log2()
+        .ceil()
+        .clamp(0.0, f64::from(FINEST - SHIFT)) as u32;
+    let piece = exact::earliest(motion, delta, H::PARTS, part, levels)?;
+    // Exact: short binary fractions.
+    let unit = length / (1_u64 << levels) as f64;
+    let from = part.start() + piece as f64 * unit;
+    Some([from.max(reached.free), from + unit])
+}

@@ -1,0 +1,191 @@
+//! Whether a polynomial equation and strict inequalities of the time have a common solution: exact, and always decided.
+//!
+//! The step is halved. A piece is discarded if the signs of a form's coefficients exclude a solution, and accepted if they
+//! prove one. What is left after [`PLAIN_HALVINGS`] pieces of repeated or common roots is prepared first: roots are made
+//! simple and roots that violate an inequality are divided out. The halving of what remains ends, because close to a simple
+//! root the signs of the coefficients change exactly once (Vincent's theorem; Collins and Akritas 1976).
+
+use super::divisors::{squarefree, without_roots_of};
+use super::form::Form;
+
+/// Halvings before roots are made simple.
+const PLAIN_HALVINGS: u32 = 12;
+
+/// `equation = 0` (if there is one) and `positive > 0` for all of these, with `0 <= t <= 1`.
+#[derive(Debug, Clone)]
+pub(super) struct System {
+    /// Not 0 everywhere.
+    pub(super) equation: Option<Form>,
+    pub(super) positive: Vec<Form>,
+}
+
+/// What the coefficients tell about a piece.
+enum Sight {
+    Solvable,
+    Unsolvable,
+    Unclear,
+}
+
+impl System {
+    /// Whether there is a solution.
+    pub(super) fn is_solvable(&self) -> bool {
+        self.holds_at_start() || self.holds_at_end() || self.is_solvable_inside(PLAIN_HALVINGS)
+    }
+
+    /// The first piece of the step cut into `2^levels` pieces that contains the infimum of the solutions, as its number.
+    pub(super) fn earliest(&self, levels: u32) -> Option<u64> {
+        if self.holds_at_start() {
+            return Some(0);
+        }
+        let last = (1_u64 << levels) - 1;
+        self.earliest_inside(levels, 0)
+            .or_else(|| self.holds_at_end().then_some(last))
+    }
+
+    fn earliest_inside(&self, levels: u32, number: u64) -> Option<u64> {
+        match self.sight() {
+            Sight::Unsolvable => return None,
+            // Without an equation solutions begin at once.
+            Sight::Solvable if self.equation.is_none() => return Some(number << levels),
+            Sight::Solvable | Sight::Unclear => {}
+        }
+        if levels == 0 {
+            return self.is_solvable_inside(PLAIN_HALVINGS).then_some(number);
+        }
+        let (first, second) = self.halves();
+        first.earliest_inside(levels - 1, 2 * number).or_else(|| {
+            if second.holds_at_start() && second.equation.is_some() {
+                // The solution is the middle itself.
+                return Some((2 * number + 1) << (levels - 1));
+            }
+            second.earliest_inside(levels - 1, 2 * number + 1)
+        })
+    }
+
+    fn holds_at_start(&self) -> bool {
+        self.equation
+            .as_ref()
+            .is_none_or(|form| form.sign_at_start() == 0)
+            && self.positive.iter().all(|form| form.sign_at_start() > 0)
+    }
+
+    fn holds_at_end(&self) -> bool {
+        self.equation.as_ref().is_none_or(|form| form.sign_at_end() == 0)
+            && self.positive.iter().all(|form| form.sign_at_end() > 0)
+    }
+
+    /// Whether there is a solution with `0 < t < 1`.
+    fn is_solvable_inside(&self, halvings: u32) -> bool {
+        match self.sight() {
+            Sight::Solvable => return true,
+            Sight::Unsolvable => return false,
+            Sight::Unclear => {}
+        }
+        if halvings == 0 {
+            return self.is_solvable_with_simple_roots();
+        }
+        let (first, second) = self.halves();
+        first.holds_at_end()
+            || first.is_solvable_inside(halvings - 1)
+            || second.is_solvable_inside(halvings - 1)
+    }
+
+    fn sight(&self) -> Sight {
+        if self.positive.iter().any(Form::is_nowhere_positive) {
+            return Sight::Unsolvable;
+        }
+        let changes = match &self.equation {
+            None => 1,
+            Some(form) => form.sign_changes(),
+        };
+        if changes == 0 {
+            Sight::Unsolvable
+        } else if changes == 1 && self.positive.iter().all(Form::is_positive_inside) {
+            Sight::Solvable
+        } else {
+            Sight::Unclear
+        }
+    }
+
+    /// The system on each half of the step. Inequalities that hold inside the whole step are not tested again.
+    fn halves(&self) -> (Self, Self) {
+        let half = |part: fn(&Form) -> Form| Self {
+            equation: self.equation.as_ref().map(part),
+            positive: self
+                .positive
+                .iter()
+                .filter(|form| !is_positive_everywhere(form))
+                .map(part)
+                .collect(),
+        };
+        (half(Form::first_half), half(Form::second_half))
+    }
+
+    fn is_solvable_with_simple_roots(&self) -> bool {
+        if let Some(equation) = &self.equation {
+            let roots = self
+                .positive
+                .iter()
+                .fold(squarefree(equation), |roots, form| without_roots_of(&roots, form));
+            has_accepted_root(&roots, &self.positive)
+        } else {
+            let boundaries = self
+                .positive
+                .iter()
+                .map(squarefree)
+                .reduce(|product, form| &product * &form)
+                .map(|product| squarefree(&product));
+            boundaries.is_some_and(|boundaries| has_accepted_gap(&boundaries, &self.positive))
+        }
+    }
+}
+
+fn is_positive_everywhere(form: &Form) -> bool {
+    form.is_positive_inside() && form.sign_at_start() > 0 && form.sign_at_end() > 0
+}
+
+/// Whether all `positive` are above 0 at a root of `roots` with `0 < t < 1`. The roots are simple and no roots of `positive`.
+fn has_accepted_root(roots: &Form, positive: &[Form]) -> bool {
+    if positive.iter().any(Form::is_nowhere_positive) {
+        return false;
+    }
+    match roots.sign_changes() {
+        0 => return false,
+        1 if positive.iter().all(Form::is_positive_inside) => return true,
+        _ => {}
+    }
+    let first: Vec<Form> = positive.iter().map(Form::first_half).collect();
+    let left = roots.first_half();
+    (left.sign_at_end() == 0 && first.iter().all(|form| form.sign_at_end() > 0))
+        || has_accepted_root(&left, &first)
+        || {
+            let second: Vec<Form> = positive.iter().map(Form::second_half).collect();
+            has_accepted_root(&roots.second_half(), &second)
+        }
+}
+
+/// Whether all `positive` are above 0 somewhere with `0 < t < 1`. `boundaries` has all their roots, each once.
+fn has_accepted_gap(boundaries: &Form, positive: &[Form]) -> bool {
+    if positive.iter().any(Form::is_nowhere_positive) {
+        return false;
+    }
+    if positive.iter().all(Form::is_positive_inside) {
+        return true;
+    }
+    let first: Vec<Form> = positive.iter().map(Form::first_half).collect();
+    let at_the_middle = first.iter().all(|form| form.sign_at_end() > 0);
+    match boundaries.sign_changes() {
+        // No sign changes inside: one sample tells all.
+        0 => return at_the_middle,
+        // One root with a sample on each side.
+        1 if boundaries.sign_at_start() != 0 && boundaries.sign_at_end() != 0 => {
+            return positive.iter().all(|form| form.sign_at_start() > 0)
+                || positive.iter().all(|form| form.sign_at_end() > 0);
+        }
+        _ => {}
+    }
+    at_the_middle || has_accepted_gap(&boundaries.first_half(), &first) || {
+        let second: Vec<Form> = positive.iter().map(Form::second_half).collect();
+        has_accepted_gap(&boundaries.second_half(), &second)
+    }
+}
