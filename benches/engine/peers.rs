@@ -44,7 +44,7 @@ pub(crate) fn our_swarm(batch: &str) -> usize {
     let problem = from_fn(Space::cube(2, -6.0, 6.0).unwrap(), 1e-2, himmelblau).separation(0.5);
     let particles = PARTICLES.to_string();
     let settings = [("particles", particles.as_str()), ("batch", batch)];
-    let engine = engine::find("pso").unwrap().build(settings).unwrap();
+    let engine = engine::find("pso").unwrap().configure(settings).unwrap();
     let budget = Budget::evaluations(EVALUATIONS as u64);
     let report = Search::new(engine).seed(7).run(&problem, &budget).unwrap();
     report.hit_count()

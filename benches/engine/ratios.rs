@@ -218,7 +218,10 @@ fn overshoots(table: &mut Table, full: bool) {
         let space = Space::cube(3, -1.0, 1.0).unwrap();
         let problem = from_fn(space, 0.5, fitness);
         let late = |seed: u64| {
-            let engine = engine::find(engine).unwrap().build([("batch", batch)]).unwrap();
+            let engine = engine::find(engine)
+                .unwrap()
+                .configure([("batch", batch)])
+                .unwrap();
             let mut search = Search::new(engine).seed(seed).threads(threads);
             let report = search.run(&problem, &Budget::time(time)).unwrap();
             report.overshoot.as_secs_f64() * 1e3

@@ -178,7 +178,7 @@ impl SearchArguments {
             .engine_set
             .iter()
             .map(|(name, value)| (name.as_str(), value.as_str()));
-        satisfice::engine::find(engine)?.build::<f64>(settings)?;
+        satisfice::engine::find(engine)?.configure::<f64>(settings)?;
         Ok(request)
     }
 

@@ -4,10 +4,6 @@ use core::fmt::{Debug, Display, LowerExp};
 
 use num_traits::{Float, FloatConst};
 
-use crate::catalogue::Params;
-use crate::engine::{Engine, Entry};
-use crate::error::Error;
-
 mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
@@ -54,8 +50,6 @@ pub trait Real:
     /// less than a third of its magnitude to a whole number.
     #[doc(hidden)]
     const ROUNDER: Self;
-    #[doc(hidden)]
-    fn build(entry: &Entry, values: &Params) -> Result<Box<dyn Engine<Self>>, Error>;
 }
 
 /// The floor. Not every machine has an instruction for it, and a call of the library's costs as much as a cheap fitness: two
@@ -102,9 +96,6 @@ impl Real for f32 {
     fn below(self) -> Self {
         self.next_down()
     }
-    fn build(entry: &Entry, values: &Params) -> Result<Box<dyn Engine<Self>>, Error> {
-        (entry.build_f32)(values)
-    }
 }
 
 impl Real for f64 {
@@ -131,9 +122,6 @@ impl Real for f64 {
     #[inline]
     fn below(self) -> Self {
         self.next_down()
-    }
-    fn build(entry: &Entry, values: &Params) -> Result<Box<dyn Engine<Self>>, Error> {
-        (entry.build_f64)(values)
     }
 }
 

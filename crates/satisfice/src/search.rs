@@ -11,7 +11,7 @@ use crate::archive::Archive;
 use crate::batch::Outcome;
 use crate::budget::{Budget, StopReason};
 use crate::catalogue::Description;
-use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
+use crate::engine::{Ask, ConfiguredEngine, Engine, Origin, WarmStart};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::observer::Observer;
@@ -26,6 +26,7 @@ use crate::view::View;
 
 pub use checkpoint::{Checkpoint, Saving, Unfinished};
 pub use islands::Islands;
+use islands::NoEngine;
 use slice::Slice;
 use steps::SingleSteps;
 
@@ -54,6 +55,7 @@ const EMPTY_ASKS: usize = 1000;
 /// ```
 pub struct Search<S, T> {
     engine: Box<dyn Engine<S>>,
+    configured: ConfiguredEngine<S>,
     description: Description,
     seed: u64,
     threads: usize,
@@ -77,17 +79,23 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Default for Search<S, T> {
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
-    /// A search by this engine: one [by name](crate::engine::build), or [one's own](Named::new).
+    /// A search by this engine: given by its settings, [by name](crate::engine::build), or
+    /// [your own](ConfiguredEngine::custom). Settings are checked when the search begins.
     #[must_use]
-    pub fn new(engine: Named<S>) -> Self {
-        let Named {
-            name,
-            parameters,
-            engine,
-        } = engine;
+    pub fn new(engine: impl Into<ConfiguredEngine<S>>) -> Self {
+        let configured = engine.into();
+        let description = Description {
+            name: configured.name().to_owned(),
+            parameters: configured.parameters(),
+        };
+        let engine = match configured.build() {
+            Ok(engine) => engine,
+            Err(_) => Box::new(NoEngine), // `begin` says what is wrong
+        };
         Self {
             engine,
-            description: Description { name, parameters },
+            configured,
+            description,
             seed: 0,
             threads: 1,
             warm_start: None,
@@ -265,6 +273,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         P: SatisficingProblem<Scalar = S, Solution = T>,
     {
         budget.check()?;
+        self.configured.check()?;
         if problem.threshold().is_nan() {
             return Err(Error::Threshold);
         }

@@ -3,7 +3,7 @@
 use core::ops::ControlFlow;
 
 use super::*;
-use crate::engine::{self, Ask, Named, Origin};
+use crate::engine::{self, Ask, ConfiguredEngine, Origin};
 use crate::{
     Axis, Batch, Budget, Completeness, Context, Engine, Error, Outcome, Report, SatisficingProblem, Search,
     SearchRng, Space, from_fn,
@@ -323,8 +323,7 @@ fn probes_do_not_disturb_the_engine() {
     let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
     let mut compared = 0;
     for entry in engine::all() {
-        let defaults = crate::catalogue::Params::with(entry.parameters, entry.name, []).unwrap();
-        if (entry.scheduled)(&defaults) {
+        if engine::build::<f64>(entry.name).unwrap().is_scheduled() {
             continue; // a schedule follows the whole budget, probes included
         }
         let engine = entry.name;
@@ -438,10 +437,13 @@ impl Engine<f64> for Rows {
 fn what_is_covered_is_proved_unless_a_probe_belies_it() {
     let problem = from_fn(Space::lattice(2, 60).unwrap(), 10.0, |x: &[f64]| x[0] + x[1]);
     let covered = |skipped, share| {
-        Search::new(Named::new("rows", Rows { next: 0, skipped }))
-            .probes(share)
-            .run(&problem, &Budget::evaluations(1_000_000))
-            .unwrap()
+        Search::new(ConfiguredEngine::custom("rows", move || Rows {
+            next: 0,
+            skipped,
+        }))
+        .probes(share)
+        .run(&problem, &Budget::evaluations(1_000_000))
+        .unwrap()
     };
     for share in [0.0, 0.5] {
         let report = covered(None, share);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use allocation_counter::measure;
-use satisfice::engine::{self, Entry};
+use satisfice::engine::{self, EngineSpec};
 use satisfice::{Budget, SatisficingProblem, Search, Space, from_fn};
 
 /// Pairs of indices, as in collision detection.
@@ -44,9 +44,9 @@ impl SatisficingProblem for Pairs {
 }
 
 /// Allocations and hits of a run.
-fn run<P: SatisficingProblem<Scalar = f64>>(problem: &P, entry: &Entry, evaluations: u64) -> (u64, u64) {
+fn run<P: SatisficingProblem<Scalar = f64>>(problem: &P, entry: &EngineSpec, evaluations: u64) -> (u64, u64) {
     // Probes keep every solution that they hit, new or not: they are left out, whatever the engine wishes.
-    let mut search = Search::new(entry.build([]).unwrap()).seed(3).probes(0.0);
+    let mut search = Search::new(entry.configure([]).unwrap()).seed(3).probes(0.0);
     let mut hits = 0;
     let allocations = measure(|| {
         let report = search.run(problem, &Budget::evaluations(evaluations)).unwrap();

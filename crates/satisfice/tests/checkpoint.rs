@@ -5,7 +5,7 @@
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
 
-use satisfice::engine::{self, Entry};
+use satisfice::engine::{self, EngineSpec};
 use satisfice::{
     Axis, Budget, Cancel, Checkpoint, Error, Located, Report, SatisficingProblem, Saving, Search, Space,
     StopReason, from_fn,
@@ -80,12 +80,12 @@ fn problem<'a>(
 const EVALUATIONS: u64 = 300;
 const SLICES: usize = 3;
 
-fn search(entry: &Entry, probes: f64) -> Search<f64, Located<f64>> {
-    Search::new(entry.build([]).unwrap()).seed(9).probes(probes)
+fn search(entry: &EngineSpec, probes: f64) -> Search<f64, Located<f64>> {
+    Search::new(entry.configure([]).unwrap()).seed(9).probes(probes)
 }
 
-fn resume(entry: &Entry, saved: &Saved) -> Search<f64, Located<f64>> {
-    Search::resume(through_a_file(saved), entry.build([]).unwrap()).unwrap()
+fn resume(entry: &EngineSpec, saved: &Saved) -> Search<f64, Located<f64>> {
+    Search::resume(through_a_file(saved), entry.configure([]).unwrap()).unwrap()
 }
 
 fn budget() -> Budget {
@@ -93,7 +93,7 @@ fn budget() -> Budget {
 }
 
 /// Reports of a search that nobody interrupts, its checkpoints between slices, and calls of the fitness at the end of each.
-fn uninterrupted(entry: &Entry, name: &str, probes: f64) -> (Vec<String>, Vec<Saved>, Vec<u64>) {
+fn uninterrupted(entry: &EngineSpec, name: &str, probes: f64) -> (Vec<String>, Vec<Saved>, Vec<u64>) {
     let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
     let problem = problem(name, &calls, 0, &cancel);
     let mut search = search(entry, probes);
@@ -127,7 +127,7 @@ fn at_every_slice_boundary() {
 /// Interrupts the search at fitness call `fatal`, resumes it, and compares all reports.
 /// Returns whether the slice was cut short.
 fn interrupted_at(
-    entry: &Entry,
+    entry: &EngineSpec,
     name: &str,
     probes: f64,
     fatal: u64,
@@ -280,11 +280,11 @@ fn on_threads() {
             core::hint::black_box(sum + f64::from(i) * 1e-300)
         })
     });
-    let whole = Search::<f64, _>::new(entry.build([]).unwrap())
+    let whole = Search::<f64, _>::new(entry.configure([]).unwrap())
         .run(&problem, &Budget::evaluations(400))
         .unwrap();
     let mut saved: Option<Saved> = None;
-    let part = Search::<f64, _>::new(entry.build([]).unwrap())
+    let part = Search::<f64, _>::new(entry.configure([]).unwrap())
         .threads(2)
         .run_saving(
             &problem,
@@ -321,7 +321,7 @@ fn what_does_not_fit_is_refused() {
     assert!(!search.ask(&lattice).unwrap().is_empty());
     let saved = search.checkpoint();
 
-    let with = |settings: &[(&str, &str)]| entry.build(settings.iter().copied()).unwrap();
+    let with = |settings: &[(&str, &str)]| entry.configure(settings.iter().copied()).unwrap();
     assert!(refused(Search::resume(saved.clone(), engine::build("walk").unwrap())).contains("engine is"));
     assert!(refused(Search::resume(saved.clone(), with(&[("particles", "31")]))).contains("particles=30"));
     let mut other = saved.clone();
@@ -371,7 +371,7 @@ fn damage_is_found() {
     let words = saved["state"].as_array().unwrap().len();
     let resumed = |value: serde_json::Value| {
         let checkpoint: Saved = serde_json::from_value(value).map_err(|e| Error::State(e.to_string()))?;
-        Search::<f64, _>::resume(checkpoint, entry.build([]).unwrap())
+        Search::<f64, _>::resume(checkpoint, entry.configure([]).unwrap())
     };
     assert!(resumed(saved.clone()).is_ok());
     for word in (0..words).step_by(7) {

@@ -4,9 +4,9 @@
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-use satisfice::engine::{self, Ask, Named, Origin, Steps};
+use satisfice::engine::{self, Ask, ConfiguredEngine, Origin, Steps};
 use satisfice::state::{Part, Reader, State};
-use satisfice::testing::engine::{Law, check, check_entry};
+use satisfice::testing::engine::{Law, check, check_spec};
 use satisfice::{
     Batch, Budget, Context, Engine, Error, Outcome, Search, SearchRng, Space, from_fn, saved_fields,
 };
@@ -41,7 +41,7 @@ fn keeps_the_laws(name: &str) {
     let settings = SETTINGS.iter().filter(|(engine, ..)| *engine == name);
     let settings = settings.map(|&(_, settings, searches)| (settings, searches));
     for (settings, searches) in [(Settings::default(), true)].into_iter().chain(settings) {
-        let mut violations = check_entry(engine::find(name).unwrap(), settings).unwrap();
+        let mut violations = check_spec(engine::find(name).unwrap(), settings).unwrap();
         violations.retain(|violation| searches || violation.law != Law::HitCount);
         let listed: Vec<String> = violations.iter().take(10).map(ToString::to_string).collect();
         assert!(
@@ -76,14 +76,21 @@ laws! {
     portfolio random walk descent descent_flood restarted_cma_es
     pso_1995 pso_inertia pso pso_latest_hit spso_2011
     qpso qpso_deletion latest_hit_qpso
-    wang li branch_and_bound
+    niching_pso_dbscan bounded_swarms branch_and_bound
 }
 
 #[test]
 fn every_default_is_in_its_range_and_every_engine_says_where_it_comes_from() {
     for entry in engine::all() {
-        assert!(entry.build::<f64>([]).is_ok(), "{}", entry.name);
-        assert!(!entry.summary.is_empty() && !entry.reference.is_empty());
+        assert!(
+            entry
+                .configure::<f64>([])
+                .and_then(|engine| engine.build())
+                .is_ok(),
+            "{}",
+            entry.name
+        );
+        assert!(!entry.summary.is_empty() && !entry.citation.is_empty());
         assert_eq!(engine::find(entry.name).unwrap().name, entry.name);
     }
     let mut names: Vec<_> = engine::all().iter().map(|entry| entry.name).collect();
@@ -93,8 +100,8 @@ fn every_default_is_in_its_range_and_every_engine_says_where_it_comes_from() {
 }
 
 /// The laws that an engine is found to break.
-fn broken(make: &mut dyn FnMut() -> Result<Named<f64>, Error>) -> Vec<Law> {
-    let violations = check(false, make).unwrap();
+fn broken(engine: &ConfiguredEngine<f64>) -> Vec<Law> {
+    let violations = check(engine).unwrap();
     let mut laws = Vec::new();
     for violation in violations {
         if !laws.contains(&violation.law) {
@@ -131,14 +138,13 @@ struct Faulty {
 static RUNS: AtomicUsize = AtomicUsize::new(0);
 
 impl Faulty {
-    fn named(fault: Fault) -> Named<f64> {
-        let engine = Self {
+    fn with(fault: Fault) -> ConfiguredEngine<f64> {
+        ConfiguredEngine::custom("faulty", move || Self {
             fault,
             best: Vec::new(),
             fitness: f64::INFINITY,
             gave_up: false,
-        };
-        Named::new("faulty", engine)
+        })
     }
 }
 
@@ -231,7 +237,7 @@ fn a_broken_engine_is_found_out() {
         (Fault::SaysCovered, Some(Law::Covered)),
         (Fault::ProposesNothing, Some(Law::HitCount)),
     ] {
-        let laws = broken(&mut || Ok(Faulty::named(fault)));
+        let laws = broken(&Faulty::with(fault));
         match expected {
             Some(law) => assert!(laws.contains(&law), "{fault:?}: {laws:?}"),
             None => assert_eq!(laws, []),
@@ -251,7 +257,7 @@ fn an_engine_of_ten_lines_keeps_the_laws() {
         fn tell(&mut self, _: &dyn Context<f64>, _: &Batch<f64>, _: &[Outcome<f64>], _: Origin) {}
         saved_fields!();
     }
-    assert_eq!(broken(&mut || Ok(Named::new("uniform", Uniform))), []);
+    assert_eq!(broken(&ConfiguredEngine::custom("uniform", || Uniform)), []);
 }
 
 /// Goes on stepping when it has been told to stop.
@@ -280,7 +286,7 @@ impl Engine<f64> for Deaf {
 #[test]
 fn an_engine_that_does_not_listen_overruns_no_budget() {
     let square = from_fn(Space::cube(2, 0.0, 1.0).unwrap(), 0.5, |x: &[f64]| x[0]);
-    let report = Search::new(Named::new("deaf", Deaf))
+    let report = Search::new(ConfiguredEngine::custom("deaf", || Deaf))
         .run(&square, &Budget::evaluations(777))
         .unwrap();
     assert_eq!(report.counts.evaluations, 777);

@@ -133,7 +133,7 @@ impl<S: Real> SatisficingProblem for Bowls<S> {
 fn run<S: Real>(name: &str, settings: &[(&str, &str)], problem: &Bowls<S>, out: &mut String) {
     let engine = engine::find(name)
         .unwrap()
-        .build(settings.iter().copied())
+        .configure(settings.iter().copied())
         .unwrap();
     let report = Search::new(engine)
         .seed(42)

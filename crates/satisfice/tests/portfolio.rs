@@ -18,7 +18,7 @@ fn hits(
         .map(|seed| {
             let engine = engine::find("portfolio")
                 .unwrap()
-                .build([("without", without)])
+                .configure([("without", without)])
                 .unwrap();
             let problem = from_fn(space.clone(), delta, fitness).separation(0.02);
             let mut search = Search::new(engine).seed(seed);

@@ -12,6 +12,7 @@ mod params;
 pub use description::Description;
 pub use parameter::{ParamKind, Parameter};
 pub use params::Params;
+pub(crate) use params::Value;
 
 /// A problem that a command line can name and build from parameters.
 pub trait Catalogued: SatisficingProblem + Sized {

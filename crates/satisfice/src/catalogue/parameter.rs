@@ -24,6 +24,13 @@ pub enum ParamKind {
         /// Default.
         default: f64,
     },
+    /// A finite real number in `[min, max]`, or `auto`, which is the default.
+    OptionalReal {
+        /// Least.
+        min: f64,
+        /// Greatest.
+        max: f64,
+    },
     /// One of these words.
     Choice {
         /// The words.
@@ -59,6 +66,9 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// The text that leaves an optional parameter to the engine or problem.
+    pub const AUTO: &'static str = "auto";
+
     /// A whole number in `min..=max`.
     #[must_use]
     pub const fn integer(
@@ -81,6 +91,15 @@ impl Parameter {
             name,
             summary,
             kind: ParamKind::Real { min, max, default },
+        }
+    }
+    /// A finite real in `[min, max]`, or [`auto`](Parameter::AUTO), which is the default.
+    #[must_use]
+    pub const fn optional_real(name: &'static str, summary: &'static str, min: f64, max: f64) -> Self {
+        Self {
+            name,
+            summary,
+            kind: ParamKind::OptionalReal { min, max },
         }
     }
     /// One of a list of words.
@@ -113,6 +132,7 @@ impl Parameter {
         match self.kind {
             ParamKind::Integer { default, .. } => default.to_string(),
             ParamKind::Real { default, .. } => default.to_string(),
+            ParamKind::OptionalReal { .. } => Self::AUTO.to_owned(),
             ParamKind::Choice { default, .. } | ParamKind::Text { default } => default.to_owned(),
         }
     }
@@ -123,13 +143,23 @@ impl Parameter {
         match self.kind {
             ParamKind::Integer { min, max, .. } => format!("a whole number from {min} to {max}"),
             ParamKind::Real { min, max, .. } => format!("a number from {min} to {max}"),
+            ParamKind::OptionalReal { min, max } => format!("{} or a number from {min} to {max}", Self::AUTO),
             ParamKind::Choice { of, .. } => format!("one of {}", of.join(", ")),
             ParamKind::Text { .. } => "any text".to_owned(),
         }
     }
 
+    /// Checks a value given as text.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a text that is not a number or out of range, [`Error::Unknown`] for a word that is not in
+    /// the list, with the nearest.
+    pub fn check(&self, text: &str) -> Result<(), Error> {
+        self.parse(text).map(|_| ())
+    }
+
     /// Parses and checks a value.
-    pub(super) fn parse(&self, text: &str) -> Result<Value, Error> {
+    pub(crate) fn parse(&self, text: &str) -> Result<Value, Error> {
         let bad = || Error::parameter(self.name, text, self.allowed());
         match self.kind {
             ParamKind::Integer { min, max, .. } => {
@@ -140,7 +170,8 @@ impl Parameter {
                     Err(bad())
                 }
             }
-            ParamKind::Real { min, max, .. } => {
+            ParamKind::OptionalReal { .. } if text == Self::AUTO => Ok(Value::Text(text.to_owned())),
+            ParamKind::Real { min, max, .. } | ParamKind::OptionalReal { min, max } => {
                 let value = text.parse::<f64>().map_err(|_| bad())?;
                 // NaN is in no range.
                 if (min..=max).contains(&value) {

@@ -4,7 +4,7 @@ use super::parameter::Parameter;
 use crate::error::Error;
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Integer(i64),
     Real(f64),
     Text(String),
@@ -121,6 +121,19 @@ impl Params {
         match self.value(name) {
             Value::Real(value) => *value,
             other => panic!("`{name}` is no real number: {other}"),
+        }
+    }
+
+    /// A real number where one is given, `None` for `auto`.
+    ///
+    /// # Panics
+    /// As [`Params::integer`].
+    #[must_use]
+    pub fn optional_real(&self, name: &str) -> Option<f64> {
+        match self.value(name) {
+            Value::Real(value) => Some(*value),
+            Value::Text(text) if text == Parameter::AUTO => None,
+            other => panic!("`{name}` is no optional number: {other}"),
         }
     }
 

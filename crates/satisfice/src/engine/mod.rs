@@ -1,4 +1,5 @@
-//! Engines: how the next candidates are chosen. One file each, one line each in [`all`].
+//! Engines: how the next candidates are chosen. Each has a file with its settings and its equations, and a line in the
+//! registry, [`all`].
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -7,40 +8,26 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
 
-mod bandit;
-mod branch_and_bound;
-mod descent;
-mod descent_flood;
-mod entry;
-mod exhausting;
-mod flood;
-mod informants;
-mod latest_hit_qpso;
-mod li;
-mod niches;
-mod one_plus_one;
+#[doc(hidden)]
+pub mod config;
+mod configured;
+mod decorate;
+mod exact;
+mod local;
 mod portfolio;
-pub mod potential_well;
-mod pruned;
-mod pso;
-mod pso_1995;
-mod pso_inertia;
-mod pso_latest_hit;
-mod qpso;
-mod qpso_deletion;
-mod quantum_swarm;
-mod random;
-mod recombination;
-mod region_tree;
-mod restarted_cma_es;
-mod schedule;
-mod spso_2011;
+mod registry;
 mod swarm;
-mod velocity_swarm;
-mod walk;
-mod wang;
 
-pub use entry::{Build, COMMON_PARAMETERS, Entry, Named, all, build, default, find};
+pub use config::{EngineConfig, Setting, Settings};
+pub use configured::{COMMON_PARAMETERS, ConfiguredEngine};
+pub use exact::{BranchAndBound, SplitRule};
+pub use local::{Descent, DescentFlood, Random, RestartedCmaEs, Walk};
+pub use portfolio::{NeighbourTiming, Omitted, Portfolio};
+pub use registry::{EngineSpec, all, build, default, find};
+pub use swarm::{
+    ALPHA_BOUNDED, BoundedSwarms, LatestHitQpso, NichingPsoDbscan, Pso, Pso1995, PsoInertia, PsoLatestHit,
+    Qpso, QpsoDeletion, Spso2011,
+};
 
 /// What an engine says after proposing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

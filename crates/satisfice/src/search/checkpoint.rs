@@ -9,7 +9,7 @@ use crate::batch::Batch;
 use crate::budget::{Budget, Cancel, StopReason};
 use crate::candidates::Candidates;
 use crate::catalogue::Description;
-use crate::engine::{Ask, Named, Origin, WarmStart};
+use crate::engine::{Ask, ConfiguredEngine, Origin, WarmStart};
 use crate::error::Error;
 use crate::evaluate::Ledger;
 use crate::identity::Identity;
@@ -222,7 +222,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
     ///
     /// # Errors
     /// [`Error::State`] where version, scalar or engine are others, or the data is damaged.
-    pub fn resume(checkpoint: Checkpoint<T>, engine: Named<S>) -> Result<Self, Error> {
+    pub fn resume(checkpoint: Checkpoint<T>, engine: impl Into<ConfiguredEngine<S>>) -> Result<Self, Error> {
         let fits = |what: &str, saved: &str, now: &str| {
             if saved == now {
                 Ok(())
@@ -233,6 +233,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Search<S, T> {
         fits("version", &checkpoint.version, env!("CARGO_PKG_VERSION"))?;
         fits("scalar", &checkpoint.scalar, S::NAME)?;
         let mut search = Self::new(engine);
+        search.configured.check()?;
         fits("engine", &named(&checkpoint.engine), &named(&search.description))?;
         let slice_state = checkpoint.slice.as_ref().map(|slice| &slice.state);
         if checkpoint.checksum != checksum(&checkpoint.state, slice_state) {

@@ -6,7 +6,7 @@ use super::Search;
 use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::context::Context;
-use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
+use crate::engine::{Ask, ConfiguredEngine, Engine, Origin, WarmStart};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::observer::Observer;
@@ -60,14 +60,19 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Islands<S, T> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for no islands at all or more than 65,536, and any error of `build`.
-    pub fn new(count: usize, mut build: impl FnMut() -> Result<Named<S>, Error>) -> Result<Self, Error> {
+    pub fn new(
+        count: usize,
+        mut build: impl FnMut() -> Result<ConfiguredEngine<S>, Error>,
+    ) -> Result<Self, Error> {
         if !(1..=65_536).contains(&count) {
             return Err(Error::parameter("islands", count, "a number from 1 to 65536"));
         }
         let islands = (0..count)
             .map(|_| Ok(Search::new(build()?)))
             .collect::<Result<Vec<_>, Error>>()?;
-        let mut common = Search::new(Named::new(&islands[0].description.name, NoEngine));
+        let mut common = Search::new(ConfiguredEngine::custom(&islands[0].description.name, || {
+            NoEngine
+        }));
         common.description = islands[0].description.clone();
         let shown = ("islands".to_owned(), count.to_string());
         common.description.parameters.push(shown);
@@ -371,7 +376,7 @@ fn probes_of(evaluations: u64, share: f64) -> u64 {
 }
 
 /// In the place of the engine where only books are kept.
-struct NoEngine;
+pub(super) struct NoEngine;
 
 impl<S: Real> Engine<S> for NoEngine {
     fn begin(&mut self, _: &dyn Context<S>) {}

@@ -2,15 +2,14 @@
 //!
 //! ```
 //! use satisfice::{engine, testing};
-//! let entry = engine::find("walk")?;
-//! assert_eq!(testing::engine::check_entry(entry, &[])?, []);
+//! let walk = engine::find("walk")?;
+//! assert_eq!(testing::engine::check_spec(walk, &[])?, []);
 //! # Ok::<(), satisfice::Error>(())
 //! ```
 
 use super::case::{Case, spaces};
 use crate::budget::Budget;
-use crate::catalogue::Params;
-use crate::engine::{Entry, Named};
+use crate::engine::{ConfiguredEngine, EngineSpec};
 use crate::error::Error;
 use crate::identity::Located;
 use crate::problem::SatisficingProblem;
@@ -22,7 +21,7 @@ mod audit;
 mod laws;
 mod probe;
 
-/// The laws that the suite looks after.
+/// The laws that the suite checks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Law {
@@ -62,45 +61,33 @@ const RUN: u64 = 600;
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;
 
-/// Runs the suite on an engine of the registry with these parameters, in `f32` and in `f64`. Cost: some seconds unoptimised.
+/// Runs the suite on an engine of the registry with these parameters, in `f32` and in `f64`. Takes seconds without
+/// optimisation.
 ///
 /// # Errors
-/// As [`Entry::build`].
-pub fn check_entry(entry: &Entry, settings: &[(&str, &str)]) -> Result<Vec<Violation>, Error> {
-    let values = Params::with(entry.parameters, entry.name, settings.iter().copied())?;
-    let scheduled = (entry.scheduled)(&values);
+/// As [`EngineSpec::configure`].
+pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Violation>, Error> {
     let mut violations = Vec::new();
-    entry.build::<f32>(settings.iter().copied())?;
-    for (name, found) in [
-        (
-            "f32",
-            check::<f32>(scheduled, &mut || entry.build(settings.iter().copied()))?,
-        ),
-        (
-            "f64",
-            check::<f64>(scheduled, &mut || entry.build(settings.iter().copied()))?,
-        ),
+    for (scalar, found) in [
+        ("f32", check::<f32>(&spec.configure(settings.iter().copied())?)?),
+        ("f64", check::<f64>(&spec.configure(settings.iter().copied())?)?),
     ] {
         violations.extend(found.into_iter().map(|mut violation| {
-            violation.case = format!("{} in {name}, {}", entry.name, violation.case);
+            violation.case = format!("{} in {scalar}, {}", spec.name, violation.case);
             violation
         }));
     }
     Ok(violations)
 }
 
-/// Runs the suite on an engine of one's own, which `make` builds anew for each run, always with the same parameters.
-/// `scheduled` says whether a schedule follows the budget.
+/// Runs the suite on an engine, which is built anew for each run.
 ///
 /// # Errors
-/// Those of `make`, and of starting threads.
-pub fn check<S: Real>(
-    scheduled: bool,
-    make: &mut dyn FnMut() -> Result<Named<S>, Error>,
-) -> Result<Vec<Violation>, Error> {
+/// As [`ConfiguredEngine::build`]; errors of starting threads.
+pub fn check<S: Real>(engine: &ConfiguredEngine<S>) -> Result<Vec<Violation>, Error> {
+    engine.check()?;
     let mut suite = Suite {
-        make,
-        scheduled,
+        engine,
         violations: Vec::new(),
     };
     for case in spaces()? {
@@ -120,8 +107,7 @@ pub fn check<S: Real>(
 }
 
 struct Suite<'a, S> {
-    make: &'a mut dyn FnMut() -> Result<Named<S>, Error>,
-    scheduled: bool,
+    engine: &'a ConfiguredEngine<S>,
     violations: Vec<Violation>,
 }
 
@@ -141,7 +127,7 @@ impl<S: Real> Suite<'_, S> {
     }
 
     fn search(&mut self) -> Result<Search<S, Located<S>>, Error> {
-        Ok(Search::new((self.make)()?).seed(42))
+        Ok(Search::new(self.engine.clone()).seed(42))
     }
 
     /// A run by the engine, its books audited.

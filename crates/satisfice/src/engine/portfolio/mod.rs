@@ -1,5 +1,6 @@
-//! The default engine: sources of candidates that compete for evaluations by what they yield.
+//! The default engine: sources of candidates that compete for evaluations by their yield.
 
+pub(super) mod bandit;
 mod climbers;
 mod moves;
 mod near_misses;
@@ -9,74 +10,123 @@ mod swarms;
 mod translations;
 mod visited;
 
+use bandit::{Arm, draw};
 use climbers::Climbers;
 use near_misses::NearMisses;
 use neighbourhoods::Neighbourhoods;
 use populations::Populations;
-
 use swarms::Swarms;
 use translations::Translations;
 use visited::Visited;
 
-use super::bandit::{Arm, draw};
-use super::recombination::recombine;
-use super::{Ask, Engine, Origin};
+use super::local::recombination::recombine;
+use super::{Ask, Engine, EngineConfig, Origin};
 use crate::batch::{Batch, Outcome};
-use crate::catalogue::{Parameter, Params};
 use crate::context::Context;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, Saved, State};
+use crate::{engine_choice, engine_settings};
 
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::integer(
-        "batch",
-        "most candidates proposed at once: few learn sooner, many feed more threads",
-        32,
-        1,
-        65_536,
-    ),
-    Parameter::integer("swarms", "number of swarms, K", 6, 1, 1000),
-    Parameter::integer("particles", "particles of each swarm, N", 5, 1, 1000),
-    Parameter::real(
-        "alpha",
-        "contraction-expansion coefficient; bounded below 1.781",
-        0.75,
-        0.0,
-        10.0,
-    ),
-    Parameter::integer(
-        "restart",
-        "barren evaluations after which a swarm starts anew",
-        1000,
-        1,
-        1_000_000_000,
-    ),
-    Parameter::choice(
-        "neighbours",
-        "when the neighbours that the problem names become candidates: at once, which yields most an evaluation; or late, which \
-         takes a fraction of the time, for a fitness of less than some microseconds with dozens of neighbours",
-        "at-once",
-        &["at-once", "late"],
-    ),
-    Parameter::choice(
-        "without",
-        "a source to leave out, for ablation",
-        "none",
-        &[
-            "none",
-            "swarms",
-            "climbers",
-            "populations",
-            "steps",
-            "learning",
-            "recombination",
-            "neighbours",
-            "near-misses",
-        ],
-    ),
-];
+engine_choice! {
+    /// When the neighbours that a problem names become candidates of [`Portfolio`].
+    pub enum NeighbourTiming {
+        /// At once: most hits for each evaluation.
+        AtOnce = "at-once",
+        /// When it is their turn: a fraction of the time, for a fitness of less than a few microseconds with dozens of
+        /// neighbours.
+        Late = "late",
+    }
+}
+
+engine_choice! {
+    /// A source of candidates that [`Portfolio`] leaves out, for ablation.
+    pub enum Omitted {
+        /// None: all sources compete.
+        Nothing = "none",
+        /// Small quantum-behaved swarms.
+        Swarms = "swarms",
+        /// Restarted local searches.
+        Climbers = "climbers",
+        /// Populations that adapt their covariance.
+        Populations = "populations",
+        /// Known steps from hit to hit.
+        Steps = "steps",
+        /// New steps, learned from differences of hits.
+        Learning = "learning",
+        /// Recombinations of two hits.
+        Recombination = "recombination",
+        /// The neighbours that the problem names.
+        Neighbours = "neighbours",
+        /// The near misses of the slice before.
+        NearMisses = "near-misses",
+    }
+}
+
+engine_settings! {
+    /// A portfolio of sources of candidates, which compete by their yield:
+    ///
+    /// - uniform points, on a lattice without repetition, so that a small one is covered and the result proved complete;
+    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012;
+    /// - restarted local searches by adaptive moves: along integer axes, to the problem's own neighbours, by a covariance-adapting
+    ///   (1+1) strategy along continuous axes; a search that returns to a known hit ends at once;
+    /// - steps that have led from hit to hit, applied to every hit: the short ones fill neighbourhoods, those learned from
+    ///   differences of hits follow repetitions and manifolds of hits;
+    /// - recombinations of two hits, which find the rest of a product of sets of coordinates; local searches start at those that
+    ///   just miss;
+    /// - populations that adapt their covariance, on continuous axes;
+    /// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses;
+    /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
+    ///   hits.
+    ///
+    /// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
+    pub struct Portfolio {
+        /// Candidates proposed at once, at most: few learn sooner, many feed more threads.
+        pub batch: usize = 32, 1..=65_536;
+        /// Number of swarms K.
+        pub swarms: usize = 6, 1..=1000;
+        /// Particles N of each swarm.
+        pub particles: usize = 5, 1..=1000;
+        /// Contraction-expansion coefficient alpha of the swarms, which stay bounded below 1.781.
+        pub alpha: f64 = 0.75, 0.0..=10.0;
+        /// Evaluations without a hit after which a swarm starts anew.
+        pub restart: usize = 1000, 1..=1_000_000_000;
+        /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time
+        /// on a cheap fitness with dozens of neighbours.
+        pub neighbours: NeighbourTiming = NeighbourTiming::AtOnce;
+        /// A source to leave out, for ablation.
+        pub without: Omitted = Omitted::Nothing;
+    }
+}
+
+impl EngineConfig for Portfolio {
+    const NAME: &'static str = "portfolio";
+    const SUMMARY: &'static str = "swarms, local searches, recombined hits, learned steps and uniform points that compete for evaluations by their yield";
+    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        let block = self.batch.div_ceil(4);
+        Box::new(Sources {
+            batch: self.batch,
+            block,
+            without: self.without,
+            arms: [Arm::default(); ARMS],
+            hits: Vec::new(),
+            visited: None,
+            scan: 0,
+            swarms: Swarms::new(self.swarms, self.particles, self.alpha, self.restart),
+            climbers: Climbers::new(block),
+            populations: Populations::new(),
+            steps: None,
+            neighbourhoods: Neighbourhoods::new(self.neighbours == NeighbourTiming::Late),
+            near_misses: NearMisses::new(),
+            tags: Vec::new(),
+            trials: Vec::new(),
+            position: Vec::new(),
+        })
+    }
+}
 
 /// Choices of source without a candidate after which a batch is given up.
 const VAIN: usize = 100;
@@ -139,26 +189,13 @@ impl Saved for Source {
     }
 }
 
-/// A portfolio of sources, each paid by its yield:
-///
-/// - uniform points, on a lattice without repetition, so that a small one is covered and the result proved complete;
-/// - small swarms attracted by the latest hit of their own, after Chen et al. 2012;
-/// - restarted local searches by adaptive moves: along integer axes, to the problem's own neighbours, by a covariance-adapting
-///   (1+1) strategy along continuous axes; a search that comes back to a known hit ends at once;
-/// - steps that have led from hit to hit, applied to every hit: neighbourhoods are exhausted by the short ones, and
-///   repetitions and manifolds of hits followed by those that are learned from differences of hits;
-/// - recombinations of two hits, which find the rest of a product of sets of coordinates; local searches start at those that
-///   just miss;
-/// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses;
-/// - in a slice that follows another: what just missed there, best first, because a problem that moves makes hits of these.
-///
-/// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
+/// The engine of [`Portfolio`].
 #[derive(Debug)]
-pub(super) struct Portfolio<S> {
+struct Sources<S> {
     batch: usize,
     /// Candidates that come from one choice of source.
     block: usize,
-    without: String,
+    without: Omitted,
     arms: [Arm; ARMS],
     hits: Vec<S>,
     visited: Option<Visited>,
@@ -175,60 +212,37 @@ pub(super) struct Portfolio<S> {
     position: Vec<S>,
 }
 
-pub(super) fn build<S: Real>(values: &Params) -> Result<Box<dyn Engine<S>>, Error> {
-    let batch = values.count("batch");
-    let block = batch.div_ceil(4);
-    Ok(Box::new(Portfolio {
-        batch,
-        block,
-        without: values.text("without").to_owned(),
-        arms: [Arm::default(); ARMS],
-        hits: Vec::new(),
-        visited: None,
-        scan: 0,
-        swarms: Swarms::new(values),
-        climbers: Climbers::new(block),
-        populations: Populations::new(),
-        steps: None,
-        neighbourhoods: Neighbourhoods::new(values.text("neighbours") == "late"),
-        near_misses: NearMisses::new(),
-        tags: Vec::new(),
-        trials: Vec::new(),
-        position: Vec::new(),
-    }))
-}
-
-impl<S: Real> Portfolio<S> {
+impl<S: Real> Sources<S> {
     fn hit_count(&self) -> usize {
         self.hits.len() / self.position.len().max(1)
     }
 
     /// Draws a source, and which step of [`Source::Step`].
     fn choose(&self, rng: &mut SearchRng) -> Tag {
-        let uses = |name: &str| self.without != name;
+        let uses = |source: Omitted| self.without != source;
         let mut best = (self.arms[0].draw(rng), (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
             if yields > best.0 {
                 best = (yields, tag);
             }
         };
-        if uses("swarms") {
+        if uses(Omitted::Swarms) {
             offer(self.arms[1].draw(rng), (Source::Swarm, 0));
         }
-        if uses("climbers") {
+        if uses(Omitted::Climbers) {
             offer(self.arms[2].draw(rng), (Source::Climber, 0));
         }
-        if uses("populations") && self.populations.are_usable() {
+        if uses(Omitted::Populations) && self.populations.are_usable() {
             offer(self.arms[MEMBER].draw(rng), (Source::Member, 0));
         }
         let hits = self.hit_count();
-        if uses("learning") && hits >= 3 {
+        if uses(Omitted::Learning) && hits >= 3 {
             offer(self.arms[TRIAL].draw(rng), (Source::Trial, 0));
         }
-        if uses("recombination") && hits >= 2 && self.position.len() > 1 {
+        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 {
             offer(self.arms[CROSS].draw(rng), (Source::Cross, 0));
         }
-        if uses("steps")
+        if uses(Omitted::Steps)
             && let Some((index, good, all)) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
         {
             offer(draw(rng, good, all), (Source::Step, index));
@@ -236,7 +250,7 @@ impl<S: Real> Portfolio<S> {
         if let Some((good, all)) = self.neighbourhoods.posterior() {
             offer(draw(rng, good, all), (Source::Neighbour, 0));
         }
-        if uses("near-misses")
+        if uses(Omitted::NearMisses)
             && let Some((good, all)) = self.near_misses.posterior()
         {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
@@ -395,7 +409,7 @@ impl<S: Real> Portfolio<S> {
     }
 }
 
-impl<S: Real> Engine<S> for Portfolio<S> {
+impl<S: Real> Engine<S> for Sources<S> {
     /// One evaluation in fifty says how complete the result is.
     fn probes(&self) -> f64 {
         0.02
@@ -550,7 +564,7 @@ impl<S: Real> Engine<S> for Portfolio<S> {
     }
 }
 
-impl<S: Real> Portfolio<S> {
+impl<S: Real> Sources<S> {
     /// Enters the neighbours of new hits, of candidates that were neighbours themselves, and of last slice's hits.
     fn expand(
         &mut self,
@@ -559,7 +573,7 @@ impl<S: Real> Portfolio<S> {
         outcomes: &[Outcome<S>],
         origin: Origin,
     ) {
-        if self.without == "neighbours" || !context.offers_neighbours() {
+        if self.without == Omitted::Neighbours || !context.offers_neighbours() {
             return;
         }
         for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {

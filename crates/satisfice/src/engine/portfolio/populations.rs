@@ -5,7 +5,7 @@
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::bandit::luby;
+use crate::engine::local::luby::luby;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;

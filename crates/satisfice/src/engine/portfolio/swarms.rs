@@ -2,8 +2,7 @@
 
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
-use crate::catalogue::Params;
-use crate::engine::potential_well::{draw, mean_best};
+use crate::engine::swarm::potential_well::{draw, mean_best};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
@@ -50,7 +49,8 @@ pub(super) struct Swarms<S> {
 }
 
 impl<S: Real> Swarms<S> {
-    pub(super) fn new(values: &Params) -> Self {
+    /// K swarms of N particles each, which start anew after `restart` evaluations without a hit.
+    pub(super) fn new(count: usize, particles: usize, alpha: f64, restart: usize) -> Self {
         let swarm = SubSwarm {
             positions: Vec::new(),
             bests: Vec::new(),
@@ -63,10 +63,10 @@ impl<S: Real> Swarms<S> {
             barren: 0,
         };
         Self {
-            particles: values.count("particles"),
-            alpha: S::of(values.real("alpha")),
-            restart: values.count("restart"),
-            swarms: vec![swarm; values.count("swarms")],
+            particles,
+            alpha: S::of(alpha),
+            restart,
+            swarms: vec![swarm; count],
             next: 0,
             proposed: 0,
         }

@@ -22,7 +22,7 @@ impl<S: Real> Suite<'_, S> {
         self.say_if(Law::SameSeed, &case.name, difference(&report, &again));
         let by_hand = self.run_by_hand(case, &budget)?;
         self.say_if(Law::ByHand, &case.name, difference(&report, &by_hand));
-        let (probe, findings) = Probe::around((self.make)()?);
+        let (probe, findings) = Probe::around(self.engine);
         let probed = Search::new(probe).seed(42).run(case, &budget)?;
         self.say_if(Law::Proposals, &case.name, findings.first());
         self.say_if(
@@ -46,7 +46,7 @@ impl<S: Real> Suite<'_, S> {
         for (case, twin) in spaces()?.into_iter().zip(spaces()?) {
             let budget = |evaluations| {
                 let budget = Budget::evaluations(evaluations);
-                if self.scheduled {
+                if self.engine.is_scheduled() {
                     budget.with_horizon(4 * RUN)
                 } else {
                     budget
@@ -93,7 +93,7 @@ impl<S: Real> Suite<'_, S> {
                 let healthy = self.run(&healthy, &Budget::evaluations(RUN))?;
                 for value in values {
                     let case = spaces()?.swap_remove(index).poisoned(poison(value));
-                    let (probe, findings) = Probe::around((self.make)()?);
+                    let (probe, findings) = Probe::around(self.engine);
                     let mut search = Search::new(probe).seed(42);
                     let report = self.run_by(&mut search, &case, &Budget::evaluations(RUN))?;
                     self.say_if(Law::Proposals, &case.name, findings.first());
@@ -136,7 +136,7 @@ impl<S: Real> Suite<'_, S> {
             let budget = Budget::evaluations(RUN);
             let straight = self.search()?.run(&case, &budget)?;
             for every in [1, 7] {
-                let (restored, findings) = Restored::around(self.make, every)?;
+                let (restored, findings) = Restored::around(self.engine, every);
                 let report = Search::new(restored).seed(42).run(&case, &budget)?;
                 self.say_if(Law::Restore, &case.name, findings.first());
                 self.say_if(

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::{Ask, Engine, Named, Origin, WarmStart};
+use crate::engine::{Ask, ConfiguredEngine, Engine, Origin, WarmStart};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -34,13 +34,15 @@ pub(super) struct Probe<S> {
 }
 
 impl<S: Real> Probe<S> {
-    pub(super) fn around(engine: Named<S>) -> (Named<S>, Findings) {
+    /// The engine with its proposals checked.
+    pub(super) fn around(engine: &ConfiguredEngine<S>) -> (ConfiguredEngine<S>, Findings) {
         let findings = Findings::default();
-        let probe = Self {
-            inner: engine.engine,
-            findings: findings.clone(),
-        };
-        (Named::new(&engine.name, probe), findings)
+        let (engine, shared) = (engine.clone(), findings.clone());
+        let probe = ConfiguredEngine::custom(&engine.name().to_owned(), move || Self {
+            inner: engine.build_unchecked(),
+            findings: shared.clone(),
+        });
+        (probe, findings)
     }
 }
 
@@ -91,23 +93,18 @@ pub(super) struct Restored<S> {
 const SPARE: usize = 60;
 
 impl<S: Real> Restored<S> {
-    pub(super) fn around(
-        make: &mut dyn FnMut() -> Result<Named<S>, Error>,
-        every: usize,
-    ) -> Result<(Named<S>, Findings), Error> {
+    /// The engine, replaced by a restored one after every so many tells.
+    pub(super) fn around(engine: &ConfiguredEngine<S>, every: usize) -> (ConfiguredEngine<S>, Findings) {
         let findings = Findings::default();
-        let engine = make()?;
-        let spare = (0..SPARE)
-            .map(|_| Ok(make()?.engine))
-            .collect::<Result<_, Error>>()?;
-        let restored = Self {
-            inner: engine.engine,
-            spare,
+        let (engine, shared) = (engine.clone(), findings.clone());
+        let restored = ConfiguredEngine::custom(&engine.name().to_owned(), move || Self {
+            inner: engine.build_unchecked(),
+            spare: (0..SPARE).map(|_| engine.build_unchecked()).collect(),
             every,
             tells: 0,
-            findings: findings.clone(),
-        };
-        Ok((Named::new(&engine.name, restored), findings))
+            findings: shared.clone(),
+        });
+        (restored, findings)
     }
 
     fn change(&mut self) {

@@ -1,0 +1,7 @@
+//! Engines around engines.
+
+mod flood_fill;
+mod pruned;
+
+pub(super) use flood_fill::FloodFill;
+pub(super) use pruned::Pruned;

@@ -1,0 +1,291 @@
+//! The exact engine: regions of the space, best first, excluded by the problem's lower bounds.
+
+use std::collections::BinaryHeap;
+
+use super::region_tree::{Node, Split, Splitter};
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::Region;
+use crate::state::{Reader, Saved, State};
+use crate::{engine_choice, engine_settings};
+
+engine_choice! {
+    /// The axis on which [`BranchAndBound`] splits a region.
+    pub enum SplitRule {
+        /// The longest, in share of its length.
+        Longest = "longest",
+        /// The first that is not fixed.
+        First = "first",
+    }
+}
+
+engine_settings! {
+    /// Branch and bound for all points with F < delta.
+    ///
+    /// A region is closed where its bound is at least delta; where the problem says that one hit [covers](Context::covers) it; and
+    /// where it holds at most `leaf` points, by proposing all of them. Others are split in two, in the order of their bounds, then of F
+    /// at a point inside (on continuous axes only: that is how hits are found there), then the latest first. With no region left, every
+    /// hit is in C, or is the same answer as one: [`Ask::Covered`].
+    ///
+    /// * On integer axes that always happens. Without bounds it is an enumeration, in the order of halving; the report then has
+    ///   completeness `Proved` and no `bound_calls`.
+    /// * On continuous axes a region has to be excluded, or to lie within the separation of one hit. Where F is at least delta but
+    ///   touches it, or where the problem does not say what a hit covers, regions shrink to `resolution`; those that no later hit
+    ///   covers are given up, and the engine ends with [`Ask::Exhausted`], completeness `Unknown`.
+    ///
+    /// Draws no random numbers. Memory: `regions` times 2 D numbers and about 60 bytes; deeper regions are then processed depth first,
+    /// so nothing is lost. Source: Land, Doig 1960, doi 10.2307/1910129.
+    pub struct BranchAndBound {
+        /// An integer region of at most this many points is enumerated.
+        pub leaf: usize = 32, 1..=1 << 20;
+        /// Points proposed at once, about.
+        pub batch: usize = 64, 1..=1 << 20;
+        /// Regions kept in best-first order; beyond, depth first in bounded memory.
+        pub regions: usize = 1 << 20, 1..=1 << 30;
+        /// The axis to split: the longest in share of its length, or the first that is not fixed.
+        pub split: SplitRule = SplitRule::Longest;
+        /// Share of every continuous axis below which a region is given up unproved.
+        pub resolution: f64 = 1e-12, 0.0..=1.0;
+    }
+}
+
+impl EngineConfig for BranchAndBound {
+    const NAME: &'static str = "branch-and-bound";
+    const SUMMARY: &'static str =
+        "exact: best-first over regions by the problem's lower bounds; enumeration where there are none";
+    const CITATION: &'static str = "Land, Doig 1960, doi 10.2307/1910129";
+
+    #[expect(clippy::cast_precision_loss, reason = "at most 2^20")]
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(RegionSearch {
+            leaf: self.leaf as f64,
+            batch: self.batch,
+            regions: self.regions,
+            splitter: Splitter {
+                first: self.split == SplitRule::First,
+                resolution: S::of(self.resolution),
+            },
+            started: false,
+            best_first: BinaryHeap::new(),
+            depth_first: Vec::new(),
+            proposed: Vec::new(),
+            too_small: Vec::new(),
+            next_index: 0,
+            unanswered: 0,
+            answered: false,
+            given_up: false,
+        })
+    }
+}
+
+/// After this many unanswered calls and none answered, the problem has no bounds.
+const SILENCE: u32 = 64;
+/// So many points of a region are looked at for one that is not in C.
+const ATTEMPTS: u64 = 4;
+/// Regions split in one `ask` at most, so that the clock is looked at.
+const WORK: usize = 64;
+
+/// The engine of [`BranchAndBound`].
+#[derive(Debug)]
+struct RegionSearch<S> {
+    leaf: f64,
+    batch: usize,
+    regions: usize,
+    splitter: Splitter<S>,
+    started: bool,
+    best_first: BinaryHeap<Node<S>>,
+    /// What did not fit there; worked off first.
+    depth_first: Vec<Node<S>>,
+    /// Regions with a point that is proposed, and its place in the batch.
+    proposed: Vec<(usize, Node<S>)>,
+    /// Regions at the limit of the resolution, to be looked at again at the end.
+    too_small: Vec<Node<S>>,
+    next_index: u64,
+    unanswered: u32,
+    answered: bool,
+    given_up: bool,
+}
+
+impl<S: Real> RegionSearch<S> {
+    /// The bound of a region, at least its parent's; `None` where it excludes the region.
+    fn bound(&mut self, context: &dyn Context<S>, region: &Region<S>, parent: S) -> Option<S> {
+        if !self.answered && self.unanswered >= SILENCE {
+            return Some(parent);
+        }
+        let bound = match context.lower_bound(region) {
+            Some(bound) => {
+                self.answered = true;
+                // NaN says nothing, and `max` passes over it.
+                parent.max(bound)
+            }
+            None => {
+                self.unanswered = self.unanswered.saturating_add(1);
+                parent
+            }
+        };
+        (bound < context.threshold()).then_some(bound)
+    }
+
+    /// Keeps a region unless it is excluded; on continuous axes a point inside is proposed.
+    fn enter(&mut self, context: &dyn Context<S>, region: Region<S>, parent: S, out: &mut Batch<S>) {
+        let Some(bound) = self.bound(context, &region, parent) else {
+            return;
+        };
+        let index = self.next_index;
+        self.next_index += 1;
+        let space = context.space();
+        let node = Node {
+            bound,
+            guide: S::infinity(),
+            index,
+            region,
+        };
+        if node.cardinality(space).is_some() {
+            self.keep(node);
+            return;
+        }
+        for attempt in 0..ATTEMPTS {
+            let mut point = node.inner_point(space, attempt);
+            space.positions(&mut point);
+            if !context.is_deleted(&point) {
+                self.proposed.push((out.len(), node));
+                out.push(&point);
+                return;
+            }
+        }
+        self.keep(node);
+    }
+
+    fn keep(&mut self, node: Node<S>) {
+        if self.best_first.len() < self.regions {
+            self.best_first.push(node);
+        } else {
+            self.depth_first.push(node);
+        }
+    }
+
+    /// Closes a region or splits it.
+    fn open(&mut self, context: &dyn Context<S>, node: Node<S>, out: &mut Batch<S>) {
+        let space = context.space();
+        if context.covers(&node.region) {
+            return;
+        }
+        if node.cardinality(space).is_some_and(|points| points <= self.leaf) {
+            node.each_point(space, |point| out.push(point));
+            return;
+        }
+        match self.splitter.split(space, &node.region) {
+            Split::Halves(lower, upper) => {
+                // The later one comes first among equals.
+                self.enter(context, upper, node.bound, out);
+                self.enter(context, lower, node.bound, out);
+            }
+            Split::TooSmall => {
+                if self.too_small.len() >= self.regions {
+                    self.too_small.retain(|node| !context.covers(&node.region));
+                }
+                if self.too_small.len() < self.regions {
+                    self.too_small.push(node);
+                } else {
+                    self.given_up = true;
+                }
+            }
+        }
+    }
+}
+
+impl<S: Real> Engine<S> for RegionSearch<S> {
+    fn begin(&mut self, _context: &dyn Context<S>) {
+        self.started = false;
+        self.best_first.clear();
+        self.depth_first.clear();
+        self.proposed.clear();
+        self.too_small.clear();
+        self.next_index = 0;
+        self.unanswered = 0;
+        self.answered = false;
+        self.given_up = false;
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, _: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        if !self.started {
+            self.started = true;
+            self.enter(context, context.space().region(), S::neg_infinity(), out);
+        }
+        for _ in 0..WORK {
+            let next = self.depth_first.pop().or_else(|| self.best_first.pop());
+            let Some(node) = next else { break };
+            self.open(context, node, out);
+            if out.len() >= self.batch || out.len() as u64 >= context.evaluations_left() {
+                break;
+            }
+        }
+        if self.depth_first.len() + self.best_first.len() + self.proposed.len() > 0 {
+            return Ask::More;
+        }
+        // Hits found since may cover what was too small to split.
+        self.too_small.retain(|node| !context.covers(&node.region));
+        if self.given_up || !self.too_small.is_empty() {
+            Ask::Exhausted
+        } else {
+            Ask::Covered
+        }
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, _: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        if origin != Origin::Engine {
+            return;
+        }
+        for (place, mut node) in core::mem::take(&mut self.proposed) {
+            node.guide = outcomes
+                .get(place)
+                .map_or(S::infinity(), |outcome| outcome.fitness());
+            self.keep(node);
+        }
+    }
+
+    fn save(&self, state: &mut State) {
+        self.started.save(state);
+        // The order in the heap does not matter: nodes are totally ordered.
+        self.best_first.as_slice().len().save(state);
+        for node in self.best_first.as_slice() {
+            node.save(state);
+        }
+        self.depth_first.save(state);
+        self.proposed.len().save(state);
+        for (place, node) in &self.proposed {
+            place.save(state);
+            node.save(state);
+        }
+        self.too_small.save(state);
+        self.next_index.save(state);
+        self.unanswered.save(state);
+        self.answered.save(state);
+        self.given_up.save(state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        self.started = from.read()?;
+        self.best_first = Vec::restore(from)?.into();
+        self.depth_first = from.read()?;
+        let proposed: usize = from.read()?;
+        self.proposed.clear();
+        for _ in 0..proposed {
+            let place = from.read()?;
+            self.proposed.push((place, from.read()?));
+        }
+        self.too_small = from.read()?;
+        self.next_index = from.read()?;
+        self.unanswered = from.read()?;
+        self.answered = from.read()?;
+        self.given_up = from.read()?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

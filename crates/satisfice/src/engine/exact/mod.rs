@@ -1,0 +1,6 @@
+//! Exact search by bounds.
+
+mod branch_and_bound;
+pub(super) mod region_tree;
+
+pub use branch_and_bound::{BranchAndBound, SplitRule};

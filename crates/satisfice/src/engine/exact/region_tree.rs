@@ -1,0 +1,155 @@
+//! Regions that are split in two: what branch and bound and the exclusion of dead regions share.
+
+use core::cmp::Ordering;
+
+use crate::scalar::Real;
+use crate::space::{Region, Space};
+
+/// A region with its bound, as it waits for its turn.
+#[derive(Debug, Clone)]
+pub(in crate::engine) struct Node<S> {
+    pub(in crate::engine) bound: S,
+    /// F at a point inside, infinite where that is not known.
+    pub(in crate::engine) guide: S,
+    pub(in crate::engine) index: u64,
+    pub(in crate::engine) region: Region<S>,
+}
+
+crate::saved_struct!(Node<S: Real> { bound, guide, index, region });
+crate::saved_struct!(Region<S: Real> { lower, upper });
+
+impl<S: Real> Node<S> {
+    /// Number of points where that is finite, as a real.
+    pub(in crate::engine) fn cardinality(&self, space: &Space<S>) -> Option<f64> {
+        let sides = self.region.lower.iter().zip(&self.region.upper);
+        space
+            .axes()
+            .iter()
+            .zip(sides)
+            .try_fold(1.0, |points, (axis, (&lower, &upper))| {
+                if axis.is_integer() {
+                    Some(points * ((upper - lower).f64() + 1.0))
+                } else {
+                    (lower == upper).then_some(points)
+                }
+            })
+    }
+
+    /// Values inside: on continuous axes somewhere in the middle half, where exactly depends on the index and
+    /// the attempt alone.
+    ///
+    /// Middles will not do: hits on a regular grid surround points at the separation from each of them, all around, and a
+    /// region about such a point never lies within a single one's reach.
+    pub(in crate::engine) fn inner_point(&self, space: &Space<S>, attempt: u64) -> Vec<S> {
+        let inside = |(axis, kind): (usize, &crate::Axis<S>)| {
+            let (lower, upper) = (self.region.lower[axis], self.region.upper[axis]);
+            if kind.is_integer() {
+                return self.region.middle(space, axis);
+            }
+            let share = S::of(0.25 + 0.5 * scatter(self.index, attempt, axis));
+            (lower + share * (upper - lower)).max(lower).min(upper)
+        };
+        space.axes().iter().enumerate().map(inside).collect()
+    }
+
+    /// Visits the positions of all points of a region with finitely many, the last axis fastest.
+    pub(in crate::engine) fn each_point(&self, space: &Space<S>, mut visit: impl FnMut(&[S])) {
+        let Region { lower, upper } = &self.region;
+        let mut values = lower.clone();
+        let mut position = values.clone();
+        loop {
+            position.copy_from_slice(&values);
+            space.positions(&mut position);
+            visit(&position);
+            let Some(axis) = (0..values.len()).rev().find(|&j| values[j] < upper[j]) else {
+                return;
+            };
+            values[axis] = values[axis] + S::one();
+            values[axis + 1..].copy_from_slice(&lower[axis + 1..]);
+        }
+    }
+}
+
+/// A number in `[0, 1)`, by the finaliser of `SplitMix64` (Steele, Lea, Flood 2014, doi 10.1145/2660193.2660195).
+#[expect(clippy::cast_precision_loss, reason = "53 bits are exact")]
+fn scatter(index: u64, attempt: u64, axis: usize) -> f64 {
+    let mut z = (index << 24 ^ attempt << 16 ^ (axis as u64 + 1)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ z >> 31) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// The greatest comes first: least bound, then least guide, then the latest.
+impl<S: Real> Ord for Node<S> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let (own, others) = (
+            (self.bound.f64(), self.guide.f64()),
+            (other.bound.f64(), other.guide.f64()),
+        );
+        others
+            .0
+            .total_cmp(&own.0)
+            .then(others.1.total_cmp(&own.1))
+            .then(self.index.cmp(&other.index))
+    }
+}
+impl<S: Real> PartialOrd for Node<S> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl<S: Real> PartialEq for Node<S> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl<S: Real> Eq for Node<S> {}
+
+/// What became of a region.
+pub(in crate::engine) enum Split<S> {
+    /// Both halves; continuous ones share their face.
+    Halves(Region<S>, Region<S>),
+    /// No axis can be split any more.
+    TooSmall,
+}
+
+/// The rule that chooses the axis to split.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::engine) struct Splitter<S> {
+    /// The first axis that is not fixed instead of the longest.
+    pub(in crate::engine) first: bool,
+    /// Share of a continuous axis below which it is not split.
+    pub(in crate::engine) resolution: S,
+}
+
+impl<S: Real> Splitter<S> {
+    /// Splits in the middle.
+    pub(in crate::engine) fn split(&self, space: &Space<S>, region: &Region<S>) -> Split<S> {
+        let mut chosen: Option<(usize, S)> = None;
+        for (j, axis) in space.axes().iter().enumerate() {
+            let (length, whole) = (region.upper[j] - region.lower[j], axis.upper() - axis.lower());
+            let share = length / whole; // NaN on an axis of one value
+            let splits = length > S::zero() && (axis.is_integer() || share > self.resolution);
+            if splits && chosen.is_none_or(|(_, longest)| !self.first && share > longest) {
+                chosen = Some((j, share));
+            }
+        }
+        let Some((j, _)) = chosen else {
+            return Split::TooSmall;
+        };
+        let (mut lower, mut upper) = (region.clone(), region.clone());
+        let middle = region.middle(space, j);
+        if space.axes()[j].is_integer() {
+            lower.upper[j] = middle;
+            upper.lower[j] = middle + S::one();
+        } else if region.lower[j] < middle && middle < region.upper[j] {
+            lower.upper[j] = middle;
+            upper.lower[j] = middle;
+        } else {
+            // No number lies between the ends: each of them is a half.
+            lower.upper[j] = region.lower[j];
+            upper.lower[j] = region.upper[j];
+        }
+        Split::Halves(lower, upper)
+    }
+}

@@ -1,0 +1,208 @@
+//! Greedy descent over neighbours, restarted.
+
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine_settings;
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::{Boundary, Space};
+use crate::state::{Part, Reader, State};
+
+engine_settings! {
+    /// From a uniform point to the first neighbour that is better, as long as there is one; then from a new uniform point.
+    ///
+    /// Neighbours are the problem's own, or else the next lattice points, and on continuous axes the points a step away in both
+    /// directions of each axis (compass search, Kolda, Lewis, Torczon 2003, doi 10.1137/S003614450242889). They are tried in turn,
+    /// beginning with the one that was better last: on a lattice, that continues in the same direction. If none is better, the step is
+    /// halved. A descent ends at a hit; where no neighbour is better and the step is the shortest or there is none; or where none is
+    /// better and a known hit is among them. Hits are deleted.
+    ///
+    /// After the descent of feature pairs in Guy, Debunne 2004 (INRIA RR-5136) and Kimmerle, Nesme, Faure 2004 (VMV). The first better
+    /// neighbour is taken, not the best of all, because that finds more hits on the colliding teapots.
+    pub struct Descent {
+        /// First step on continuous axes, as a share of each.
+        pub step: f64 = 0.25, 1e-12..=1.0;
+        /// Shortest step on continuous axes, as a share of each.
+        pub shortest: f64 = 1e-6, 1e-15..=1.0;
+    }
+}
+
+impl EngineConfig for Descent {
+    const NAME: &'static str = "descent";
+    const SUMMARY: &'static str = "greedy descent over neighbours, restarted at uniform points";
+    const CITATION: &'static str =
+        "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(RestartedDescent::new(self.step, self.shortest))
+    }
+}
+
+/// The engine of [`Descent`].
+#[derive(Debug)]
+pub(super) struct RestartedDescent<S> {
+    first_step: S,
+    shortest: S,
+    /// Empty before a start point has been told.
+    point: Vec<S>,
+    fitness: S,
+    step: S,
+    /// The neighbours, flat; empty where they have not been asked for.
+    around: Vec<S>,
+    /// How many of them have been tried, and which one is being tried.
+    tried: usize,
+    current: usize,
+    /// The one that was tried first.
+    first: usize,
+    /// Whether one of them was left out because it is in C.
+    touches: bool,
+}
+
+impl<S: Real> RestartedDescent<S> {
+    /// A descent with compass steps from `step` to `shortest`, as shares of each axis.
+    pub(super) fn new(step: f64, shortest: f64) -> Self {
+        Self {
+            first_step: S::of(step),
+            shortest: S::of(shortest),
+            point: Vec::new(),
+            fitness: S::infinity(),
+            step: S::zero(),
+            around: Vec::new(),
+            tried: 0,
+            current: 0,
+            first: 0,
+            touches: false,
+        }
+    }
+
+    /// Ends the descent; the next one starts at a uniform point.
+    pub(super) fn restart(&mut self) {
+        self.point.clear();
+        self.around.clear();
+    }
+
+    /// Proposes the next neighbour, or a uniform point.
+    pub(super) fn propose(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
+        let dimension = out.dimension();
+        // A restored point may be of another space.
+        if self.point.len() == dimension {
+            if self.around.is_empty() {
+                self.look_around(context);
+            }
+            loop {
+                let count = self.around.len() / dimension;
+                while self.tried < count {
+                    self.current = (self.first + self.tried) % count;
+                    self.tried += 1;
+                    let neighbour = &self.around[self.current * dimension..][..dimension];
+                    if !context.is_deleted(neighbour) {
+                        return out.push(neighbour);
+                    }
+                    self.touches = true;
+                }
+                self.step = self.step / S::of(2.0);
+                if self.touches || self.step < self.shortest || !has_compass(context.space()) {
+                    break;
+                }
+                // What is not of the compass has been tried already.
+                self.around.clear();
+                self.tried = 0;
+                self.add_compass(context.space());
+            }
+        }
+        self.restart();
+        out.push_with(|position| rng.position(context.space(), position));
+    }
+
+    fn look_around(&mut self, context: &dyn Context<S>) {
+        self.tried = 0;
+        self.touches = false;
+        let around = &mut self.around;
+        let _ = context.neighbours(&self.point, &mut |position| around.extend_from_slice(position));
+        self.add_compass(context.space());
+        self.first = self.current;
+    }
+
+    /// Adds the points a step away on each continuous axis; beyond a bound, the bound.
+    fn add_compass(&mut self, space: &Space<S>) {
+        let periodic = space.boundary() == Boundary::Wrap;
+        for (j, axis) in space.axes().iter().enumerate() {
+            if axis.is_integer() {
+                continue;
+            }
+            let here = self.point[j];
+            let length = self.step * axis.width();
+            for there in [here - length, here + length] {
+                let there = if periodic {
+                    there
+                } else {
+                    there.max(axis.lower()).min(axis.upper())
+                };
+                if there != here {
+                    self.around.extend_from_slice(&self.point);
+                    let place = self.around.len() - self.point.len() + j;
+                    self.around[place] = there;
+                }
+            }
+        }
+    }
+
+    /// Goes on from what became of the proposal.
+    pub(super) fn learn(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+        let (position, outcome) = (batch.point(0), outcomes[0]);
+        if outcome.is_hit() {
+            return self.restart();
+        }
+        if self.point.is_empty() {
+            if outcome.fitness() < S::infinity() {
+                self.point.extend_from_slice(position);
+                self.fitness = outcome.fitness();
+                self.step = self.first_step;
+            }
+        } else if outcome.fitness() < self.fitness {
+            self.fitness = outcome.fitness();
+            self.point.clear();
+            self.point.extend_from_slice(position);
+            self.around.clear();
+        }
+    }
+}
+
+/// Whether any axis has compass steps.
+fn has_compass<S: Real>(space: &Space<S>) -> bool {
+    space
+        .axes()
+        .iter()
+        .any(|axis| !axis.is_integer() && axis.width() > S::zero())
+}
+
+impl<S: Real> Part for RestartedDescent<S> {
+    crate::saved_fields!(point, fitness, step, around, tried, current, first, touches);
+}
+
+impl<S: Real> Engine<S> for RestartedDescent<S> {
+    fn begin(&mut self, _: &dyn Context<S>) {
+        self.restart();
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        self.propose(context, rng, out);
+        Ask::More
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        if origin == Origin::Engine {
+            self.learn(batch, outcomes);
+        }
+    }
+
+    fn save(&self, state: &mut State) {
+        Part::save(self, state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        Part::restore(self, from)
+    }
+}

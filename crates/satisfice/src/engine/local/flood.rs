@@ -1,0 +1,161 @@
+//! Exhaustion: from every hit its neighbours, breadth first.
+
+use core::hash::BuildHasher;
+use std::collections::VecDeque;
+
+use foldhash::fast::FixedState;
+use hashbrown::HashTable;
+
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::state::{Part, Reader, Saved, State};
+
+/// Of positions; fixed, so that a run is the same on every machine.
+const KEYS: FixedState = FixedState::with_seed(0xf100_d000_0000_0001);
+
+/// Doublings of the first step in the search for the nearest point that is not deleted.
+const DOUBLINGS: usize = 8;
+/// Halvings afterwards: the step found is at most an eighth too long.
+const HALVINGS: usize = 3;
+
+/// The hits whose neighbours are still to be proposed.
+///
+/// Neighbours are the problem's own, or else the next lattice points; on continuous axes, in both directions of each axis, the
+/// nearest point that is not deleted, found by looking into C and thus without an evaluation. No point is proposed twice
+/// in one flood.
+#[derive(Debug)]
+pub(in crate::engine) struct Flood<S> {
+    first_step: S,
+    /// Positions, flat.
+    queue: VecDeque<S>,
+    /// Keys of the points proposed in this flood; two points under one key, 2^-64 likely, would cost one of them its turn.
+    seen: HashTable<u64>,
+    /// Memory for the hit whose neighbours are proposed.
+    centre: Vec<S>,
+}
+
+impl<S: Real> Flood<S> {
+    /// `first_step`: where the search for the nearest undeleted point begins, as a share of each continuous axis.
+    pub(in crate::engine) fn new(first_step: f64) -> Self {
+        Self {
+            first_step: S::of(first_step),
+            queue: VecDeque::new(),
+            seen: HashTable::new(),
+            centre: Vec::new(),
+        }
+    }
+
+    pub(in crate::engine) fn clear(&mut self) {
+        self.queue.clear();
+        self.seen.clear();
+    }
+
+    /// Puts new hits into the queue.
+    pub(in crate::engine) fn add_hits(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+        for (position, outcome) in batch.points().zip(outcomes) {
+            if outcome.is_hit() {
+                self.queue.extend(position);
+            }
+        }
+    }
+
+    /// Proposes neighbours of the next hit that has any left; `false` when all is flooded.
+    pub(in crate::engine) fn ask(&mut self, context: &dyn Context<S>, out: &mut Batch<S>) -> bool {
+        while out.is_empty() {
+            if self.queue.len() < out.dimension() {
+                self.clear();
+                return false;
+            }
+            self.centre.clear();
+            self.centre.extend(self.queue.drain(..out.dimension()));
+            let seen = &mut self.seen;
+            let mut propose = |position: &[S]| {
+                if !context.is_deleted(position) && is_new(seen, position) {
+                    out.push(position);
+                }
+            };
+            let _ = context.neighbours(&self.centre, &mut propose);
+            frontier(context, &mut self.centre, self.first_step, &mut propose);
+        }
+        true
+    }
+}
+
+impl<S: Real> Part for Flood<S> {
+    fn save(&self, state: &mut State) {
+        Saved::save(&self.queue, state);
+        let mut seen: Vec<u64> = self.seen.iter().copied().collect();
+        seen.sort_unstable();
+        Saved::save(&seen, state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        self.queue = from.read()?;
+        self.seen.clear();
+        for key in from.read::<Vec<u64>>()? {
+            self.seen.insert_unique(key, key, |&key| key);
+        }
+        Ok(())
+    }
+}
+
+/// Whether a point has not been seen; it has been then.
+fn is_new<S: Real>(seen: &mut HashTable<u64>, position: &[S]) -> bool {
+    let key = position.iter().fold(0_u64, |key, x| {
+        KEYS.hash_one([key, (*x + S::zero()).to_word()]) // -0.0 and 0.0 are one place
+    });
+    match seen.entry(key, |&other| other == key, |&other| other) {
+        hashbrown::hash_table::Entry::Occupied(_) => false,
+        hashbrown::hash_table::Entry::Vacant(vacant) => {
+            vacant.insert(key);
+            true
+        }
+    }
+}
+
+/// Visits, in both directions of each continuous axis, the nearest point to `centre` that is not deleted.
+fn frontier<S: Real>(context: &dyn Context<S>, centre: &mut [S], first_step: S, visit: &mut dyn FnMut(&[S])) {
+    let two = S::of(2.0);
+    for (j, axis) in context.space().axes().iter().enumerate() {
+        if axis.is_integer() || axis.width() == S::zero() {
+            continue;
+        }
+        let here = centre[j];
+        for first in [-first_step * axis.width(), first_step * axis.width()] {
+            let outside = |step: S, centre: &mut [S]| {
+                centre[j] = here + step;
+                !context.space().contains(centre)
+            };
+            let (mut inner, mut outer) = (S::zero(), first);
+            let mut open = false;
+            for _ in 0..=DOUBLINGS {
+                if outside(outer, centre) {
+                    break;
+                }
+                if !context.is_deleted(centre) {
+                    open = true;
+                    break;
+                }
+                inner = outer;
+                outer = outer * two;
+            }
+            if !open {
+                continue;
+            }
+            for _ in 0..HALVINGS {
+                let middle = (inner + outer) / two;
+                centre[j] = here + middle;
+                if context.is_deleted(centre) {
+                    inner = middle;
+                } else {
+                    outer = middle;
+                }
+            }
+            centre[j] = here + outer;
+            visit(centre);
+        }
+        centre[j] = here;
+    }
+}

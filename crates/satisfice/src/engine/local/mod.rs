@@ -1,0 +1,17 @@
+//! Sampling and local search.
+
+mod descent;
+mod descent_flood;
+pub(super) mod flood;
+pub(super) mod luby;
+pub(super) mod one_plus_one;
+mod random;
+pub(super) mod recombination;
+mod restarted_cma_es;
+mod walk;
+
+pub use descent::Descent;
+pub use descent_flood::DescentFlood;
+pub use random::Random;
+pub use restarted_cma_es::RestartedCmaEs;
+pub use walk::Walk;

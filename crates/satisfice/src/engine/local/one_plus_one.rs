@@ -1,0 +1,198 @@
+//! The (1+1) evolution strategy with covariance adaptation: a rotation-invariant local search, one candidate at a time.
+//!
+//! Igel, Suttorp, Hansen 2006, doi 10.1145/1143997.1144082, with the update of the Cholesky factor and of its inverse in
+//! O(D^2) of Suttorp, Hansen, Igel 2009, doi 10.1007/s10994-009-5102-1; constants as published there.
+
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+/// Success rate at which the step size stays.
+const TARGET: f64 = 2.0 / 11.0;
+/// Success rates above this stall the evolution path.
+const STALL: f64 = 0.44;
+const SMOOTHING: f64 = 1.0 / 12.0;
+
+/// The mutation distribution sigma A N(0, I), in units of the axes' widths.
+#[derive(Debug, Clone, Default)]
+pub(in crate::engine) struct Mutation {
+    dimension: usize,
+    pub(in crate::engine) sigma: f64,
+    success: f64,
+    path: Vec<f64>,
+    /// A and its inverse, row by row.
+    factor: Vec<f64>,
+    inverse: Vec<f64>,
+    /// The last draw of N(0, I) and A times it.
+    draw: Vec<f64>,
+    step: Vec<f64>,
+}
+
+crate::saved_struct!(Mutation {
+    dimension,
+    sigma,
+    success,
+    path,
+    factor,
+    inverse,
+    draw,
+    step
+});
+
+impl Mutation {
+    /// Isotropic, with this step size. Memory is reused.
+    pub(in crate::engine) fn reset(&mut self, dimension: usize, sigma: f64) {
+        self.dimension = dimension;
+        self.sigma = sigma;
+        self.success = TARGET;
+        for vector in [&mut self.path, &mut self.draw, &mut self.step] {
+            vector.clear();
+            vector.resize(dimension, 0.0);
+        }
+        for matrix in [&mut self.factor, &mut self.inverse] {
+            matrix.clear();
+            matrix.resize(dimension * dimension, 0.0);
+            for diagonal in matrix.iter_mut().step_by(dimension + 1) {
+                *diagonal = 1.0;
+            }
+        }
+    }
+
+    /// Adds a mutation, `widths` times the draw, to a position. Cost: O(D^2).
+    pub(in crate::engine) fn apply<S: Real>(
+        &mut self,
+        rng: &mut SearchRng,
+        widths: impl Iterator<Item = S>,
+        position: &mut [S],
+    ) {
+        for z in &mut self.draw {
+            *z = rng.normal();
+        }
+        for (row, step) in self.factor.chunks_exact(self.dimension).zip(&mut self.step) {
+            *step = row.iter().zip(&self.draw).map(|(a, z)| a * z).sum();
+        }
+        for ((x, width), &step) in position.iter_mut().zip(widths).zip(&self.step) {
+            *x = *x + width * S::of(self.sigma * step);
+        }
+    }
+
+    /// Adapts to whether the last mutation was a success. Cost: O(D^2) for a success, O(1) else.
+    pub(in crate::engine) fn adapt(&mut self, succeeded: bool) {
+        let n = self.dimension as f64;
+        self.success += SMOOTHING * (f64::from(u8::from(succeeded)) - self.success);
+        self.sigma *= ((self.success - TARGET) / ((1.0 - TARGET) * (1.0 + n / 2.0))).exp();
+        if !succeeded {
+            return;
+        }
+        let (path_rate, rate) = (2.0 / (n + 2.0), 2.0 / (n * n + 6.0));
+        let keep = if self.success < STALL {
+            let weight = (path_rate * (2.0 - path_rate)).sqrt();
+            for (p, s) in self.path.iter_mut().zip(&self.step) {
+                *p = (1.0 - path_rate) * *p + weight * s;
+            }
+            1.0 - rate
+        } else {
+            for p in &mut self.path {
+                *p *= 1.0 - path_rate;
+            }
+            1.0 - rate + rate * path_rate * (2.0 - path_rate)
+        };
+        self.update_factor(keep, rate);
+    }
+
+    /// A A^T := keep A A^T + rate p p^T, in A and in its inverse.
+    fn update_factor(&mut self, keep: f64, rate: f64) {
+        let n = self.dimension;
+        // w = A^-1 p; the draw's memory is free until the next mutation.
+        for (row, w) in self.inverse.chunks_exact(n).zip(&mut self.draw) {
+            *w = row.iter().zip(&self.path).map(|(a, p)| a * p).sum();
+        }
+        let square: f64 = self.draw.iter().map(|w| w * w).sum();
+        if !(square > 1e-24 && square.is_finite()) {
+            return;
+        }
+        let root = (1.0 + rate / keep * square).sqrt();
+        let (a, b) = (keep.sqrt(), keep.sqrt() / square * (root - 1.0));
+        for (row, &p) in self.factor.chunks_exact_mut(n).zip(&self.path) {
+            for (x, &w) in row.iter_mut().zip(&self.draw) {
+                *x = a * *x + b * p * w;
+            }
+        }
+        // w^T A^-1, into the step's memory.
+        self.step.fill(0.0);
+        for (row, &w) in self.inverse.chunks_exact(n).zip(&self.draw) {
+            for (s, &x) in self.step.iter_mut().zip(row) {
+                *s += w * x;
+            }
+        }
+        let (a, b) = (1.0 / keep.sqrt(), (1.0 - 1.0 / root) / (keep.sqrt() * square));
+        for (row, &w) in self.inverse.chunks_exact_mut(n).zip(&self.draw) {
+            for (x, &s) in row.iter_mut().zip(&self.step) {
+                *x = a * *x - b * w * s;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Evaluations to reduce F below 1e-10 from the distance of 1.
+    fn evaluations(fitness: impl Fn(&[f64]) -> f64, dimension: usize) -> usize {
+        let mut rng = SearchRng::new(1);
+        let mut mutation = Mutation::default();
+        mutation.reset(dimension, 0.3);
+        let mut x = vec![1.0; dimension];
+        let mut best = fitness(&x);
+        for evaluation in 1..200_000 {
+            let mut y = x.clone();
+            mutation.apply(&mut rng, core::iter::repeat(1.0), &mut y);
+            let f = fitness(&y);
+            mutation.adapt(f <= best);
+            if f <= best {
+                (x, best) = (y, f);
+            }
+            if best < 1e-10 {
+                return evaluation;
+            }
+        }
+        panic!("not converged: {best}")
+    }
+
+    #[test]
+    fn a_rotated_ridge_of_condition_1e6_costs_little_more_than_a_sphere() {
+        let sphere = evaluations(|x| x.iter().map(|x| x * x).sum(), 4);
+        // Axes of the ellipsoid along (1,1,1,1), (1,-1,0,0), (1,1,-2,0), (1,1,1,-3).
+        let ridge = evaluations(
+            |x| {
+                let across = [
+                    x[0] - x[1],
+                    x[0] + x[1] - 2.0 * x[2],
+                    x[0] + x[1] + x[2] - 3.0 * x[3],
+                ];
+                (x[0] + x[1] + x[2] + x[3]).powi(2) + 1e6 * across.iter().map(|a| a * a).sum::<f64>()
+            },
+            4,
+        );
+        assert!(sphere < 600 && ridge < 6 * sphere, "{sphere} {ridge}");
+    }
+
+    #[test]
+    fn the_inverse_stays_the_inverse() {
+        let (mut rng, mut mutation) = (SearchRng::new(3), Mutation::default());
+        mutation.reset(3, 1.0);
+        let mut x = [0.0_f64; 3];
+        for i in 0..500 {
+            mutation.apply(&mut rng, core::iter::repeat(1.0), &mut x);
+            mutation.adapt(i % 3 == 0);
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                let entry: f64 = (0..3)
+                    .map(|k| mutation.factor[3 * i + k] * mutation.inverse[3 * k + j])
+                    .sum();
+                approx::assert_abs_diff_eq!(entry, f64::from(u8::from(i == j)), epsilon = 1e-8);
+            }
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Uniform random sampling: the baseline.
+
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine_settings;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+engine_settings! {
+    /// Every point independent and uniform in the space, with replacement.
+    pub struct Random {
+        /// Points proposed at once; does not change the hits.
+        pub batch: usize = 64, 1..=1 << 20;
+    }
+}
+
+impl EngineConfig for Random {
+    const NAME: &'static str = "random";
+    const SUMMARY: &'static str = "uniform random sampling, the baseline";
+    const CITATION: &'static str = "none needed";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(UniformSampler { batch: self.batch })
+    }
+}
+
+/// The engine of [`Random`].
+#[derive(Debug)]
+struct UniformSampler {
+    batch: usize,
+}
+
+impl<S: Real> Engine<S> for UniformSampler {
+    fn begin(&mut self, _context: &dyn Context<S>) {}
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        for _ in 0..self.batch {
+            out.push_with(|position| rng.position(context.space(), position));
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, _: &Batch<S>, _: &[Outcome<S>], _: Origin) {}
+
+    crate::saved_fields!();
+}

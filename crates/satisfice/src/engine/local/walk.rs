@@ -1,0 +1,86 @@
+//! A random walk from the latest hit: a simple baseline for swarms.
+
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine_settings;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+engine_settings! {
+    /// From the latest hit G, one point at a time, on every axis j of width w_j
+    ///
+    /// ```text
+    /// X_j = G_j + s_j U(-1, 1),   s_j = w_j shortest_j^u,   u ~ U(0, 1), the same for all axes
+    /// ```
+    ///
+    /// so that the lengths s are log-uniform between the shortest step (a cell on an integer axis) and the whole axis. One point in
+    /// ten, and every point while there is no hit, is uniform. Hits are deleted.
+    pub struct Walk {
+        /// Share of uniform points.
+        pub uniform: f64 = 0.1, 0.0..=1.0;
+        /// Shortest step on a continuous axis, as a share of it; on an integer axis it is a cell.
+        pub shortest: f64 = 1e-4, 1e-12..=1.0;
+    }
+}
+
+impl EngineConfig for Walk {
+    const NAME: &'static str = "walk";
+    const SUMMARY: &'static str =
+        "random walk from the latest hit, steps of log-uniform length, a tenth uniform";
+    const CITATION: &'static str = "none";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(LatestHitWalk {
+            uniform: self.uniform,
+            shortest: self.shortest,
+            latest_hit: None,
+        })
+    }
+}
+
+/// The engine of [`Walk`].
+#[derive(Debug)]
+struct LatestHitWalk<S> {
+    uniform: f64,
+    shortest: f64,
+    latest_hit: Option<Vec<S>>,
+}
+
+impl<S: Real> Engine<S> for LatestHitWalk<S> {
+    fn begin(&mut self, _: &dyn Context<S>) {
+        self.latest_hit = None;
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        let space = context.space();
+        let from = self.latest_hit.as_ref().filter(|_| rng.uniform() >= self.uniform);
+        let Some(from) = from else {
+            out.push_with(|position| rng.position(space, position));
+            return Ask::More;
+        };
+        out.push(from);
+        let u = rng.uniform();
+        for (axis, x) in space.axes().iter().zip(out.point_mut(0)) {
+            let width = axis.width().f64();
+            let step = if axis.is_integer() {
+                width.powf(1.0 - u)
+            } else {
+                width * self.shortest.powf(u)
+            };
+            *x = *x + S::of(step * (2.0 * rng.uniform() - 1.0));
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
+        let Some(i) = outcomes.iter().rposition(|outcome| outcome.is_hit()) else {
+            return;
+        };
+        let latest = self.latest_hit.get_or_insert_default();
+        latest.clear();
+        latest.extend_from_slice(batch.point(i));
+    }
+
+    crate::saved_fields!(latest_hit);
+}

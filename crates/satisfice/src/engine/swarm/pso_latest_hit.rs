@@ -1,0 +1,43 @@
+//! The particle swarm with constriction, attracted by the latest hit.
+
+use super::particles::{Attractor, SwarmRules};
+use super::pso::constriction;
+use super::velocity::VelocitySwarm;
+use crate::engine::{Engine, EngineConfig};
+use crate::engine_settings;
+use crate::scalar::Real;
+
+engine_settings! {
+    /// [`Pso`](super::Pso) with the paper's rules: the latest hit attracts, or the best while there is none; hits are deleted from the
+    /// space and become personal bests.
+    ///
+    /// Source: Clerc, Kennedy 2002, doi 10.1109/4235.985692, with the attractor of Chen et al. 2012, doi 10.3923/itj.2012.536.539.
+    pub struct PsoLatestHit {
+        /// Swarm size N.
+        pub particles: usize = 30, 1..=1_000_000;
+        /// Total acceleration phi = c1 + c2; chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|.
+        pub phi: f64 = 4.1, 4.0..=10.0;
+        /// Largest velocity Vmax, as a share of each axis.
+        pub v_max: f64 = 0.5, 1e-9..=1.0;
+        /// Particles that move between two updates of the attractor: 1 is asynchronous, N once a sweep.
+        pub batch: usize = 1, 1..=1_000_000;
+    }
+}
+
+impl EngineConfig for PsoLatestHit {
+    const NAME: &'static str = "pso-latest-hit";
+    const SUMMARY: &'static str =
+        "particle swarm with constriction, attracted by the latest hit, hits deleted";
+    const CITATION: &'static str =
+        "Clerc, Kennedy 2002, doi 10.1109/4235.985692; Chen et al. 2012, doi 10.3923/itj.2012.536.539";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        let rules = SwarmRules {
+            particles: self.particles,
+            batch: self.batch,
+            attractor: Attractor::LatestHit,
+            deletes: true,
+        };
+        Box::new(VelocitySwarm::new(rules, constriction(self.phi, self.v_max)))
+    }
+}

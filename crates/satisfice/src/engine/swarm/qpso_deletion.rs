@@ -1,0 +1,40 @@
+//! QPSO attracted by the best, with hits deleted: the paper's engine except for its attractor.
+
+use super::particles::{Attractor, SwarmRules};
+use super::quantum::QuantumSwarm;
+use super::schedule::Schedule;
+use crate::engine::{Engine, EngineConfig};
+use crate::engine_settings;
+use crate::scalar::Real;
+
+engine_settings! {
+    /// QPSO whose hits are deleted from the space. It differs from [`LatestHitQpso`](super::LatestHitQpso) in the attractor only: G is
+    /// the best of the personal bests.
+    ///
+    /// Source: Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875. Differs from the publication in the deletion, and in that a hit
+    /// becomes P_i even if it is worse than the P_i that was deleted.
+    pub struct QpsoDeletion {
+        /// Swarm size N.
+        pub particles: usize = 30, 1..=1_000_000;
+        /// Contraction-expansion coefficient alpha. A particle stays bounded below 1.781, [`ALPHA_BOUNDED`](super::ALPHA_BOUNDED).
+        pub alpha: f64 = 1.0, 0.0..=10.0;
+        /// Particles that move between two updates of the attractor: 1 is asynchronous, N once a sweep.
+        pub batch: usize = 1, 1..=1_000_000;
+    }
+}
+
+impl EngineConfig for QpsoDeletion {
+    const NAME: &'static str = "qpso-deletion";
+    const SUMMARY: &'static str = "quantum-behaved swarm, attracted by the best, hits deleted";
+    const CITATION: &'static str = "Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        let rules = SwarmRules {
+            particles: self.particles,
+            batch: self.batch,
+            attractor: Attractor::Best,
+            deletes: true,
+        };
+        Box::new(QuantumSwarm::new(rules, Schedule::fixed(self.alpha)))
+    }
+}
