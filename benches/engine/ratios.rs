@@ -239,7 +239,7 @@ fn overshoots(table: &mut Table, full: bool) {
 fn on_threads(slow: &Slow, name: &str, settings: &[(&str, &str)], threads: usize) {
     let engine = engine::find(name)
         .unwrap()
-        .build(settings.iter().copied())
+        .configure(settings.iter().copied())
         .unwrap();
     let mut search = Search::new(engine).seed(7).threads(threads);
     let budget = Budget::evaluations(4 * 4096);

@@ -65,6 +65,16 @@ pub enum Range {
         /// Greatest.
         max: f64,
     },
+    /// A real number or `auto`.
+    #[serde(rename = "optional-real")]
+    OptionalReal {
+        /// Default.
+        default: &'static str,
+        /// Least.
+        min: f64,
+        /// Greatest.
+        max: f64,
+    },
     /// One of these words.
     Choice {
         /// Default.
@@ -84,6 +94,11 @@ impl From<&Parameter> for Row {
         let values = match parameter.kind {
             ParamKind::Integer { min, max, default } => Range::Integer { default, min, max },
             ParamKind::Real { min, max, default } => Range::Real { default, min, max },
+            ParamKind::OptionalReal { min, max } => Range::OptionalReal {
+                default: Parameter::AUTO,
+                min,
+                max,
+            },
             ParamKind::Choice { of, default } => Range::Choice { default, of },
             ParamKind::Text { default } => Range::Text { default },
         };
@@ -105,8 +120,8 @@ pub fn listing() -> Listing {
             .map(|entry| Item {
                 name: entry.name,
                 summary: entry.summary,
-                reference: entry.reference,
-                parameters: rows(entry.parameters),
+                reference: entry.citation,
+                parameters: rows(entry.parameters()),
             })
             .collect(),
         common_engine_parameters: rows(engine::COMMON_PARAMETERS),

@@ -96,7 +96,7 @@ where
         .engine_settings
         .iter()
         .map(|(name, text)| (name.as_str(), text.as_str()));
-    let build = || entry.build(settings.clone());
+    let build = || entry.configure(settings.clone());
     type Run<'a, T> = dyn FnMut(&mut Watcher<'_>) -> Result<Report<T>, satisfice::Error> + 'a;
     let mut run: Box<Run<'_, P::Solution>> = if request.islands > 1 {
         let mut islands = Islands::new(request.islands, build)?
@@ -119,7 +119,15 @@ where
         reports.push(run(&mut Watcher { slice, watch })?);
     }
     let (all, trace, slices) = unite(&reports);
-    write_up(problem, request, entry.parameters, &reports, &all, trace, slices)
+    write_up(
+        problem,
+        request,
+        entry.parameters(),
+        &reports,
+        &all,
+        trace,
+        slices,
+    )
 }
 
 /// The same while checkpoints of what was `asked` are kept, or from one on.
@@ -142,7 +150,7 @@ where
         .engine_settings
         .iter()
         .map(|(name, text)| (name.as_str(), text.as_str()));
-    let engine = entry.build(settings)?;
+    let engine = entry.configure(settings)?;
     let (mut search, mut reports, mut unfinished);
     if let Some(bytes) = keeping.resume {
         Saved::read(bytes)?.agrees(&asked)?;
@@ -194,7 +202,15 @@ where
         return Err(error.into());
     }
     let (all, trace, slices) = unite(&reports);
-    write_up(problem, request, entry.parameters, &reports, &all, trace, slices)
+    write_up(
+        problem,
+        request,
+        entry.parameters(),
+        &reports,
+        &all,
+        trace,
+        slices,
+    )
 }
 
 /// Whether there is another slice to run.

@@ -21,7 +21,9 @@ impl Settings {
             let row = table.iter().find(|row| row.name == name);
             let value = match row.map(|row| row.kind) {
                 Some(ParamKind::Integer { .. }) => text.parse::<i64>().ok().map(Value::from),
-                Some(ParamKind::Real { .. }) => text.parse::<f64>().ok().map(Value::from),
+                Some(ParamKind::Real { .. } | ParamKind::OptionalReal { .. }) => {
+                    text.parse::<f64>().ok().map(Value::from)
+                }
                 Some(ParamKind::Choice { .. } | ParamKind::Text { .. }) | None => None,
             };
             (name.clone(), value.unwrap_or_else(|| Value::String(text.clone())))

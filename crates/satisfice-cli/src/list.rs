@@ -73,6 +73,10 @@ fn columns(row: &Row) -> [String; 4] {
     let (default, range) = match row.values {
         Range::Integer { default, min, max } => (default.to_string(), format!("{min} to {}", greatest(max))),
         Range::Real { default, min, max } => (default.to_string(), format!("{} to {}", real(min), real(max))),
+        Range::OptionalReal { default, min, max } => (
+            default.to_owned(),
+            format!("{default} or {} to {}", real(min), real(max)),
+        ),
         Range::Choice { default, of } => (default.to_owned(), of.join(" | ")),
         Range::Text { default } => (format!("{default:?}"), "any text".to_owned()),
     };

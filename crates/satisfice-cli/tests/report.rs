@@ -124,7 +124,13 @@ fn the_first_experiment_in_small_makes_a_report() {
     let place = tempfile::tempdir().unwrap();
     let done = satisfice_in(place.path(), "bench experiment-one-smoke --out one");
     assert_eq!(done.code, 0, "{}", done.stderr);
-    for engine in ["latest-hit-qpso", "wang", "li", "aabb", "grid"] {
+    for engine in [
+        "latest-hit-qpso",
+        "niching-pso-dbscan",
+        "bounded-swarms",
+        "aabb",
+        "grid",
+    ] {
         assert!(done.stdout.contains(&format!("  {engine} ")), "{}", done.stdout);
     }
     let out = place.path().join("one");

@@ -102,7 +102,7 @@ fn list_names_every_engine_and_problem_with_its_parameters() {
     let engines: Vec<_> = engine::all().iter().map(|entry| entry.name).collect();
     let problems: Vec<_> = catalogue::all().iter().map(|entry| entry.name).collect();
     assert_eq!((names("engines"), names("problems")), (engines, problems));
-    let parameters = engine::all().iter().map(|entry| (entry.name, entry.parameters));
+    let parameters = engine::all().iter().map(|entry| (entry.name, entry.parameters()));
     for (name, parameters) in parameters.chain(
         catalogue::all()
             .iter()

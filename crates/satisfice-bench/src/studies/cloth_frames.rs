@@ -21,8 +21,8 @@ use satisfice_draw::plot::{Chart, Curve, Panel};
 /// Engines whose recall is followed from frame to frame.
 const ENGINES: [&str; 6] = [
     "latest-hit-qpso",
-    "wang",
-    "li",
+    "niching-pso-dbscan",
+    "bounded-swarms",
     "walk",
     "descent-flood",
     "portfolio",

@@ -196,8 +196,8 @@ fn engines(choices: &[Choice]) -> Result<Vec<Chosen>, Error> {
             .map(|entry| entry.name)
             .chain(exact::METHODS.iter().map(|method| method.name));
         let entry = engine::find(&name).map_err(|_| satisfice::Error::unknown("engine", &name, known))?;
-        let built = entry.build::<f64>(pairs(&settings))?;
-        let parameters = Settings::typed(&built.parameters, entry.parameters);
+        let built = entry.configure::<f64>(pairs(&settings))?;
+        let parameters = Settings::typed(&built.parameters(), entry.parameters());
         if found
             .iter()
             .any(|known| known.name == name && known.parameters == parameters)
