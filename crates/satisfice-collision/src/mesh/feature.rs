@@ -178,7 +178,7 @@ impl<'a> Features<'a> {
     pub(super) fn new(topology: &'a Topology, kind: FeatureKind, vertices: usize) -> Self {
         match kind {
             FeatureKind::Vertex => Self::Vertices(vertices),
-            FeatureKind::Edge => Self::Edges(&topology.edges),
+            FeatureKind::Edge => Self::Edges(topology.edges(vertices)),
             FeatureKind::Triangle => Self::Triangles(&topology.triangles),
         }
     }

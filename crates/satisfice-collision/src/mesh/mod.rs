@@ -1,11 +1,12 @@
-//! Indexed meshes: vertices, explicit edges and triangles, and what follows from them.
+//! Indexed meshes: vertices, explicit edges and triangles, and the edges and adjacency derived from them.
 
 mod aabb;
 mod adjacency;
+mod edges;
 mod feature;
 mod weld;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 pub use aabb::Aabb;
 pub use adjacency::Adjacency;
@@ -19,8 +20,9 @@ const AXES: [char; 3] = ['x', 'y', 'z'];
 /// A body: vertices, explicit edges (the lines of an OBJ file) and triangles, all by vertex number.
 ///
 /// A body of vertices alone, or of vertices and edges alone, is valid; degenerate triangles and edges are allowed.
-/// What a `Mesh` holds has been checked: every coordinate is finite, every index in range, at least one vertex.
-/// Which vertices are joined is shared between the posed copies of one body, so moving a mesh copies coordinates only.
+/// Every `Mesh` has been checked: each coordinate is finite, each index in range, and there is at least one vertex.
+/// Posed copies of one body share their elements, so moving a mesh copies coordinates only. Edges and adjacency are
+/// built when they are first asked for, once for all copies.
 ///
 /// ```
 /// use satisfice_collision::Mesh;
@@ -37,22 +39,22 @@ pub struct Mesh {
     topology: Arc<Topology>,
 }
 
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct Topology {
     lines: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
-    edges: Vec<[u32; 2]>,
-    adjacency: Adjacency,
+    edges: OnceLock<Vec<[u32; 2]>>,
+    adjacency: OnceLock<Adjacency>,
 }
 
 impl Mesh {
-    /// Checks and indexes a body. `lines` are explicit edges; the sides of the triangles need not be among them.
+    /// Checks a body. `lines` are explicit edges; the sides of the triangles need not be among them.
     ///
     /// # Errors
     /// [`Error::EmptyMesh`], [`Error::TooManyVertices`], [`Error::NonFiniteVertex`] or [`Error::IndexOutOfRange`],
     /// naming the first offender.
     ///
-    /// Cost: O(V + E log E).
+    /// Cost: O(V + L + T).
     pub fn new(
         vertices: Vec<[f64; 3]>,
         lines: Vec<[u32; 2]>,
@@ -61,13 +63,11 @@ impl Mesh {
         check_vertices(&vertices)?;
         check_indices(Element::Edge, &lines, vertices.len())?;
         check_indices(Element::Triangle, &triangles, vertices.len())?;
-        let edges = unique_edges(&lines, &triangles);
-        let adjacency = Adjacency::from_edges(vertices.len(), &edges);
         let topology = Arc::new(Topology {
             lines,
             triangles,
-            edges,
-            adjacency,
+            edges: OnceLock::new(),
+            adjacency: OnceLock::new(),
         });
         Ok(Self { vertices, topology })
     }
@@ -119,10 +119,10 @@ impl Mesh {
     }
 
     /// Every undirected edge once: explicit edges and sides of triangles, each as `[low, high]` with `low < high`,
-    /// sorted. An edge from a vertex to itself is none.
+    /// sorted. An edge from a vertex to itself is left out. Built at the first call: O(V + E log(degree)).
     #[must_use]
     pub fn edges(&self) -> &[[u32; 2]] {
-        &self.topology.edges
+        self.topology.edges(self.vertices.len())
     }
 
     /// The features of one kind, by the numbers of their corners.
@@ -146,10 +146,12 @@ impl Mesh {
         &self.topology
     }
 
-    /// Which vertices are joined by an edge.
+    /// Which vertices are joined by an edge. Built at the first call: O(V + E) beyond [`Mesh::edges`].
     #[must_use]
     pub fn adjacency(&self) -> &Adjacency {
-        &self.topology.adjacency
+        self.topology
+            .adjacency
+            .get_or_init(|| Adjacency::from_edges(self.vertices.len(), self.edges()))
     }
 
     /// The corners of triangle `t`.
@@ -185,6 +187,13 @@ impl Mesh {
 }
 
 impl Topology {
+    /// The edges of a body with so many vertices.
+    #[inline]
+    fn edges(&self, vertices: usize) -> &[[u32; 2]] {
+        self.edges
+            .get_or_init(|| edges::unique(vertices, &self.lines, &self.triangles))
+    }
+
     /// The features of one kind of a body with so many vertices.
     #[inline]
     pub(crate) fn features(&self, kind: FeatureKind, vertices: usize) -> Features<'_> {
@@ -194,7 +203,8 @@ impl Topology {
 
 impl PartialEq for Mesh {
     fn eq(&self, other: &Self) -> bool {
-        self.vertices == other.vertices && (self.same_body(other) || self.topology == other.topology)
+        let same_elements = || self.lines() == other.lines() && self.triangles() == other.triangles();
+        self.vertices == other.vertices && (self.same_body(other) || same_elements())
     }
 }
 
@@ -235,21 +245,6 @@ fn check_indices<const N: usize>(
         }
     }
     Ok(())
-}
-
-fn unique_edges(lines: &[[u32; 2]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-    let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut edges: Vec<[u32; 2]> = lines
-        .iter()
-        .copied()
-        .chain(sides)
-        .filter(|[a, b]| a != b)
-        .map(|[a, b]| [a.min(b), a.max(b)])
-        .collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges.shrink_to_fit();
-    edges
 }
 
 #[cfg(test)]
