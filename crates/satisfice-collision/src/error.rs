@@ -1,4 +1,4 @@
-//! The one error type of this crate: data first, the sentence made from it.
+//! The error type of this crate: data, from which the message is made.
 
 use std::fmt;
 use std::io;
@@ -16,6 +16,8 @@ pub enum Element {
     Triangle,
     /// A face before it is cut into triangles.
     Face,
+    /// A corner of a list of corners (glTF).
+    Corner,
 }
 
 impl fmt::Display for Element {
@@ -25,6 +27,7 @@ impl fmt::Display for Element {
             Self::Edge => "edge",
             Self::Triangle => "triangle",
             Self::Face => "face",
+            Self::Corner => "corner",
         })
     }
 }
@@ -86,7 +89,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
         /// The known extensions, separated by commas.
-        known: &'static str,
+        known: String,
     },
     /// A file does not follow its format.
     #[error("not a valid {format} file: {reason}")]
@@ -95,6 +98,22 @@ pub enum Error {
         format: &'static str,
         /// What is wrong, in one line.
         reason: String,
+    },
+    /// A file uses a part of its format that is not read.
+    #[error("{format}: {what}")]
+    Unsupported {
+        /// The format.
+        format: &'static str,
+        /// What is not supported, and what to do about it.
+        what: String,
+    },
+    /// What is wrong with a body of a scene.
+    #[error("{body}: {source}")]
+    InBody {
+        /// The name of the body.
+        body: String,
+        /// What is wrong.
+        source: Box<Error>,
     },
     /// What is wrong with a line of a file; lines count from 1.
     #[error("line {line}: {source}")]
@@ -125,11 +144,13 @@ pub enum Error {
 }
 
 impl Error {
-    /// The error itself, without the file and the line it was found in.
+    /// The error itself, without the file, the body and the line in which it was found.
     #[must_use]
     pub fn root(&self) -> &Self {
         match self {
-            Self::AtLine { source, .. } | Self::InFile { source, .. } => source.root(),
+            Self::AtLine { source, .. } | Self::InFile { source, .. } | Self::InBody { source, .. } => {
+                source.root()
+            }
             other => other,
         }
     }
@@ -141,7 +162,28 @@ impl Error {
         }
     }
 
-    /// [`Error::Malformed`] with the reason squeezed into one short line, whatever a library says in how many.
+    pub(crate) fn in_body(self, body: String) -> Self {
+        Self::InBody {
+            body,
+            source: Box::new(self),
+        }
+    }
+
+    pub(crate) fn in_file(self, path: &std::path::Path) -> Self {
+        Self::InFile {
+            path: path.to_owned(),
+            source: Box::new(self),
+        }
+    }
+
+    pub(crate) fn unsupported(format: &'static str, what: impl Into<String>) -> Self {
+        Self::Unsupported {
+            format,
+            what: what.into(),
+        }
+    }
+
+    /// [`Error::Malformed`] with the reason in one short line, also if a library gives several.
     pub(crate) fn malformed(format: &'static str, reason: impl fmt::Display) -> Self {
         const LONGEST: usize = 160;
         let words: Vec<String> = reason

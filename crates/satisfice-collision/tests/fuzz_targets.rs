@@ -21,11 +21,13 @@ fn distances_of_arbitrary_bit_patterns() {
 
 #[test]
 fn readers_of_damaged_files() {
-    let seeds: [&[u8]; 4] = [
+    let seeds: [&[u8]; 6] = [
         b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1e0 1 -0.5\nf 1 2 3\nf -1 -2 -3\nl 1 2\np 3\n",
         b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         b"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n",
         &[0; 134],
+        b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n",
+        br#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0,"scale":[1,2,3],"rotation":[0,1,0,1]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":5}]}],"accessors":[{"bufferView":0,"componentType":5120,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":12,"byteStride":4}],"buffers":[{"byteLength":12,"uri":"data:;base64,AAAAAQAAAAEAAAEA"}]}"#,
     ];
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(4);
     for seed in seeds {

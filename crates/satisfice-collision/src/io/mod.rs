@@ -1,56 +1,37 @@
-//! Mesh files: OBJ, PLY and STL are read, OBJ is written; all in `f64`.
+//! Files of meshes and scenes. A file is read whole or refused with the reason and, in text, the line.
+//!
+//! [`read`] takes one body, [`read_scene`] all of a scene with names and placements; [`Format::ALL`] lists the formats.
+//! Files may be compressed by gzip. Coordinates are `f64`. A new format is a file here and a line in `format.rs`.
 
+mod faces;
+mod format;
+mod gltf;
+mod list;
 mod obj;
+mod off;
 mod ply;
+mod scene;
+mod source;
 mod stl;
+mod text;
+mod transform;
+mod write;
 
-use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
-use crate::error::{Element, Error};
+pub use format::Format;
+pub use scene::PlacedMesh;
+pub use write::{save_obj, write_obj};
+
+use crate::error::Error;
 use crate::mesh::Mesh;
+use crate::placement::Placement;
+use format::Reader;
+use source::Folder;
 
-/// A mesh format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Format {
-    /// Wavefront OBJ: vertices `v`, points `p`, lines `l` and faces `f`; all else is passed over. Polygons are cut into
-    /// fans about their first corner, so concave ones may overlap themselves.
-    Obj,
-    /// The Stanford polygon format, ascii or binary in either byte order: elements `vertex`, `face` and `edge`.
-    Ply,
-    /// Stereolithography, ascii or binary. Coordinates are `f32` by format; vertices with equal coordinates are one.
-    Stl,
-}
-
-impl Format {
-    /// The formats.
-    pub const ALL: [Self; 3] = [Self::Obj, Self::Ply, Self::Stl];
-
-    /// The format that the extension of `path` names, in letters of either case.
-    ///
-    /// # Errors
-    /// [`Error::UnknownFormat`], which lists the known extensions.
-    pub fn of_path(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
-        let extension = path
-            .extension()
-            .and_then(|e| e.to_str())
-            .map(str::to_ascii_lowercase);
-        match extension.as_deref() {
-            Some("obj") => Ok(Self::Obj),
-            Some("ply") => Ok(Self::Ply),
-            Some("stl") => Ok(Self::Stl),
-            _ => Err(Error::UnknownFormat {
-                path: path.to_owned(),
-                known: "obj, ply, stl",
-            }),
-        }
-    }
-}
-
-/// Reads a mesh; its format goes by the extension of the file.
+/// Reads a mesh. The extension of the file names its format; a scene must consist of one body, which is put in its place.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Unreadable`], or [`Error::InFile`] around what [`parse`] reports.
@@ -63,106 +44,95 @@ impl Format {
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
     let path = path.as_ref();
     let format = Format::of_path(path)?;
-    let bytes = fs::read(path).map_err(|source| Error::Unreadable {
-        path: path.to_owned(),
-        source,
-    })?;
-    parse(format, &bytes).map_err(|source| Error::InFile {
-        path: path.to_owned(),
-        source: Box::new(source),
-    })
+    let bytes = source::file(path)?;
+    mesh(format, &bytes, &Folder::of(path)).map_err(|error| error.in_file(path))
 }
 
-/// Reads a mesh from the contents of a file.
+/// Reads the bodies of a scene. The extension of the file names its format; a file of one mesh is a scene of one body,
+/// which is called like the file.
 ///
 /// # Errors
-/// [`Error::Malformed`] for what does not follow the format, and the errors of [`Mesh::new`]; both may stand inside an
-/// [`Error::AtLine`]. Never panics, whatever the bytes.
+/// As [`read`]; [`Error::InBody`] says which body is wrong.
+///
+/// ```no_run
+/// for body in satisfice_collision::io::read_scene("factory.glb")? {
+///     println!("{}: {} triangles", body.name, body.mesh.triangles().len());
+/// }
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
+pub fn read_scene(path: impl AsRef<Path>) -> Result<Vec<PlacedMesh>, Error> {
+    let path = path.as_ref();
+    let format = Format::of_path(path)?;
+    let bytes = source::file(path)?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    bodies(format, &bytes, &Folder::of(path), &name).map_err(|error| error.in_file(path))
+}
+
+/// Reads the bodies of a scene from a stream, e.g. from standard input. Names of further files inside are relative to
+/// `folder`; a single mesh is called `name`.
+///
+/// # Errors
+/// [`Error::Unreadable`], also for a stream of more than 1 GiB, and the errors of [`parse`].
+///
+/// ```
+/// use satisfice_collision::io::{Format, read_scene_from};
+/// let bodies = read_scene_from(&b"v 0 0 0"[..], Format::named("obj")?, "stdin", ".")?;
+/// assert_eq!((bodies.len(), bodies[0].name.as_str()), (1, "stdin"));
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
+pub fn read_scene_from(
+    stream: impl Read,
+    format: Format,
+    name: &str,
+    folder: impl AsRef<Path>,
+) -> Result<Vec<PlacedMesh>, Error> {
+    let bytes = source::stream(stream)?;
+    bodies(format, &bytes, &Folder::new(folder.as_ref()), name).map_err(|error| error.in_file("-".as_ref()))
+}
+
+/// Reads a mesh from the contents of a file. Scenes that name further files look for them in the working directory.
+///
+/// # Errors
+/// [`Error::Malformed`] for bytes that do not follow the format, [`Error::Unsupported`] for parts of a format that are
+/// not read, and the errors of [`Mesh::new`]; all may be inside an [`Error::AtLine`]. Never panics, whatever the bytes.
 ///
 /// ```
 /// use satisfice_collision::io::{Format, parse};
-/// let square = parse(Format::Obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4")?;
+/// let obj = Format::named("obj")?;
+/// let square = parse(obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4")?;
 /// assert_eq!(square.triangles(), [[0, 1, 2], [0, 2, 3]]);
-/// let error = parse(Format::Obj, b"v 0 0 0\nv 1 nan 0").unwrap_err();
-/// assert_eq!(error.to_string(), "vertex 1 has y = NaN; coordinates must be finite");
+/// let error = parse(obj, b"v 0 0 0\nv 1 nan 0").unwrap_err();
+/// assert_eq!(error.to_string(), "line 2: vertex 1 has y = NaN; coordinates must be finite");
 /// # Ok::<(), satisfice_collision::Error>(())
 /// ```
 pub fn parse(format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
-    match format {
-        Format::Obj => obj::parse(bytes),
-        Format::Ply => ply::parse(bytes),
-        Format::Stl => stl::parse(bytes),
+    mesh(format, bytes, &Folder::new("."))
+}
+
+fn mesh(format: Format, bytes: &[u8], folder: &Folder) -> Result<Mesh, Error> {
+    if let Reader::Mesh(parse) = format.reader {
+        return parse(bytes);
     }
-}
-
-/// Writes a mesh as OBJ; read back it is the same to the bit.
-///
-/// # Errors
-/// What `out` reports.
-pub fn write_obj(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
-    for [x, y, z] in mesh.vertices() {
-        // `{:?}` is the shortest text that reads back as the same number.
-        writeln!(out, "v {x:?} {y:?} {z:?}")?;
-    }
-    for [a, b] in mesh.lines().iter().map(one_based) {
-        writeln!(out, "l {a} {b}")?;
-    }
-    for [a, b, c] in mesh.triangles().iter().map(one_based) {
-        writeln!(out, "f {a} {b} {c}")?;
-    }
-    Ok(())
-}
-
-/// Writes a mesh into an OBJ file.
-///
-/// # Errors
-/// [`Error::Unwritable`].
-pub fn save_obj(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), Error> {
-    let path = path.as_ref();
-    let save = || {
-        let mut out = BufWriter::new(fs::File::create(path)?);
-        write_obj(mesh, &mut out)?;
-        out.flush()
-    };
-    save().map_err(|source| Error::Unwritable {
-        path: path.to_owned(),
-        source,
-    })
-}
-
-fn one_based<const N: usize>(corners: &[u32; N]) -> [u64; N] {
-    corners.map(|v| u64::from(v) + 1)
-}
-
-/// Faces being collected: polygons become fans, faces of two corners lines, those of one nothing more than their
-/// vertex.
-#[derive(Default)]
-struct Faces {
-    lines: Vec<[u32; 2]>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Faces {
-    fn add(&mut self, corners: &[u32]) {
-        match *corners {
-            [] | [_] => {}
-            [a, b] => self.lines.push([a, b]),
-            [a, ref rest @ ..] => self.triangles.extend(rest.windows(2).map(|w| [a, w[0], w[1]])),
+    match bodies(format, bytes, folder, "")?.as_slice() {
+        [body] => body.placed().map(Arc::unwrap_or_clone),
+        bodies => {
+            let what = format!("the scene has {} bodies, but one mesh is asked for", bodies.len());
+            Err(Error::unsupported(format.name(), what))
         }
     }
 }
 
-/// A vertex number from a file, counted from 0, if there are that many.
-fn checked_index(element: Element, index: usize, vertex: i64, vertices: usize) -> Result<u32, Error> {
-    u32::try_from(vertex)
-        .ok()
-        .filter(|&v| (v as usize) < vertices)
-        .ok_or(Error::IndexOutOfRange {
-            element,
-            index,
-            vertex,
-            vertices,
-        })
+fn bodies(format: Format, bytes: &[u8], folder: &Folder, name: &str) -> Result<Vec<PlacedMesh>, Error> {
+    let mut bodies = match format.reader {
+        Reader::Mesh(parse) => vec![PlacedMesh {
+            name: name.to_owned(),
+            mesh: Arc::new(parse(bytes)?),
+            placement: Placement::IDENTITY,
+        }],
+        Reader::Scene(parse) => parse(bytes, folder)?,
+    };
+    scene::make_names_unique(&mut bodies);
+    Ok(bodies)
 }
 
 #[cfg(test)]

@@ -1,61 +1,67 @@
-//! OBJ, by way of `tobj`.
+//! OBJ: vertices `v`, points `p`, lines `l` and faces `f`.
 //!
-//! `tobj` serves renderers: it drops vertices that no face uses and renumbers the others by first use, object by
-//! object, does not know `p`, takes a polyline for a polygon, refuses files in which only some vertices have colours,
-//! and names neither line nor element in its errors. So it is handed a plainer file, made line by line as it reads:
-//! positions, each followed by a face of that one vertex (which keeps the numbering of the file), and lines and faces
-//! with position indices only, checked on the way.
+//! The reader is our own, since the kept ones serve renderers: `tobj` drops vertices without a face, renumbers the
+//! others and names no line in its errors.
 
-use std::io::{self, BufRead, Read};
-use std::str::Lines;
-
-use super::{Faces, checked_index};
+use super::faces::{Faces, checked_index, finite};
+use super::format::{Format, Reader};
+use super::text::{Lines, Words, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
 use crate::mesh::Mesh;
 
-const FORMAT: &str = "OBJ";
+const NAME: &str = "OBJ";
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
-    let text = String::from_utf8_lossy(bytes);
-    let mut plain = Plain::new(text.strip_prefix('\u{feff}').unwrap_or(&text));
-    // Neither triangulated (that blows points and lines up into triangles) nor split by texture coordinates.
-    let read = tobj::load_obj_buf(&mut plain, &tobj::LoadOptions::default(), |_| {
-        Ok(Default::default())
-    });
-    plain.check()?;
-    let (models, _) = read.map_err(|error| Error::malformed(FORMAT, error).at_line(plain.line))?;
+pub(super) const FORMAT: Format = Format {
+    name: "obj",
+    extensions: &["obj"],
+    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into fans about their first corner",
+    reader: Reader::Mesh(parse),
+};
 
-    let mut vertices = Vec::with_capacity(plain.vertices);
-    let mut faces = Faces::default();
-    for tobj::Model { mesh, .. } in models {
-        vertices.extend(mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
-        let mut rest = &mesh.indices[..];
-        for arity in mesh.face_arities {
-            let (corners, others) = rest.split_at(rest.len().min(arity as usize));
-            faces.add(corners);
-            rest = others;
+fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
+    let mut file = Contents::default();
+    let mut lines = Lines::after(0, without_mark(NAME, bytes)?);
+    let mut joined = Vec::new();
+    while let Some(first) = lines.next() {
+        let line = continued(first, &mut lines, &mut joined);
+        file.statement(without_comment(line), lines.number())
+            .map_err(|error| error.at_line(lines.number()))?;
+    }
+    file.mesh()
+}
+
+/// A logical line: a backslash at the end of a line continues it.
+fn continued<'j, 't: 'j>(first: &'t [u8], lines: &mut Lines<'t>, joined: &'j mut Vec<u8>) -> &'j [u8] {
+    let Some(mut head) = first.strip_suffix(b"\\") else {
+        return first;
+    };
+    joined.clear();
+    loop {
+        joined.extend_from_slice(head);
+        joined.push(b' ');
+        let next = lines.next().unwrap_or_default();
+        match next.strip_suffix(b"\\") {
+            Some(more) => head = more,
+            None => {
+                joined.extend_from_slice(next);
+                return joined;
+            }
         }
     }
-    Mesh::new(vertices, faces.lines, faces.triangles)
 }
 
-/// The plainer file, produced line by line.
-struct Plain<'a> {
-    source: Lines<'a>,
-    /// Number of the last line taken from the source.
-    line: usize,
-    buffer: Vec<u8>,
-    consumed: usize,
-    vertices: usize,
-    faces: usize,
-    edges: usize,
-    points: usize,
-    /// References to vertices not yet seen: they may still follow.
+#[derive(Default)]
+struct Contents {
+    vertices: Vec<[f64; 3]>,
+    faces: Faces,
+    /// How many faces, lines and points there are so far.
+    counts: [usize; 3],
+    corners: Vec<u32>,
+    /// References to vertices that had not been seen yet, each to a higher one than those before. A reference that is
+    /// not the highest so far cannot be the first one out of range.
     forward: Vec<Reference>,
-    error: Option<Error>,
 }
 
-#[derive(Clone, Copy)]
 struct Reference {
     line: usize,
     element: Element,
@@ -63,161 +69,147 @@ struct Reference {
     vertex: i64,
 }
 
-impl<'a> Plain<'a> {
-    fn new(text: &'a str) -> Self {
-        Self {
-            source: text.lines(),
-            line: 0,
-            buffer: Vec::new(),
-            consumed: 0,
-            vertices: 0,
-            faces: 0,
-            edges: 0,
-            points: 0,
-            forward: Vec::new(),
-            error: None,
-        }
-    }
-
-    /// The first thing wrong with the indices, once the source has been read.
-    fn check(&mut self) -> Result<(), Error> {
-        // Where reading stopped early, vertices may only seem to be missing.
-        if self.error.is_none() && self.source.clone().next().is_none() {
-            for r in &self.forward {
-                checked_index(r.element, r.index, r.vertex, self.vertices)
-                    .map_err(|error| error.at_line(r.line))?;
-            }
-        }
-        self.error
-            .take()
-            .map_or(Ok(()), |error| Err(error.at_line(self.line)))
-    }
-
-    /// Takes one logical line of the source (a backslash at its end continues it); `false` at the end.
-    fn advance(&mut self) -> Result<bool, Error> {
-        let Some(first) = self.source.next() else {
-            return Ok(false);
-        };
-        self.line += 1;
-        let mut joined;
-        let mut logical = first;
-        if first.ends_with('\\') {
-            joined = String::new();
-            let mut part = first;
-            while let Some(head) = part.strip_suffix('\\') {
-                joined.push_str(head);
-                joined.push(' ');
-                part = self.source.next().unwrap_or("");
-                self.line += 1;
-            }
-            joined.push_str(part);
-            logical = &joined;
-        }
-        let mut words = logical.split('#').next().unwrap_or("").split_whitespace();
+impl Contents {
+    fn statement(&mut self, line: &[u8], number: usize) -> Result<(), Error> {
+        let mut words = Words(line);
         match words.next() {
-            Some("v") => self.vertex(&words.collect::<Vec<_>>()),
-            Some("f") => self.element(Element::Face, &words.collect::<Vec<_>>())?,
-            Some("l") => self.element(Element::Edge, &words.collect::<Vec<_>>())?,
-            Some("p") => self.element(Element::Point, &words.collect::<Vec<_>>())?,
-            _ => {}
+            None => Ok(()),
+            Some(b"v") => self.vertex(words),
+            Some(b"f" | b"fo") => self.element(Element::Face, words, number),
+            Some(b"l") => self.element(Element::Edge, words, number),
+            Some(b"p") => self.element(Element::Point, words, number),
+            Some(keyword) => passed_over(keyword),
         }
-        Ok(true)
     }
 
-    /// A position with its weight but without colours, and the face that makes `tobj` keep it.
-    fn vertex(&mut self, words: &[&str]) {
-        let kept = if words.len() >= 6 { 3 } else { words.len() };
-        self.emit("v", words[..kept].iter().copied());
-        self.emit("f", ["-1"]);
-        self.vertices += 1;
-    }
-
-    fn element(&mut self, element: Element, words: &[&str]) -> Result<(), Error> {
-        if words.is_empty() {
-            return Err(Error::malformed(FORMAT, format!("a {element} without vertices")));
-        }
-        let counter = match element {
-            Element::Edge => &mut self.edges,
-            Element::Point => &mut self.points,
-            _ => &mut self.faces,
-        };
-        let index = *counter;
-        *counter += 1;
-        let corners: Vec<String> = words
-            .iter()
-            .map(|word| self.corner(element, index, word))
-            .collect::<Result<_, _>>()?;
-        match element {
-            // Every vertex is kept anyway.
-            Element::Point => {}
-            Element::Edge => {
-                for pair in corners.windows(2) {
-                    self.emit("f", pair.iter().map(String::as_str));
-                }
+    fn vertex(&mut self, words: Words<'_>) -> Result<(), Error> {
+        let mut numbers = [0.0; 7];
+        let mut count = 0;
+        for word in words {
+            let number = real(word).ok_or_else(|| {
+                Error::malformed(NAME, format!("a vertex has {} for a number", quoted(word)))
+            })?;
+            if let Some(slot) = numbers.get_mut(count) {
+                *slot = number;
             }
-            _ => self.emit("f", corners.iter().map(String::as_str)),
+            count += 1;
+        }
+        let [x, y, z, w, ..] = numbers;
+        let point = match count {
+            3 | 6 | 7 => [x, y, z],
+            4 if w == 0.0 => return Err(Error::malformed(NAME, "a vertex has the weight 0")),
+            4 => [x / w, y / w, z / w],
+            _ => {
+                let reason = format!(
+                    "a vertex of {count} numbers: 3 are a position, a 4th is its weight, 6 or 7 end with a colour"
+                );
+                return Err(Error::malformed(NAME, reason));
+            }
+        };
+        self.vertices.push(finite(self.vertices.len(), point)?);
+        Ok(())
+    }
+
+    fn element(&mut self, element: Element, words: Words<'_>, line: usize) -> Result<(), Error> {
+        let (counter, least) = match element {
+            Element::Edge => (1, 2),
+            Element::Point => (2, 1),
+            _ => (0, 1),
+        };
+        let index = self.counts[counter];
+        self.counts[counter] += 1;
+        self.corners.clear();
+        for word in words {
+            let corner = self.corner(element, index, word, line)?;
+            self.corners.push(corner);
+        }
+        if self.corners.len() < least {
+            let vertices = if least == 1 {
+                "without vertices"
+            } else {
+                "of fewer than two vertices"
+            };
+            return Err(Error::malformed(
+                NAME,
+                format!("{element} {index} is one {vertices}"),
+            ));
+        }
+        match element {
+            // Points add nothing to their vertices.
+            Element::Point => {}
+            Element::Edge => self
+                .faces
+                .lines
+                .extend(self.corners.windows(2).map(|w| [w[0], w[1]])),
+            _ => self.faces.add(&self.corners),
         }
         Ok(())
     }
 
-    /// The position index of a corner `v/vt/vn`, made absolute; counted from 1 in the answer, from 0 in errors.
-    fn corner(&mut self, element: Element, index: usize, word: &str) -> Result<String, Error> {
-        let position = word.split('/').next().unwrap_or("");
-        let given: i64 = position.parse().map_err(|_| {
-            Error::malformed(FORMAT, format!("{element} {index} has the vertex index {word:?}"))
-        })?;
-        let vertices = self.vertices;
+    /// The vertex of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0. It may follow later in the file.
+    fn corner(&mut self, element: Element, index: usize, word: &[u8], line: usize) -> Result<u32, Error> {
+        let refuse = || {
+            let word = quoted(word);
+            Error::malformed(
+                NAME,
+                format!("{element} {index} has {word} where a vertex number belongs"),
+            )
+        };
+        let position = word.iter().position(|b| *b == b'/').unwrap_or(word.len());
+        let given = whole(&word[..position]).ok_or_else(refuse)?;
+        let others = word[position..].split(|b| *b == b'/').skip(1);
+        if others.clone().count() > 2 || others.into_iter().any(|w| !w.is_empty() && whole(w).is_none()) {
+            return Err(refuse());
+        }
+        if given == 0 {
+            let reason = format!("{element} {index} names vertex 0: OBJ counts vertices from 1");
+            return Err(Error::malformed(NAME, reason));
+        }
+        let vertices = self.vertices.len();
         let vertex = if given < 0 {
             given.saturating_add_unsigned(vertices as u64)
         } else {
             given - 1
         };
-        match checked_index(element, index, vertex, vertices) {
-            Err(error) if vertex < 0 => return Err(error),
-            Err(_) => self.forward.push(Reference {
-                line: self.line,
+        if vertex < vertices as i64 || vertex > i64::from(u32::MAX) {
+            return checked_index(element, index, vertex, vertices);
+        }
+        if self.forward.last().is_none_or(|last| last.vertex < vertex) {
+            self.forward.push(Reference {
+                line,
                 element,
                 index,
                 vertex,
-            }),
-            Ok(_) => {}
+            });
         }
-        Ok((i128::from(vertex) + 1).to_string())
+        Ok(vertex as u32)
     }
 
-    fn emit<'w>(&mut self, keyword: &str, words: impl IntoIterator<Item = &'w str>) {
-        self.buffer.extend_from_slice(keyword.as_bytes());
-        for word in words {
-            self.buffer.push(b' ');
-            self.buffer.extend_from_slice(word.as_bytes());
+    fn mesh(self) -> Result<Mesh, Error> {
+        for r in &self.forward {
+            checked_index(r.element, r.index, r.vertex, self.vertices.len())
+                .map_err(|error| error.at_line(r.line))?;
         }
-        self.buffer.push(b'\n');
+        Mesh::new(self.vertices, self.faces.lines, self.faces.triangles)
     }
 }
 
-impl Read for Plain<'_> {
-    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
-        let count = self.fill_buf()?.read(out)?;
-        self.consume(count);
-        Ok(count)
-    }
-}
-
-impl BufRead for Plain<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        while self.consumed == self.buffer.len() && self.error.is_none() {
-            self.buffer.clear();
-            self.consumed = 0;
-            match self.advance() {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(error) => self.error = Some(error),
-            }
+/// What says nothing about positions is passed over; geometry of other kinds is refused, not lost.
+fn passed_over(keyword: &[u8]) -> Result<(), Error> {
+    match keyword {
+        b"vt" | b"vn" | b"vp" | b"g" | b"o" | b"s" | b"mg" | b"usemtl" | b"mtllib" | b"usemap"
+        | b"maplib" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj"
+        | b"ctech" | b"stech" => Ok(()),
+        b"curv" | b"curv2" | b"surf" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim"
+        | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"bzp" | b"bsp" | b"cdc" | b"cdp" | b"res" => {
+            Err(Error::unsupported(
+                NAME,
+                "free-form curves and surfaces are not supported; export the object as polygons",
+            ))
         }
-        Ok(&self.buffer[self.consumed..])
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.consumed = (self.consumed + count).min(self.buffer.len());
+        _ => Err(Error::malformed(
+            NAME,
+            format!("unknown keyword {}", quoted(keyword)),
+        )),
     }
 }

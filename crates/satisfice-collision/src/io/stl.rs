@@ -1,46 +1,29 @@
-//! STL, by way of `stl_io`.
-//!
-//! `stl_io` takes whatever begins with "solid " for ascii, also a binary file with such a header; it wants a name after
-//! "solid", reads only the first solid of a file, refuses ascii normals that are not finite, and takes 0.0 and -0.0 for
-//! different places. So the encoding is decided here, an ascii file is made plain first, and the corners are welded
-//! here.
+//! STL, ASCII or binary. The format has no vertex numbers: corners with equal coordinates become one vertex.
 
-use std::io::Cursor;
-
-use super::Faces;
+use super::faces::{Faces, finite};
+use super::format::{Format, Reader};
+use super::text::{Lines, Words, quoted, real, without_mark};
 use crate::error::Error;
 use crate::mesh::{Mesh, weld};
 
-const FORMAT: &str = "STL";
+const NAME: &str = "STL";
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
+const NORMAL: usize = 12;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
-    let plain = if is_ascii(bytes) {
-        plain_ascii(bytes)?
+pub(super) const FORMAT: Format = Format {
+    name: "stl",
+    extensions: &["stl"],
+    summary: "Stereolithography, ASCII or binary, in single precision; corners with equal coordinates become one vertex",
+    reader: Reader::Mesh(parse),
+};
+
+fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
+    let corners = if is_ascii(bytes) {
+        ascii(without_mark(NAME, bytes)?)?
     } else {
-        plain_binary(bytes)?
+        binary(bytes)?
     };
-    let mut input = Cursor::new(plain);
-    let reader = stl_io::create_stl_reader(&mut input).map_err(|error| Error::malformed(FORMAT, error))?;
-
-    let mut corners: Vec<[f64; 3]> = Vec::new();
-    for (facet, triangle) in reader.enumerate() {
-        let triangle =
-            triangle.map_err(|error| Error::malformed(FORMAT, format!("facet {facet}: {error}")))?;
-        for vertex in triangle.vertices {
-            let corner = vertex.0.map(f64::from);
-            if let Some(k) = corner.iter().position(|c| !c.is_finite()) {
-                let axis = ['x', 'y', 'z'][k];
-                return Err(Error::NonFiniteVertex {
-                    vertex: corners.len(),
-                    axis,
-                    value: corner[k],
-                });
-            }
-            corners.push(corner);
-        }
-    }
     let (vertices, number) = weld(&corners);
     if u32::try_from(vertices.len()).is_err() {
         return Err(Error::TooManyVertices {
@@ -54,95 +37,160 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
     Mesh::new(vertices, faces.lines, faces.triangles)
 }
 
-/// Binary is what has exactly the length that a binary header announces; of the rest, what begins with "solid" and
-/// holds no zero byte is ascii.
+/// A file is binary if it has exactly the length that a binary header announces. Otherwise it is ASCII if it begins
+/// with "solid" and holds no zero byte; the word alone decides nothing, since binary headers may begin with it, too.
 fn is_ascii(bytes: &[u8]) -> bool {
     if announced_length(bytes) == Some(bytes.len() as u64) {
         return false;
     }
-    let start = bytes.trim_ascii_start();
-    start
-        .get(..5)
+    let text = bytes
+        .strip_prefix(b"\xef\xbb\xbf")
+        .unwrap_or(bytes)
+        .trim_ascii_start();
+    text.get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
         && !bytes.contains(&0)
 }
 
+fn announced_count(bytes: &[u8]) -> Option<u32> {
+    bytes
+        .get(HEADER - 4..)?
+        .first_chunk()
+        .map(|count| u32::from_le_bytes(*count))
+}
+
 fn announced_length(bytes: &[u8]) -> Option<u64> {
-    let count = bytes.get(HEADER - 4..HEADER)?;
-    let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
-    Some(HEADER as u64 + TRIANGLE as u64 * u64::from(count))
+    announced_count(bytes).map(|count| HEADER as u64 + TRIANGLE as u64 * u64::from(count))
 }
 
-/// The file with an empty header, so that it can not be taken for ascii.
-fn plain_binary(bytes: &[u8]) -> Result<Vec<u8>, Error> {
+/// The corners of the triangles, three of each.
+fn binary(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Error> {
     let length = bytes.len();
-    match announced_length(bytes) {
-        None => Err(Error::malformed(
-            FORMAT,
-            format!("{length} bytes are neither ascii STL, which begins with \"solid\", nor a binary header"),
-        )),
-        Some(announced) if announced > length as u64 => Err(Error::malformed(
-            FORMAT,
-            format!("a binary file that announces {announced} bytes has {length}"),
-        )),
-        Some(_) => {
-            let mut plain = bytes.to_vec();
-            plain[..HEADER - 4].fill(0);
-            Ok(plain)
+    let Some((count, announced)) = announced_count(bytes).zip(announced_length(bytes)) else {
+        let reason = format!(
+            "{length} bytes are neither ASCII, which begins with \"solid\", nor a whole binary header"
+        );
+        return Err(Error::malformed(NAME, reason));
+    };
+    if announced != length as u64 {
+        let reason = format!(
+            "its binary header announces {count} triangles, which take {announced} bytes, but it has {length}"
+        );
+        return Err(Error::malformed(NAME, reason));
+    }
+    let mut corners = Vec::with_capacity(3 * count as usize);
+    for triangle in bytes[HEADER..].chunks_exact(TRIANGLE) {
+        for corner in triangle[NORMAL..].chunks_exact(12).take(3) {
+            let coordinate =
+                |k: usize| f32::from_le_bytes([corner[k], corner[k + 1], corner[k + 2], corner[k + 3]]);
+            let point = [0, 4, 8].map(|k| f64::from(coordinate(k)));
+            corners.push(finite(corners.len(), point)?);
+        }
+    }
+    Ok(corners)
+}
+
+/// The statements in the order in which they follow each other within a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Expected {
+    Solid,
+    FacetOrEnd,
+    Loop,
+    Vertex(u8),
+    EndLoop,
+    EndFacet,
+}
+
+impl Expected {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Solid => "solid",
+            Self::FacetOrEnd => "facet or endsolid",
+            Self::Loop => "outer loop",
+            Self::Vertex(_) => "vertex",
+            Self::EndLoop => "endloop",
+            Self::EndFacet => "endfacet",
         }
     }
 }
 
-/// The facets of all solids of a file as one solid, in small letters, with normals of zero.
-fn plain_ascii(bytes: &[u8]) -> Result<Vec<u8>, Error> {
-    let text = String::from_utf8_lossy(bytes).to_ascii_lowercase();
-    let mut plain = String::from("solid \n");
-    let mut inside = false;
-    let mut corners = 0_usize;
-    for (k, line) in text.lines().enumerate() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            None => {}
-            Some("solid") => inside = true,
-            Some("endsolid") => inside = false,
-            Some(_) if !inside => {
-                let error = Error::malformed(FORMAT, format!("{:?} outside of a solid", line.trim()));
-                return Err(error.at_line(k + 1));
-            }
-            Some("facet") => plain.push_str("facet normal 0 0 0\n"),
-            Some("vertex") => {
-                check_corner(words, corners).map_err(|error| error.at_line(k + 1))?;
-                corners += 1;
-                plain.push_str(line);
-                plain.push('\n');
-            }
-            Some(_) => {
-                plain.push_str(line);
-                plain.push('\n');
-            }
+/// The corners of the triangles of all solids of a file, three of each.
+fn ascii(text: &[u8]) -> Result<Vec<[f64; 3]>, Error> {
+    let mut corners = Vec::new();
+    let mut expected = Expected::Solid;
+    let mut lines = Lines::after(0, text);
+    while let Some(line) = lines.next() {
+        let mut words = Words(line);
+        if let Some(keyword) = words.next() {
+            expected = statement(keyword, words, expected, &mut corners)
+                .map_err(|error| error.at_line(lines.number()))?;
         }
     }
-    if inside {
-        return Err(Error::malformed(FORMAT, "the file ends inside a solid"));
+    match expected {
+        Expected::Solid => Ok(corners),
+        _ => Err(Error::malformed(NAME, "the file ends inside a solid").at_line(lines.number())),
     }
-    plain.push_str("endsolid\n");
-    Ok(plain.into_bytes())
 }
 
-/// `stl_io` refuses coordinates that are not finite without naming the vertex; this names it. What is no number is left
-/// to `stl_io`.
-fn check_corner<'a>(words: impl Iterator<Item = &'a str>, vertex: usize) -> Result<(), Error> {
-    for (axis, word) in ['x', 'y', 'z'].into_iter().zip(words) {
-        match word.parse::<f32>() {
-            Ok(value) if !value.is_finite() => {
-                return Err(Error::NonFiniteVertex {
-                    vertex,
-                    axis,
-                    value: f64::from(value),
-                });
-            }
-            _ => {}
+/// Takes a statement; which one is expected next. Names of solids and normals are not looked at.
+fn statement(
+    keyword: &[u8],
+    mut words: Words<'_>,
+    expected: Expected,
+    corners: &mut Vec<[f64; 3]>,
+) -> Result<Expected, Error> {
+    let keyword = keyword.to_ascii_lowercase();
+    match (expected, keyword.as_slice()) {
+        (Expected::Solid, b"solid") => return Ok(Expected::FacetOrEnd),
+        (Expected::FacetOrEnd, b"endsolid") => return Ok(Expected::Solid),
+        (Expected::FacetOrEnd, b"facet") => return Ok(Expected::Loop),
+        (Expected::Loop, b"outer") if words.next().is_some_and(|w| w.eq_ignore_ascii_case(b"loop")) => {
+            return ended(words, Expected::Vertex(0));
         }
+        (Expected::Vertex(n), b"vertex") => {
+            corners.push(corner(&mut words, corners.len())?);
+            return ended(
+                words,
+                if n == 2 {
+                    Expected::EndLoop
+                } else {
+                    Expected::Vertex(n + 1)
+                },
+            );
+        }
+        (Expected::EndLoop, b"endloop") => return ended(words, Expected::EndFacet),
+        (Expected::EndFacet, b"endfacet") => return ended(words, Expected::FacetOrEnd),
+        _ => {}
     }
-    Ok(())
+    let facet = match expected {
+        Expected::Solid | Expected::FacetOrEnd => String::new(),
+        _ => format!("facet {}: ", corners.len() / 3),
+    };
+    let (keyword, expected) = (quoted(&keyword), expected.name());
+    Err(Error::malformed(
+        NAME,
+        format!("{facet}{keyword} where {expected} is expected"),
+    ))
+}
+
+fn ended(mut words: Words<'_>, next: Expected) -> Result<Expected, Error> {
+    match words.next() {
+        None => Ok(next),
+        Some(word) => Err(Error::malformed(
+            NAME,
+            format!("{} is one word too many", quoted(word)),
+        )),
+    }
+}
+
+fn corner(words: &mut Words<'_>, vertex: usize) -> Result<[f64; 3], Error> {
+    let mut point = [0.0; 3];
+    for coordinate in &mut point {
+        let word = words.next().unwrap_or_default();
+        let number: f32 = real(word).ok_or_else(|| {
+            Error::malformed(NAME, format!("vertex {vertex} has {} for a number", quoted(word)))
+        })?;
+        *coordinate = f64::from(number);
+    }
+    finite(vertex, point)
 }

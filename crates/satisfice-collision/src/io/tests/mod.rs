@@ -1,9 +1,13 @@
-//! Tests of the readers: files by name, and bytes of no meaning, which give an error or a mesh, never a panic.
+//! Tests of the readers: files by name, and bytes without meaning, which give an error or a mesh, never a panic.
 #![allow(clippy::unwrap_used)]
 
+mod gltf;
+mod list;
 mod obj;
+mod off;
 mod ply;
 mod stl;
+mod streams;
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +17,14 @@ use proptest::prelude::*;
 use self::ply::{ENCODINGS, ply};
 use self::stl::{TWO, ascii_stl, binary_stl};
 use super::*;
+use crate::error::Element;
 use crate::generate;
+
+const OBJ: Format = super::obj::FORMAT;
+const PLY: Format = super::ply::FORMAT;
+const STL: Format = super::stl::FORMAT;
+const OFF: Format = super::off::FORMAT;
+const GLTF: Format = super::gltf::FORMAT;
 
 fn message(format: Format, bytes: impl AsRef<[u8]>) -> String {
     let text = parse(format, bytes.as_ref()).unwrap_err().to_string();
@@ -31,13 +42,13 @@ fn files_go_by_their_extension() {
     save_obj(&teapot, &path).unwrap();
     assert_eq!(read(&path).unwrap(), teapot);
 
-    for name in ["teapot.gltf", "teapot", ".obj"] {
+    for name in ["teapot.blend", "teapot", ".obj", "teapot.gz", ".obj.gz"] {
         let error = read(folder.path().join(name)).unwrap_err();
         assert!(matches!(error, Error::UnknownFormat { .. }));
         assert!(
-            error
-                .to_string()
-                .ends_with("the known extensions are obj, ply, stl"),
+            error.to_string().ends_with(
+                "the known extensions are obj, ply, stl, off, gltf, glb, json, toml, each also with .gz"
+            ),
             "{error}"
         );
     }
@@ -101,14 +112,20 @@ fn samples() -> Vec<(Format, Vec<u8>)> {
     .unwrap();
     file.extend(b"vt 0 0\nvn 0 0 1\nf 1/1/1 -2/-1/-1 3/1/1\nl 1 2 3\np 1\no x\nusemtl y\n");
     let mut samples = vec![
-        (Format::Obj, file),
-        (Format::Stl, ascii_stl(&TWO).into_bytes()),
-        (Format::Stl, binary_stl(b"solid", &TWO)),
+        (OBJ, file),
+        (STL, ascii_stl(&TWO).into_bytes()),
+        (STL, binary_stl(b"solid", &TWO)),
+        (
+            OFF,
+            b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3 255 0 0\n".to_vec(),
+        ),
+        (GLTF, gltf::two_triangles().into_bytes()),
+        (GLTF, gltf::glb(&gltf::two_triangles(), b"")),
     ];
     for encoding in ENCODINGS {
         for double in [true, false] {
             samples.push((
-                Format::Ply,
+                PLY,
                 ply(encoding, double, &SQUARE, &[vec![0, 1, 2, 3], vec![0, 2, 1]]),
             ));
         }
@@ -127,7 +144,7 @@ proptest! {
 
     #[test]
     fn damaged_files_do_no_harm(
-        which in 0_usize..9,
+        which in 0_usize..12,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         digits in any::<bool>(),
         cut in any::<prop::sample::Index>(),

@@ -2,12 +2,12 @@
 
 use proptest::prelude::*;
 
-use super::{SQUARE, message};
+use super::{OBJ, SQUARE, message};
 use crate::Mesh;
-use crate::io::{Format, parse, write_obj};
+use crate::io::{parse, write_obj};
 
 fn obj(text: &str) -> Mesh {
-    parse(Format::Obj, text.as_bytes()).unwrap()
+    parse(OBJ, text.as_bytes()).unwrap()
 }
 
 #[test]
@@ -49,7 +49,80 @@ fn obj_of_the_wild() {
     assert_eq!(mesh.vertices(), SQUARE);
     assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 1, 3]]);
     // Latin-1 in a comment.
-    assert!(parse(Format::Obj, b"# caf\xe9\nv 0 0 0\n").is_ok());
+    assert!(parse(OBJ, b"# caf\xe9\nv 0 0 0\n").is_ok());
+}
+
+#[test]
+fn obj_with_every_end_of_line_is_the_same_mesh() {
+    let unix = "# made by hand\nv 0 0 0\nv 1 0 0\n\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 4\n";
+    for end in ["\n", "\r\n", "\r"] {
+        let mesh = obj(&unix.replace('\n', end));
+        assert_eq!(mesh.vertices(), SQUARE, "{end:?}");
+        assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+        let error = message(OBJ, format!("{unix}f 1 2 5").replace('\n', end));
+        assert!(error.starts_with("line 9: face 1 names vertex 4"), "{error}");
+    }
+}
+
+#[test]
+fn obj_vertices_have_positions_weights_or_colours_and_nothing_else() {
+    for good in [
+        "1 2 3",
+        "2 4 6 2",
+        "1 2 3 0.5 0.5 0.5",
+        "1 2 3 0 .5 1 1 # colour",
+        "+1 2. 3e0",
+    ] {
+        assert_eq!(obj(&format!("v {good}")).vertices(), [[1.0, 2.0, 3.0]], "{good}");
+    }
+    for junk in [
+        "",
+        "1",
+        "1 2",
+        "1 2 3 4 5",
+        "1 2 3 4 5 6 7 8",
+        "1 2 3 a b c",
+        "1 2 3 4 5 x",
+        "1,2,3",
+        "1 2 3 0 0 0 z",
+    ] {
+        let error = message(OBJ, format!("v 0 0 0\nv {junk}\n"));
+        assert!(
+            error.starts_with("line 2: not a valid OBJ file: a vertex "),
+            "{junk}: {error}"
+        );
+    }
+}
+
+#[test]
+fn obj_statements_that_are_not_understood_are_refused() {
+    let say = |line: &str| message(OBJ, format!("v 0 0 0\n{line}\n"));
+    assert_eq!(
+        say("V 1 1 1"),
+        "line 2: not a valid OBJ file: unknown keyword \"V\""
+    );
+    assert_eq!(
+        say("PK\x03\x04"),
+        "line 2: not a valid OBJ file: unknown keyword \"PK\\u{3}\\u{4}\""
+    );
+    assert_eq!(
+        say("surf 0 1 0 1 1 2 3 4"),
+        "line 2: OBJ: free-form curves and surfaces are not supported; export the object as polygons"
+    );
+    for corner in ["1/x", "1/1/1/1", "1.0", "/1", "1//y"] {
+        let error = say(&format!("f 1 {corner} 1"));
+        assert!(
+            error.starts_with("line 2: not a valid OBJ file: face 0 has \""),
+            "{corner}: {error}"
+        );
+    }
+    assert_eq!(
+        say("l 1"),
+        "line 2: not a valid OBJ file: edge 0 is one of fewer than two vertices"
+    );
+    // UTF-16 text would be one unknown keyword.
+    let error = parse(OBJ, b"\xff\xfev\0 \x000\0").unwrap_err().to_string();
+    assert!(error.contains("UTF-16"), "{error}");
 }
 
 #[test]
@@ -60,7 +133,7 @@ fn obj_is_read_in_double_precision() {
 
 #[test]
 fn obj_errors_name_the_line_and_the_element() {
-    let say = |text: &str| message(Format::Obj, text);
+    let say = |text: &str| message(OBJ, text);
     assert_eq!(say(""), "the mesh is empty: it has no vertex");
     assert_eq!(
         say("# nothing\nvn 0 0 1\n"),
@@ -71,7 +144,7 @@ fn obj_errors_name_the_line_and_the_element() {
         "line 3: face 0 names vertex 2, but the mesh has 2 vertices (0 to 1)"
     );
     assert_eq!(
-        say("v 0 0 0\nl 1 1\nl 1 0"),
+        say("v 0 0 0\nl 1 1\nl 1 -2"),
         "line 3: edge 1 names vertex -1, but the mesh has 1 vertices (0 to 0)"
     );
     assert_eq!(
@@ -80,26 +153,30 @@ fn obj_errors_name_the_line_and_the_element() {
     );
     assert_eq!(
         say("v 0 0 0\nf 1 x 1"),
-        "line 2: not a valid OBJ file: face 0 has the vertex index \"x\""
+        "line 2: not a valid OBJ file: face 0 has \"x\" where a vertex number belongs"
     );
     assert_eq!(
         say("v 0 0 0\nf"),
-        "line 2: not a valid OBJ file: a face without vertices"
+        "line 2: not a valid OBJ file: face 0 is one without vertices"
     );
     assert_eq!(
         say("v 0 0 0\n\nv 1 2\nv 1 1 1"),
-        "line 3: not a valid OBJ file: position parse error"
+        "line 3: not a valid OBJ file: a vertex of 2 numbers: 3 are a position, a 4th is its weight, 6 or 7 end with a colour"
     );
     assert_eq!(
         say("v 1 1 1 0"),
-        "line 1: not a valid OBJ file: scaling (w) by zero"
+        "line 1: not a valid OBJ file: a vertex has the weight 0"
     );
     assert_eq!(
         say("v 0 0 0\nv 0 -inf 0"),
-        "vertex 1 has y = -inf; coordinates must be finite"
+        "line 2: vertex 1 has y = -inf; coordinates must be finite"
+    );
+    assert_eq!(
+        say("v 0 0 0\nl 1 0"),
+        "line 2: not a valid OBJ file: edge 0 names vertex 0: OBJ counts vertices from 1"
     );
     let huge = "v 0 0 0\nf 99999999999999999999 1 1";
-    assert!(say(huge).contains("the vertex index \"99999999999999999999\""));
+    assert!(say(huge).contains("has \"99999999999999999999\" where a vertex number belongs"));
     assert!(say("v 0 0 0\nf 9223372036854775807 1 1").contains("names vertex 9223372036854775806"));
     assert!(say("v 0 0 0\nf -9223372036854775808 1 1").contains("face 0 names vertex"));
 }
@@ -119,7 +196,7 @@ proptest! {
         let mesh = Mesh::new(vertices, lines, triangles).unwrap();
         let mut file = Vec::new();
         write_obj(&mesh, &mut file).unwrap();
-        let back = parse(Format::Obj, &file).unwrap();
+        let back = parse(OBJ, &file).unwrap();
         prop_assert_eq!(&back, &mesh);
         for (a, b) in back.vertices().iter().zip(mesh.vertices()) {
             prop_assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits));

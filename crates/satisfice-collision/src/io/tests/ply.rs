@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{SQUARE, message};
-use crate::io::{Format, parse};
+use super::{PLY, SQUARE, message};
+use crate::io::parse;
 
 /// A PLY file of triangles, written here byte by byte.
 pub(super) fn ply(format: &str, double: bool, vertices: &[[f64; 3]], polygons: &[Vec<i32>]) -> Vec<u8> {
@@ -70,7 +70,7 @@ fn ply_in_every_encoding_and_precision() {
                 &vertices,
                 &[vec![0, 1, 2], vec![3, 2, 1, 0], vec![0, 1]],
             );
-            let mesh = parse(Format::Ply, &file).unwrap();
+            let mesh = parse(PLY, &file).unwrap();
             let expected = if double {
                 vertices
             } else {
@@ -91,7 +91,7 @@ fn ply_with_other_elements_edges_types_and_manners() {
         element edge 2\r\nproperty uchar vertex1\r\nproperty ushort vertex2\r\n\
         element face 1\r\nproperty list uint8 uint32 vertex_index\r\nend_header\r\n\
         nan\r\nNaN 0 0 0 0\r\n .5 2 1. nan 1 0 0\r\n\r\n0 0 1 1.0e0 0.\r\n0 0 0 1 -.0\r\n0 2\r\n3 1\r\n3 0 1 2\r\n";
-    let mesh = parse(Format::Ply, text.as_bytes()).unwrap();
+    let mesh = parse(PLY, text.as_bytes()).unwrap();
     assert_eq!(mesh.vertices(), SQUARE);
     assert_eq!(
         (mesh.lines(), mesh.triangles()),
@@ -104,7 +104,7 @@ fn ply_errors_name_what_is_wrong() {
     let square = SQUARE.to_vec();
     for encoding in ENCODINGS {
         let say = |vertices: &[[f64; 3]], polygons: &[Vec<i32>]| {
-            let text = message(Format::Ply, ply(encoding, true, vertices, polygons));
+            let text = message(PLY, ply(encoding, true, vertices, polygons));
             text.split_once(": ")
                 .filter(|(l, _)| l.starts_with("line"))
                 .map_or(text.clone(), |(_, t)| t.into())
@@ -133,19 +133,22 @@ fn ply_errors_name_what_is_wrong() {
         let whole = ply(encoding, true, &square, &[vec![0, 1, 2]]);
         for length in 0..whole.len() - 1 {
             assert!(
-                parse(Format::Ply, &whole[..length]).is_err(),
+                parse(PLY, &whole[..length]).is_err(),
                 "{encoding} cut to {length}"
             );
         }
     }
     let head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n";
-    let say = |rest: &str| message(Format::Ply, format!("{head}{rest}"));
+    let say = |rest: &str| message(PLY, format!("{head}{rest}"));
     assert_eq!(
         say("end_header\n0 0\n"),
         "not a valid PLY file: its vertices have no number z"
     );
     assert!(say("property list uchar float z\nend_header\n0 0\n").contains("no number z"));
-    assert!(say("property float z\nend_header\n0 zero 0\n").starts_with("line 8: not a valid PLY file:"));
+    assert!(
+        say("property float z\nend_header\n0 zero 0\n")
+            .starts_with("line 8: not a valid PLY file: vertex 0: \"zero\" is not a number")
+    );
     assert_eq!(
         say("property float z\nend_header\n0 0 nan\n"),
         "line 8: vertex 0 has z = NaN; coordinates must be finite"
@@ -162,5 +165,160 @@ fn ply_errors_name_what_is_wrong() {
         say("property float z\nelement tristrips 0\nend_header\n0 0 0\n")
             .contains("strips are not supported")
     );
-    assert!(message(Format::Ply, "plx\n").starts_with("line 1: not a valid PLY file: Expected magic number"));
+    assert_eq!(
+        message(PLY, "plx\n"),
+        "line 1: not a valid PLY file: it does not begin with a line \"ply\""
+    );
+}
+
+/// A file of three vertices and a triangle with this header instead of the usual lines of the element `vertex`.
+fn with_header(vertex: &str, body: &str) -> String {
+    format!(
+        "ply\nformat ascii 1.0\n{vertex}element face 1\nproperty list uchar int vertex_indices\nend_header\n{body}"
+    )
+}
+
+const VERTEX: &str = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+const BODY: &str = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+#[test]
+fn ply_headers_that_contradict_themselves_are_refused() {
+    let say = |vertex: &str| message(PLY, with_header(vertex, BODY));
+    assert!(parse(PLY, with_header(VERTEX, BODY).as_bytes()).is_ok());
+    assert_eq!(
+        say(&format!("{VERTEX}element vertex 1\nproperty float x\n")),
+        "line 7: not a valid PLY file: a second element \"vertex\""
+    );
+    assert_eq!(
+        say(&format!("{VERTEX}property int x\n")),
+        "line 7: not a valid PLY file: a second property \"x\" of the element \"vertex\""
+    );
+    assert_eq!(
+        say("property float x\n"),
+        "line 3: not a valid PLY file: a property before the first element"
+    );
+    assert_eq!(
+        say("element vertex -3\n"),
+        "line 3: not a valid PLY file: the element \"vertex\" has the count \"-3\""
+    );
+    assert_eq!(
+        say("element vertex 3\nproperty real x\n"),
+        "line 4: not a valid PLY file: unknown type \"real\""
+    );
+    assert_eq!(
+        say("element vertex 3\nproperty list float int x\n"),
+        "line 4: not a valid PLY file: the list \"x\" is counted by no whole numbers"
+    );
+    assert_eq!(
+        say("elements 3\n"),
+        "line 3: not a valid PLY file: unknown keyword \"elements\" in the header"
+    );
+    assert_eq!(
+        say("format ascii 1.0\n"),
+        "line 3: not a valid PLY file: a second line \"format\""
+    );
+    assert_eq!(
+        message(PLY, "ply\nelement vertex 0\nend_header\n"),
+        "line 3: not a valid PLY file: the header has no line \"format\""
+    );
+    assert_eq!(
+        message(PLY, "ply\nformat ascii 1.0\n"),
+        "line 3: not a valid PLY file: the header has no end"
+    );
+}
+
+#[test]
+fn ply_numbers_that_the_header_does_not_announce_are_refused() {
+    let say = |body: &str| message(PLY, with_header(VERTEX, body));
+    let malformed = "not a valid PLY file: ";
+    for (body, expected) in [
+        (
+            "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n",
+            "line 14: {}a line follows the last element that the header announces",
+        ),
+        (
+            "0 0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+            "line 10: {}vertex 0: the line has more numbers than the header says",
+        ),
+        (
+            "0 0 0\n1 0\n0 1 0\n3 0 1 2\n",
+            "line 11: {}vertex 1: the line has fewer numbers than the header says",
+        ),
+        (
+            "0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
+            "line 13: {}face 0: the line has fewer numbers than the header says",
+        ),
+        (
+            "0 0 0\n1 0 0\n0 1 0\n-1\n",
+            "line 13: {}face 0: \"-1\" is not a whole number from 0 to 255",
+        ),
+        (
+            "0 0 0\n1 0 0\n0 1 0\n3 0 1 2.5\n",
+            "line 13: {}face 0: \"2.5\" is not a whole number from -2147483648 to 2147483647",
+        ),
+        (
+            "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+            "line 13: face 0 names vertex 3, but the mesh has 3 vertices (0 to 2)",
+        ),
+    ] {
+        assert_eq!(say(body), expected.replace("{}", malformed));
+    }
+    for encoding in &ENCODINGS[1..] {
+        let mut file = ply(encoding, true, &SQUARE, &[vec![0, 1, 2]]);
+        file.extend([0; 13]);
+        assert_eq!(
+            message(PLY, &file),
+            "not a valid PLY file: 13 bytes follow the last element that the header announces"
+        );
+    }
+}
+
+#[test]
+fn ply_with_a_byte_order_mark_or_any_end_of_line_is_the_same_mesh() {
+    let plain = with_header(VERTEX, BODY);
+    let mesh = parse(PLY, plain.as_bytes()).unwrap();
+    for end in ["\n", "\r\n", "\r"] {
+        let file = plain.replace('\n', end);
+        assert_eq!(parse(PLY, file.as_bytes()).unwrap(), mesh, "{end:?}");
+        assert_eq!(
+            parse(PLY, format!("\u{feff}{file}").as_bytes()).unwrap(),
+            mesh,
+            "{end:?}"
+        );
+    }
+    // The first byte of binary data may look like a part of the header's last line.
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nend_header\n";
+    for end in ["\n", "\r\n", "\r"] {
+        let mut file = header.replace('\n', end).into_bytes();
+        file.extend(b"\n\r\n");
+        assert_eq!(
+            parse(PLY, &file).unwrap().vertices(),
+            [[10.0, 13.0, 10.0]],
+            "{end:?}"
+        );
+    }
+}
+
+#[test]
+fn ply_lists_and_types_that_are_passed_over_are_checked() {
+    let vertex = "element vertex 1\nproperty list char double a\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
+    let head = format!("ply\nformat ascii 1.0\n{vertex}");
+    let file = |line: &str| format!("{head}{line}\n");
+    assert_eq!(
+        parse(PLY, file("2 1 nan 1 2 3 255").as_bytes())
+            .unwrap()
+            .vertices(),
+        [[1.0, 2.0, 3.0]]
+    );
+    for (line, reason) in [
+        ("0 1 2 3 256", "\"256\" is not a whole number from 0 to 255"),
+        ("1 x 1 2 3 0", "\"x\" is not a number"),
+        ("-1 1 2 3 0", "a list of -1 members"),
+        ("2 1 1 2 3 0", "the line has fewer numbers than the header says"),
+    ] {
+        assert_eq!(
+            message(PLY, file(line)),
+            format!("line 12: not a valid PLY file: vertex 0: {reason}")
+        );
+    }
 }

@@ -1,0 +1,125 @@
+//! The nodes of a glTF document: which are in the scene, and where.
+
+use super::document::{Document, Node};
+use super::malformed;
+use crate::error::Error;
+use crate::io::transform::Transform;
+
+/// More nodes are refused.
+const MOST_NODES: usize = 500_000;
+
+/// Every node of the scene that has a mesh, with its place in the scene, in the order of a depth-first walk.
+pub(super) fn placed(document: &Document) -> Result<Vec<(usize, Transform)>, Error> {
+    let nodes = &document.nodes;
+    if nodes.len() > MOST_NODES {
+        let what = format!("{} nodes; at most {MOST_NODES} are read", nodes.len());
+        return Err(Error::unsupported(super::NAME, what));
+    }
+    check_forest(nodes)?;
+    let mut placed = Vec::new();
+    let mut open: Vec<(usize, Transform)> = Vec::new();
+    for &root in roots(document)?.iter().rev() {
+        open.push((root, Transform::IDENTITY));
+    }
+    while let Some((index, parent)) = open.pop() {
+        let node = nodes.get(index).ok_or_else(|| no_node(index))?;
+        let transform = local(node)
+            .and_then(|local| local.then(&parent))
+            .map_err(|error| error.in_body(name(document, index)))?;
+        if node.mesh.is_some() {
+            placed.push((index, transform));
+        }
+        open.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        if open.len() + placed.len() > 2 * MOST_NODES {
+            return Err(malformed("a scene names a node several times"));
+        }
+    }
+    Ok(placed)
+}
+
+/// The name of a node, or of its mesh, or its number.
+pub(super) fn name(document: &Document, index: usize) -> String {
+    let node = &document.nodes[index];
+    let mesh = node.mesh.and_then(|mesh| document.meshes.get(mesh));
+    let given = node
+        .name
+        .as_ref()
+        .or_else(|| mesh.and_then(|mesh| mesh.name.as_ref()));
+    match given {
+        // Names are printed: control characters could change what is seen on a terminal.
+        Some(name) if !name.is_empty() => name.replace(char::is_control, "\u{fffd}"),
+        _ => format!("node {index}"),
+    }
+}
+
+/// The roots of the default scene, or of the first one; without scenes all nodes that are no children.
+fn roots(document: &Document) -> Result<Vec<usize>, Error> {
+    let chosen = document.scene.unwrap_or(0);
+    match document.scenes.get(chosen) {
+        Some(scene) => {
+            let mut roots = scene.nodes.clone();
+            roots.sort_unstable();
+            roots.dedup();
+            match roots.len() == scene.nodes.len() {
+                true => Ok(scene.nodes.clone()),
+                false => Err(malformed(format!("scene {chosen} names a node twice"))),
+            }
+        }
+        None if document.scenes.is_empty() && document.scene.is_none() => {
+            let mut is_child = vec![false; document.nodes.len()];
+            for &child in document.nodes.iter().flat_map(|node| &node.children) {
+                is_child[child] = true;
+            }
+            Ok((0..document.nodes.len()).filter(|&k| !is_child[k]).collect())
+        }
+        None => Err(malformed(format!("there is no scene {chosen}"))),
+    }
+}
+
+/// Every node must have at most one parent, and none may be its own ancestor.
+fn check_forest(nodes: &[Node]) -> Result<(), Error> {
+    let mut parent = vec![None; nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        for &child in &node.children {
+            let slot = parent.get_mut(child).ok_or_else(|| no_node(child))?;
+            if slot.replace(index).is_some() {
+                return Err(malformed(format!("node {child} is a child twice")));
+            }
+        }
+    }
+    let mut open: Vec<usize> = (0..nodes.len()).filter(|&k| parent[k].is_none()).collect();
+    let mut reached = vec![false; nodes.len()];
+    while let Some(index) = open.pop() {
+        reached[index] = true;
+        open.extend(&nodes[index].children);
+    }
+    match reached.iter().position(|reached| !reached) {
+        None => Ok(()),
+        Some(index) => Err(malformed(format!(
+            "node {index} is its own ancestor, or below such a node"
+        ))),
+    }
+}
+
+fn no_node(index: usize) -> Error {
+    malformed(format!("there is no node {index}"))
+}
+
+fn local(node: &Node) -> Result<Transform, Error> {
+    let Some(m) = node.matrix else {
+        let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        return Transform::new(
+            node.scale.unwrap_or([1.0; 3]),
+            [w, x, y, z],
+            node.translation.unwrap_or_default(),
+        );
+    };
+    if node.translation.is_some() || node.rotation.is_some() || node.scale.is_some() {
+        return Err(malformed("a node has both a matrix and parts of one"));
+    }
+    if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
+        return Err(malformed("the last row of a matrix is not 0, 0, 0, 1"));
+    }
+    let linear = [0, 1, 2].map(|row| [m[row], m[4 + row], m[8 + row]]);
+    Transform::from_matrix(linear, [m[12], m[13], m[14]])
+}

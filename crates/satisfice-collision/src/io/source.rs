@@ -1,0 +1,93 @@
+//! The bytes of files and streams, decompressed where they are gzip.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use flate2::read::MultiGzDecoder;
+
+use crate::error::Error;
+
+/// Streams and compressed files do not say how long they are; more than this is refused rather than filling the memory.
+const STREAM_LIMIT: u64 = 1 << 30;
+const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
+
+/// The contents of a file.
+pub(super) fn file(path: &Path) -> Result<Vec<u8>, Error> {
+    let contents = || {
+        let mut file = File::open(path)?;
+        let mut bytes = Vec::new();
+        // Only regular files have a known end; devices and pipes may have none.
+        if file.metadata()?.is_file() {
+            file.read_to_end(&mut bytes)?;
+        } else {
+            bytes = limited(file, STREAM_LIMIT)?;
+        }
+        decompressed(bytes)
+    };
+    contents().map_err(|source| Error::Unreadable {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// The contents of a stream, e.g. of standard input.
+pub(super) fn stream(stream: impl Read) -> Result<Vec<u8>, Error> {
+    limited(stream, STREAM_LIMIT)
+        .and_then(decompressed)
+        .map_err(|source| Error::Unreadable {
+            path: "-".into(),
+            source,
+        })
+}
+
+fn decompressed(bytes: Vec<u8>) -> io::Result<Vec<u8>> {
+    if bytes.starts_with(&GZIP_MAGIC) {
+        limited(MultiGzDecoder::new(&bytes[..]), STREAM_LIMIT)
+    } else {
+        Ok(bytes)
+    }
+}
+
+fn limited(stream: impl Read, limit: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    if stream.take(limit + 1).read_to_end(&mut bytes)? as u64 > limit {
+        let reason = format!(
+            "more than {limit} bytes from a stream or a compressed file; name an uncompressed file instead"
+        );
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
+    }
+    Ok(bytes)
+}
+
+/// The folder that the names inside a file are relative to.
+pub(super) struct Folder(PathBuf);
+
+impl Folder {
+    pub(super) fn new(path: impl Into<PathBuf>) -> Self {
+        Self(path.into())
+    }
+
+    /// The folder of a file.
+    pub(super) fn of(path: &Path) -> Self {
+        Self(path.parent().map(Path::to_owned).unwrap_or_default())
+    }
+
+    pub(super) fn join(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn streams_end_at_the_limit() {
+        assert_eq!(limited(&[7; 10][..], 10).unwrap(), [7; 10]);
+        let error = limited(io::repeat(7), 10).unwrap_err();
+        assert!(error.to_string().starts_with("more than 10 bytes"), "{error}");
+    }
+}

@@ -1,0 +1,70 @@
+//! Tests of lists of meshes.
+
+use std::fs;
+use std::sync::Arc;
+
+use super::SQUARE;
+use crate::Mesh;
+use crate::io::{read_scene, save_obj};
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let square = Mesh::new(SQUARE.to_vec(), vec![], vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    save_obj(&square, folder.path().join("square.obj")).unwrap();
+    folder
+}
+
+#[test]
+fn lists_in_json_and_toml_name_and_place_meshes() {
+    let folder = folder();
+    let toml = "[[bodies]]\nmesh = \"square.obj\"\n\n[[bodies]]\nmesh = \"square.obj\"\nname = \"big\"\nat = [1, 2.5, 3]\n\
+                rotate = [0, 0, 90]\nscale = 2\n\n[[bodies]]\nmesh = \"square.obj\"\nat = [9, 0, 0]\n";
+    let json = r#"{"bodies": [
+        {"mesh": "square.obj"},
+        {"mesh": "square.obj", "name": "big", "at": [1, 2.5, 3], "rotate": [0, 0, 90], "scale": 2},
+        {"mesh": "square.obj", "at": [9, 0, 0]}
+    ]}"#;
+    for (name, text) in [("scene.toml", toml), ("scene.json", json)] {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let bodies = read_scene(&path).unwrap();
+        let names: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+        assert_eq!(names, ["square", "big", "square.2"]);
+        assert!(Arc::ptr_eq(&bodies[0].mesh, &bodies[2].mesh));
+        assert_eq!(bodies[0].placed().unwrap().vertices(), SQUARE);
+        let [x, y, z] = bodies[1].placed().unwrap().vertex(1);
+        assert!(
+            (x - 1.0).abs() < 1e-15 && (y - 4.5).abs() < 1e-15 && z == 3.0,
+            "{x} {y} {z}"
+        );
+        assert_eq!(bodies[2].placed().unwrap().vertex(2), [10.0, 1.0, 0.0]);
+    }
+}
+
+#[test]
+fn list_errors_name_the_body() {
+    let folder = folder();
+    let say = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let error = read_scene(&path).unwrap_err().to_string();
+        assert!(!error.contains('\n'), "{error}");
+        error.replace(&format!("{}/", folder.path().display()), "")
+    };
+    assert_eq!(
+        say("a.json", r#"{"bodies": [{"mesh": "square.obj", "scale": 0}]}"#),
+        "a.json: body 0: scale = [0.0, 0.0, 0.0] is not allowed: finite numbers other than 0"
+    );
+    assert!(
+        say("a.json", r#"{"bodies": [{"mesh": "none.obj"}]}"#).starts_with("a.json: cannot read none.obj: ")
+    );
+    assert!(say("a.json", r#"{"bodies": [{"mesh": "a.json"}]}"#).contains("a list within a list"));
+    assert!(say("a.json", r#"{"bodies": [{"mash": "a.obj"}]}"#).contains("unknown field `mash`"));
+    assert!(say("a.json", "[]").starts_with("a.json: not a valid list of meshes file: "));
+    let error = say("a.toml", "[[bodies]]\nmesh = \"square.obj\"\nat = [1, 2]\n");
+    assert!(
+        error.starts_with("a.toml: line 3: not a valid list of meshes file: "),
+        "{error}"
+    );
+    assert!(say("a.toml", "[[bodies]]\nmesh = 3\n").contains("line 2"));
+}
