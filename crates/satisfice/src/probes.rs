@@ -24,7 +24,7 @@ const LARGEST_BATCH: u64 = 64;
 const MOST: f64 = 0.5;
 
 /// The probes of one slice.
-#[derive(Debug)]
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Probes {
     share: f64,
     rng: SearchRng,
@@ -36,7 +36,7 @@ pub(crate) struct Probes {
 }
 
 /// A hit that a probe found first.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct First {
     index: usize,
     /// Probes that hit it.
@@ -44,15 +44,6 @@ struct First {
     /// Those that hit the one point that stands for it.
     own: u64,
 }
-
-crate::saved_struct!(First { index, probes, own });
-crate::saved_struct!(Probes {
-    share,
-    rng,
-    due,
-    sample,
-    first
-});
 
 impl Probes {
     /// # Errors

@@ -16,7 +16,8 @@ mod sealed {
 pub trait Real:
     Float
     + FloatConst
-    + crate::state::Saved
+    + serde::Serialize
+    + serde::de::DeserializeOwned
     + Default
     + Debug
     + Display

@@ -10,7 +10,7 @@ use crate::scalar::Real;
 ///
 /// The same seed gives the same numbers on every platform. Numbers are drawn in `Engine::ask` only, in order, so threads
 /// change nothing. Implements [`rand::Rng`], so all of `rand_distr` works on it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SearchRng(Xoshiro256PlusPlus);
 
 impl SearchRng {
@@ -84,22 +84,6 @@ impl rand::TryRng for SearchRng {
     }
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
         self.0.try_fill_bytes(bytes)
-    }
-}
-
-impl crate::state::Saved for SearchRng {
-    fn save(&self, state: &mut crate::state::State) {
-        for word in self.0.state().as_chunks::<8>().0 {
-            state.0.push(u64::from_le_bytes(*word));
-        }
-    }
-    fn restore(from: &mut crate::state::Reader<'_>) -> Result<Self, crate::Error> {
-        let words: [u64; 4] = from.read()?;
-        let mut seed = [0; 32];
-        for (bytes, word) in seed.as_chunks_mut::<8>().0.iter_mut().zip(words) {
-            *bytes = word.to_le_bytes();
-        }
-        Ok(Self(Xoshiro256PlusPlus::from_seed(seed)))
     }
 }
 

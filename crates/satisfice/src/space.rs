@@ -387,8 +387,7 @@ fn bring_inside<S: Real>(x: S, lower: S, end: S, boundary: Boundary) -> S {
 }
 
 /// A closed box of values, inclusive on integer axes too.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Region<S> {
     /// Least value on each axis.
     pub lower: Vec<S>,

@@ -1,197 +1,113 @@
-//! State saved and restored, bit by bit: what a checkpoint keeps of an engine.
+//! The state of an engine, saved and restored bit by bit: a part of every checkpoint.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::error::Error;
-use crate::scalar::Real;
 
-/// A saved state: words of 64 bits. Floats are kept by their bits, so that nothing is rounded and infinities survive.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct State(pub Vec<u64>);
+/// A saved state: bytes in the [postcard](https://docs.rs/postcard) format. Floats keep their bits, so that nothing is
+/// rounded and infinities survive.
+///
+/// ```
+/// use satisfice::state::{Reader, State};
+///
+/// let mut state = State::default();
+/// state.write(&vec![0.1, f64::INFINITY]);
+/// state.write(&7_u64);
+///
+/// let mut reader = Reader::new(&state);
+/// let list: Vec<f64> = reader.read()?;
+/// let number: u64 = reader.read()?;
+/// reader.finish()?;
+/// assert_eq!((list, number), (vec![0.1, f64::INFINITY], 7));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
+pub struct State(pub Vec<u8>);
+
+impl State {
+    /// Appends a value.
+    ///
+    /// # Panics
+    /// If the value's `Serialize` fails, or describes a sequence without its length. Derived implementations do neither.
+    pub fn write<T: Serialize + ?Sized>(&mut self, value: &T) {
+        let bytes = core::mem::take(&mut self.0);
+        self.0 = postcard::to_extend(value, bytes).expect("derived implementations of Serialize do not fail");
+    }
+}
 
 /// Reads a [`State`] from its beginning.
 #[derive(Debug)]
 pub struct Reader<'a> {
-    words: &'a [u64],
+    bytes: &'a [u8],
 }
 
 impl<'a> Reader<'a> {
     /// At the beginning of `state`.
     #[must_use]
     pub fn new(state: &'a State) -> Self {
-        Self { words: &state.0 }
+        Self { bytes: &state.0 }
     }
 
     /// The next value.
     ///
     /// # Errors
-    /// [`Error::State`] where the state is too short or a word is no such value.
+    /// [`Error::State`] where the state ends early or the next bytes are not such a value.
     pub fn read<T: Saved>(&mut self) -> Result<T, Error> {
         T::restore(self)
     }
 
-    /// Says that all has been read.
+    /// Checks that everything has been read.
     ///
     /// # Errors
-    /// [`Error::State`] where words are left.
+    /// [`Error::State`] where bytes are left.
     pub fn finish(self) -> Result<(), Error> {
-        if self.words.is_empty() {
+        if self.bytes.is_empty() {
             Ok(())
         } else {
-            Err(Error::State(format!("{} words are left over", self.words.len())))
+            Err(Error::State(format!("{} bytes are left over", self.bytes.len())))
         }
     }
 
-    fn word(&mut self) -> Result<u64, Error> {
-        let (&first, rest) = self
-            .words
-            .split_first()
-            .ok_or_else(|| Error::State("it ends too early".to_owned()))?;
-        self.words = rest;
-        Ok(first)
+    fn next<T: DeserializeOwned>(&mut self) -> Result<T, Error> {
+        let (value, rest) = postcard::take_from_bytes(self.bytes).map_err(|error| match error {
+            postcard::Error::DeserializeUnexpectedEnd => Error::State("it ends too early".to_owned()),
+            other => Error::State(format!("it is damaged: {other}")),
+        })?;
+        self.bytes = rest;
+        Ok(value)
     }
 }
 
-/// What can be kept in a [`State`].
+/// A value that can be kept in a [`State`]: everything that serde writes and reads.
 pub trait Saved: Sized {
     /// Appends the value.
     fn save(&self, state: &mut State);
     /// Reads it back.
     ///
     /// # Errors
-    /// [`Error::State`] where the next words are no such value.
+    /// [`Error::State`] where the next bytes are not such a value.
     fn restore(from: &mut Reader<'_>) -> Result<Self, Error>;
 }
 
-impl Saved for u64 {
+impl<T: Serialize + DeserializeOwned> Saved for T {
     fn save(&self, state: &mut State) {
-        state.0.push(*self);
+        state.write(self);
     }
     fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        from.word()
+        from.next()
     }
 }
 
-macro_rules! saved_as_word {
-    ($($type:ty),*) => {$(
-        impl Saved for $type {
-            fn save(&self, state: &mut State) {
-                state.0.push(*self as u64);
-            }
-            fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-                let word = from.word()?;
-                Self::try_from(word).map_err(|_| Error::State(format!("{word} is no {}", stringify!($type))))
-            }
-        }
-    )*};
-}
-saved_as_word!(usize, u32, u16, u8);
-
-impl Saved for bool {
-    fn save(&self, state: &mut State) {
-        state.0.push(u64::from(*self));
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        match from.word()? {
-            0 => Ok(false),
-            1 => Ok(true),
-            word => Err(Error::State(format!("{word} is no bool"))),
-        }
-    }
-}
-
-macro_rules! saved_real {
-    ($($type:ty),*) => {$(
-        impl Saved for $type {
-            fn save(&self, state: &mut State) {
-                state.0.push(self.to_word());
-            }
-            fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-                from.word().map(Real::from_word)
-            }
-        }
-    )*};
-}
-saved_real!(f32, f64);
-
-impl<T: Saved> Saved for Vec<T> {
-    fn save(&self, state: &mut State) {
-        Saved::save(&self.len(), state);
-        for item in self {
-            item.save(state);
-        }
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        let length: usize = from.read()?;
-        if length > from.words.len() && length > 0 {
-            return Err(Error::State(format!(
-                "a list of {length} is longer than the rest"
-            )));
-        }
-        (0..length).map(|_| from.read()).collect()
-    }
-}
-
-impl<T: Saved> Saved for std::collections::VecDeque<T> {
-    fn save(&self, state: &mut State) {
-        Saved::save(&self.len(), state);
-        for item in self {
-            item.save(state);
-        }
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        from.read::<Vec<T>>().map(Self::from)
-    }
-}
-
-impl<T: Saved> Saved for Option<T> {
-    fn save(&self, state: &mut State) {
-        Saved::save(&self.is_some(), state);
-        if let Some(item) = self {
-            item.save(state);
-        }
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        if from.read()? {
-            from.read().map(Some)
-        } else {
-            Ok(None)
-        }
-    }
-}
-
-impl<T: Saved, U: Saved> Saved for (T, U) {
-    fn save(&self, state: &mut State) {
-        self.0.save(state);
-        self.1.save(state);
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        Ok((from.read()?, from.read()?))
-    }
-}
-
-impl<T: Saved, const N: usize> Saved for [T; N] {
-    fn save(&self, state: &mut State) {
-        for item in self {
-            item.save(state);
-        }
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        let items: Vec<T> = (0..N).map(|_| from.read()).collect::<Result<_, _>>()?;
-        items
-            .try_into()
-            .map_err(|_| Error::State("an array of another length".to_owned()))
-    }
-}
-
-/// What is saved and restored in place, into a value that has the same settings: everything that is [`Saved`], and parts of
-/// engines by [`saved_fields!`](crate::saved_fields).
+/// A part of an engine that is saved and restored in place, into a part with the same settings: everything that is
+/// [`Saved`], and parts with [`saved_fields!`](crate::saved_fields).
 pub trait Part {
-    /// Appends all that changes.
+    /// Appends everything that changes.
     fn save(&self, state: &mut State);
     /// Reads it back.
     ///
     /// # Errors
-    /// [`Error::State`] where the next words do not fit.
+    /// [`Error::State`] where the next bytes do not fit.
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error>;
 }
 
@@ -205,10 +121,10 @@ impl<T: Saved> Part for T {
     }
 }
 
-/// Writes `save` and `restore` of [`Engine`](crate::Engine) or of [`Part`] for the named fields: the ones that change while
-/// it runs. Every field of that kind has to be named; the conformance suite finds a forgotten one.
+/// Writes `save` and `restore` of [`Engine`](crate::Engine) or of [`Part`] for the named fields: those that change while
+/// the engine runs. Settings are not saved. The conformance suite finds a forgotten field.
 ///
-/// With `; check` behind the fields, `self.check()?` says whether restored fields fit each other.
+/// With `; check` after the fields, `self.check()?` decides whether the restored fields fit each other.
 #[macro_export]
 macro_rules! saved_fields {
     ($($field:ident),* $(,)? $(; $check:ident)?) => {
@@ -225,17 +141,51 @@ macro_rules! saved_fields {
     };
 }
 
-/// Implements [`Saved`] for a struct by its fields, all of them.
-#[macro_export]
-macro_rules! saved_struct {
-    ($name:ident $(<$generic:ident: $bound:path>)? { $($field:ident),* $(,)? }) => {
-        impl $(<$generic: $bound + $crate::state::Saved>)? $crate::state::Saved for $name $(<$generic>)? {
-            fn save(&self, state: &mut $crate::state::State) {
-                $($crate::state::Saved::save(&self.$field, state);)*
-            }
-            fn restore(from: &mut $crate::state::Reader<'_>) -> Result<Self, $crate::Error> {
-                Ok(Self { $($field: from.read()?),* })
-            }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn floats_keep_their_bits() {
+        let values = [
+            -0.0,
+            f64::from_bits(0x7ff8_0000_0000_1234),
+            5e-324,
+            f64::NEG_INFINITY,
+            0.1,
+        ];
+        let mut state = State::default();
+        state.write(&values);
+        let mut reader = Reader::new(&state);
+        let back: [f64; 5] = reader.read().unwrap();
+        assert_eq!(back.map(f64::to_bits), values.map(f64::to_bits));
+        assert!(reader.finish().is_ok());
+    }
+
+    #[test]
+    fn a_state_that_is_cut_short_or_too_long_is_refused() {
+        let mut state = State::default();
+        state.write(&vec![1.5_f32; 3]);
+        for length in 0..state.0.len() {
+            let cut = State(state.0[..length].to_vec());
+            assert!(Reader::new(&cut).read::<Vec<f32>>().is_err(), "{length}");
         }
-    };
+        state.write(&true);
+        let mut reader = Reader::new(&state);
+        assert!(reader.read::<Vec<f32>>().is_ok());
+        assert!(
+            reader
+                .finish()
+                .unwrap_err()
+                .to_string()
+                .contains("1 bytes are left over")
+        );
+    }
+
+    #[test]
+    fn a_list_said_to_be_longer_than_the_state_takes_no_memory() {
+        let mut state = State::default();
+        state.write(&u64::MAX);
+        assert!(Reader::new(&state).read::<Vec<u64>>().is_err());
+    }
 }

@@ -83,7 +83,7 @@ impl core::fmt::Display for Unseen {
 }
 
 /// What the probes of a slice found, counted.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Sample {
     /// N, where the space is a lattice.
     pub(crate) points: Option<f64>,
@@ -107,20 +107,6 @@ pub(crate) struct Sample {
     /// Points of the lattice do not stand for solutions one to one.
     pub(crate) blurred: bool,
 }
-
-crate::saved_struct!(Sample {
-    points,
-    known,
-    probes,
-    recaptures,
-    fresh,
-    own_recaptures,
-    own_fresh,
-    distinct,
-    once,
-    twice,
-    blurred,
-});
 
 impl Sample {
     pub(crate) fn estimate(&self) -> Option<Unseen> {

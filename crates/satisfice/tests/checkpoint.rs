@@ -377,7 +377,7 @@ fn damage_is_found() {
     for word in (0..words).step_by(7) {
         let mut changed = saved.clone();
         let bits = changed["state"][word].as_u64().unwrap();
-        changed["state"][word] = (bits ^ 1 << (word % 64)).into();
+        changed["state"][word] = (bits ^ 1 << (word % 8)).into();
         assert!(resumed(changed).is_err(), "word {word}");
         let mut cut = saved.clone();
         cut["state"].as_array_mut().unwrap().remove(word);

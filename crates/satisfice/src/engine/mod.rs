@@ -30,7 +30,7 @@ pub use swarm::{
 };
 
 /// What an engine says after proposing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Ask {
     /// There is more to come.
     More,
@@ -121,7 +121,7 @@ pub trait Steps<S> {
 }
 
 /// Who proposed a batch that an engine is told of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Origin {
     /// The engine itself: the points are those of its last `ask`, in order.
     Engine,

@@ -9,7 +9,7 @@ use crate::batch::Batch;
 use crate::budget::{Budget, Cancel, StopReason};
 use crate::candidates::Candidates;
 use crate::catalogue::Description;
-use crate::engine::{Ask, ConfiguredEngine, Origin, WarmStart};
+use crate::engine::{ConfiguredEngine, Origin, WarmStart};
 use crate::error::Error;
 use crate::evaluate::Ledger;
 use crate::identity::Identity;
@@ -94,49 +94,13 @@ pub struct Unfinished<T> {
 }
 
 /// A batch that was proposed and not settled.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct Pending<S> {
     origin: Origin,
     probing: bool,
     positions: Vec<S>,
     /// Fitness of what had to be evaluated, as far as it was computed.
     computed: Vec<Option<S>>,
-}
-
-impl<S: Real> Saved for Pending<S> {
-    fn save(&self, state: &mut State) {
-        (self.origin == Origin::WarmStart).save(state);
-        self.probing.save(state);
-        self.positions.save(state);
-        self.computed.save(state);
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        let warm: bool = from.read()?;
-        Ok(Self {
-            origin: if warm { Origin::WarmStart } else { Origin::Engine },
-            probing: from.read()?,
-            positions: from.read()?,
-            computed: from.read()?,
-        })
-    }
-}
-
-impl Saved for Ask {
-    fn save(&self, state: &mut State) {
-        let word: u8 = match self {
-            Self::More => 0,
-            Self::Exhausted => 1,
-            Self::Covered => 2,
-        };
-        word.save(state);
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        match from.read::<u8>()? {
-            0 => Ok(Self::More),
-            1 => Ok(Self::Exhausted),
-            2 => Ok(Self::Covered),
-            word => Err(Error::State(format!("{word} is no answer of an engine"))),
-        }
-    }
 }
 
 /// Where checkpoints go while a slice runs, and how often.
@@ -443,10 +407,12 @@ fn named(description: &Description) -> String {
     format!("{} {{{}}}", description.name, parameters.join(", "))
 }
 
-/// FNV-1a over words (Fowler, Noll, Vo 1991): finds damage, not malice.
+/// FNV-1a over bytes (Fowler, Noll, Vo 1991): finds damage, not malice.
 fn checksum(state: &State, slice: Option<&State>) -> u64 {
-    let words = state.0.iter().chain(slice.into_iter().flat_map(|state| &state.0));
-    words.fold(0xcbf2_9ce4_8422_2325, |hash, &word| {
-        (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29)
+    let bytes = state.0.iter().chain(slice.into_iter().flat_map(|state| &state.0));
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte))
+            .wrapping_mul(0x0000_0100_0000_01b3)
+            .rotate_left(29)
     })
 }

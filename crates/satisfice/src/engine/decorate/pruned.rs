@@ -21,7 +21,7 @@ const ROUNDS: usize = 32;
 const RESOLUTION: f64 = 1e-9;
 
 /// A node of the tree: a leaf where it has no axis.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Cell<S> {
     /// The axis that is split, its number from 1.
     axis: usize,
@@ -35,8 +35,6 @@ struct Cell<S> {
     /// Live share of the space.
     live: f64,
 }
-crate::saved_struct!(Cell<S: Real> { axis, at, lower, visits, dead, live });
-
 /// An engine and the regions that it is kept out of.
 pub(in crate::engine) struct Pruned<S> {
     inner: Box<dyn Engine<S>>,

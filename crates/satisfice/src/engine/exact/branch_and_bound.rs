@@ -251,16 +251,9 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
     fn save(&self, state: &mut State) {
         self.started.save(state);
         // The order in the heap does not matter: nodes are totally ordered.
-        self.best_first.as_slice().len().save(state);
-        for node in self.best_first.as_slice() {
-            node.save(state);
-        }
+        self.best_first.save(state);
         self.depth_first.save(state);
-        self.proposed.len().save(state);
-        for (place, node) in &self.proposed {
-            place.save(state);
-            node.save(state);
-        }
+        self.proposed.save(state);
         self.too_small.save(state);
         self.next_index.save(state);
         self.unanswered.save(state);
@@ -270,14 +263,9 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         self.started = from.read()?;
-        self.best_first = Vec::restore(from)?.into();
+        self.best_first = from.read()?;
         self.depth_first = from.read()?;
-        let proposed: usize = from.read()?;
-        self.proposed.clear();
-        for _ in 0..proposed {
-            let place = from.read()?;
-            self.proposed.push((place, from.read()?));
-        }
+        self.proposed = from.read()?;
         self.too_small = from.read()?;
         self.next_index = from.read()?;
         self.unanswered = from.read()?;

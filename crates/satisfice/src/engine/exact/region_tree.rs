@@ -6,7 +6,7 @@ use crate::scalar::Real;
 use crate::space::{Region, Space};
 
 /// A region with its bound, as it waits for its turn.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(in crate::engine) struct Node<S> {
     pub(in crate::engine) bound: S,
     /// F at a point inside, infinite where that is not known.
@@ -14,9 +14,6 @@ pub(in crate::engine) struct Node<S> {
     pub(in crate::engine) index: u64,
     pub(in crate::engine) region: Region<S>,
 }
-
-crate::saved_struct!(Node<S: Real> { bound, guide, index, region });
-crate::saved_struct!(Region<S: Real> { lower, upper });
 
 impl<S: Real> Node<S> {
     /// Number of points where that is finite, as a real.

@@ -13,7 +13,7 @@ const STALL: f64 = 0.44;
 const SMOOTHING: f64 = 1.0 / 12.0;
 
 /// The mutation distribution sigma A N(0, I), in units of the axes' widths.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(in crate::engine) struct Mutation {
     dimension: usize,
     pub(in crate::engine) sigma: f64,
@@ -26,17 +26,6 @@ pub(in crate::engine) struct Mutation {
     draw: Vec<f64>,
     step: Vec<f64>,
 }
-
-crate::saved_struct!(Mutation {
-    dimension,
-    sigma,
-    success,
-    path,
-    factor,
-    inverse,
-    draw,
-    step
-});
 
 impl Mutation {
     /// Isotropic, with this step size. Memory is reused.

@@ -46,7 +46,7 @@ pub(in crate::engine) fn recombine<S: Real>(hits: &[S], rng: &mut SearchRng, pos
 }
 
 /// Goes through all pairs of a growing list of hits, each once, the two exchanges of a pair one after the other.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(in crate::engine) struct Pairs {
     /// The later and the earlier hit of the pair that is next.
     later: usize,
@@ -54,12 +54,6 @@ pub(in crate::engine) struct Pairs {
     /// The axes that the last exchange has swapped; the next one swaps the others. Empty where a new pair is next.
     swapped: Vec<bool>,
 }
-
-crate::saved_struct!(Pairs {
-    later,
-    earlier,
-    swapped
-});
 
 impl Pairs {
     /// Whether a list of so many hits has pairs that have not been visited.

@@ -56,7 +56,7 @@ const MISSES: usize = 16;
 const LOOKS: usize = 8;
 
 /// One local search: keeps its best point, accepts what is no worse.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Climb<S> {
     position: Vec<S>,
     fitness: S,
@@ -67,16 +67,12 @@ struct Climb<S> {
     mutation: Mutation,
 }
 
-crate::saved_struct!(Climb<S: Real> { position, fitness, running, barren, patience, mutation });
-
 /// A recombination that was no hit.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Miss<S> {
     position: Vec<S>,
     fitness: S,
 }
-
-crate::saved_struct!(Miss<S: Real> { position, fitness });
 
 /// The engine of [`RestartedCmaEs`].
 #[derive(Debug)]

@@ -14,20 +14,13 @@ const PRIOR_HITS: f64 = 0.25;
 const PRIOR_EVALUATIONS: f64 = 20.0;
 
 /// What one source has yielded lately, and in all.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(in crate::engine) struct Arm {
     hits: f64,
     evaluations: f64,
     pub(in crate::engine) total_hits: u64,
     pub(in crate::engine) total_evaluations: u64,
 }
-
-crate::saved_struct!(Arm {
-    hits,
-    evaluations,
-    total_hits,
-    total_evaluations
-});
 
 impl Arm {
     /// Books one candidate.

@@ -28,7 +28,7 @@ const REFINED: u64 = 4;
 const DRAWS: usize = 4;
 
 /// One local search: keeps its best point, accepts what is no worse.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Climber<S> {
     position: Vec<S>,
     fitness: S,
@@ -42,10 +42,6 @@ struct Climber<S> {
     /// The last move, none from a start.
     last: Option<Move>,
 }
-
-crate::saved_struct!(Climber<S: Real> {
-    position, fitness, running, barren, patience, mutation, neighbours, listed, last
-});
 
 /// Restarted local search by adaptive [`Moves`]: along integer axes, to neighbours that the problem names, and by a
 /// [`Mutation`] that adapts its covariance along continuous axes.

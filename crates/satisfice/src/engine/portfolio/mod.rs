@@ -132,7 +132,7 @@ impl EngineConfig for Portfolio {
 const VAIN: usize = 100;
 
 /// Where a candidate comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 enum Source {
     Uniform,
     Swarm,
@@ -170,22 +170,6 @@ fn arm_of(source: Source) -> Option<usize> {
         Source::Cross => Some(CROSS),
         Source::Member => Some(MEMBER),
         Source::Step | Source::Neighbour | Source::NearMiss => None,
-    }
-}
-
-impl Saved for Source {
-    fn save(&self, state: &mut State) {
-        (*self as u64).save(state);
-    }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        use Source::{Climber, Cross, Member, NearMiss, Neighbour, Step, Swarm, Trial, Uniform};
-        let all = [
-            Uniform, Swarm, Climber, Step, Trial, Cross, Member, Neighbour, NearMiss,
-        ];
-        let word: usize = from.read()?;
-        all.get(word)
-            .copied()
-            .ok_or_else(|| Error::State(format!("{word} is no source")))
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
-use crate::state::{Reader, Saved, State};
 
 /// The kinds of moves: so many on integer axes, then the two others.
 const LATTICE: usize = 6;
@@ -14,7 +13,8 @@ const FLOOR: f64 = 0.02;
 const MEMORY: f64 = 500.0;
 
 /// A kind of move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "usize", from = "usize")]
 pub(super) enum Move {
     /// Along integer axes, in one of several ways.
     Lattice(usize),
@@ -42,23 +42,25 @@ impl Move {
     }
 }
 
-impl Saved for Move {
-    fn save(&self, state: &mut State) {
-        self.index().save(state);
+impl From<Move> for usize {
+    fn from(kind: Move) -> Self {
+        kind.index()
     }
-    fn restore(from: &mut Reader<'_>) -> Result<Self, crate::Error> {
-        from.read().map(Self::of)
+}
+
+/// Every number is a move, so that a damaged state leads to no other.
+impl From<usize> for Move {
+    fn from(index: usize) -> Self {
+        Self::of(index)
     }
 }
 
 /// Adaptive choice among moves: probability matching on the rate of strict improvements (Fialho 2010, chapter 3).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct Moves {
     trials: [f64; KINDS],
     improvements: [f64; KINDS],
 }
-
-crate::saved_struct!(Moves { trials, improvements });
 
 impl Default for Moves {
     fn default() -> Self {

@@ -8,13 +8,11 @@ const MOST: usize = 8192;
 const MEMORY: f64 = 128.0;
 
 /// Points that were evaluated and missed, with their fitness.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 struct Misses<S> {
     fitness: Vec<f64>,
     positions: Vec<S>,
 }
-
-crate::saved_struct!(Misses<S: Real> { fitness, positions });
 
 impl<S: Real> Misses<S> {
     fn push(&mut self, fitness: f64, position: &[S]) {
@@ -44,7 +42,7 @@ impl<S: Real> Misses<S> {
 }
 
 /// The near misses of the slice before, best first, and those of this one.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct NearMisses<S> {
     before: Misses<S>,
     /// The next one of these.
@@ -55,8 +53,6 @@ pub(super) struct NearMisses<S> {
     trials: f64,
     hits: f64,
 }
-
-crate::saved_struct!(NearMisses<S: Real> { before, cursor, now, bound, trials, hits });
 
 impl<S: Real> NearMisses<S> {
     pub(super) fn new() -> Self {

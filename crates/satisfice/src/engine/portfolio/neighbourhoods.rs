@@ -18,7 +18,7 @@ const MOST: usize = 1 << 20;
 const UNEXPANDED: u32 = u32::MAX;
 
 /// A neighbour of evaluated points.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct Candidate {
     key: u64,
     /// Sum of the fitness of its expanded neighbours, and how many they are; once it is evaluated, its own fitness.
@@ -27,15 +27,8 @@ struct Candidate {
     proposed: bool,
 }
 
-crate::saved_struct!(Candidate {
-    key,
-    sum,
-    count,
-    proposed
-});
-
 /// An entry of the queue, best first: predicted fitness as ordered bits, then the order of entry.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 struct Entry {
     /// Complemented, because the heap gives its greatest.
     unfitness: u64,
@@ -44,13 +37,6 @@ struct Entry {
     /// The candidate's count at entry: an entry that a later one has replaced is passed over. Or [`UNEXPANDED`].
     count: u32,
 }
-
-crate::saved_struct!(Entry {
-    unfitness,
-    unage,
-    candidate,
-    count
-});
 
 /// The graph that the problem's neighbours span, explored from the hits, the candidate with the least predicted fitness
 /// first.

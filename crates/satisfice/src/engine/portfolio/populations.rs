@@ -23,7 +23,7 @@ const HOPELESS: f64 = 1e4;
 const LARGEST: usize = 1 << 12;
 
 /// One population: a mean, a step size sigma as a share of the axes, and a matrix M of the mutations sigma M N(0, I).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 struct Population<S> {
     running: bool,
     mean: Vec<S>,
@@ -44,11 +44,6 @@ struct Population<S> {
     /// Generations since the best fell.
     barren: usize,
 }
-
-crate::saved_struct!(Population<S: Real> {
-    running, mean, sigma, matrix, path, draws, steps, fitness, proposed, told, weights, order, turned,
-    best, barren
-});
 
 /// Restarted populations. The sizes follow the universal restart sequence; the starts are spread over the space by an additive
 /// recurrence, which meets every slice of an axis in turn where independent draws leave out one in three.

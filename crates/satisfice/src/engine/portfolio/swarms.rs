@@ -12,7 +12,7 @@ use crate::state::Saved;
 const DRAWS: usize = 4;
 
 /// One swarm of a few particles.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct SubSwarm<S> {
     positions: Vec<S>,
     bests: Vec<S>,
@@ -27,10 +27,6 @@ struct SubSwarm<S> {
     /// Evaluations since its last hit.
     barren: usize,
 }
-
-crate::saved_struct!(SubSwarm<S: Real> {
-    positions, bests, best_fitness, mean, latest_hit, has_hit, turn, unborn, barren
-});
 
 /// K swarms of N particles that take turns. Sharing the latest hit between them would destroy their gain: each works in a
 /// region of its own, until it has been barren for too long and starts anew.

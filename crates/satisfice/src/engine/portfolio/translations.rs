@@ -13,7 +13,7 @@ const MOST: usize = 128;
 const MEMORY: f64 = 400.0;
 
 /// A step and how it has fared.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Step {
     trials: f64,
     hits: f64,
@@ -21,27 +21,12 @@ struct Step {
     cursor: usize,
 }
 
-crate::saved_struct!(Step { trials, hits, cursor });
-
 /// The steps, each with a cursor into the list of hits: every step meets every hit once, best steps first. Memory: O(steps),
 /// not O(hits x steps).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Translations<S> {
     vectors: Vec<S>,
     steps: Vec<Step>,
-}
-
-impl<S: Real> crate::state::Saved for Translations<S> {
-    fn save(&self, state: &mut crate::state::State) {
-        self.vectors.save(state);
-        self.steps.save(state);
-    }
-    fn restore(from: &mut crate::state::Reader<'_>) -> Result<Self, crate::Error> {
-        Ok(Self {
-            vectors: from.read()?,
-            steps: from.read()?,
-        })
-    }
 }
 
 impl<S: Real> Translations<S> {

@@ -17,7 +17,7 @@ const EMPTY: u64 = u64::MAX;
 /// more).
 ///
 /// Cost: a multiplication an axis and a cache line or two. Memory: about 16 to 32 bytes a point, 8 KiB at least.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Visited {
     shards: Vec<Shard>,
     points: usize,
@@ -26,21 +26,12 @@ pub(super) struct Visited {
     cardinality: Option<u64>,
 }
 
-crate::saved_struct!(Visited {
-    shards,
-    points,
-    forgot,
-    cardinality
-});
-
 /// A table with open addressing and linear probing, at most half full.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Shard {
     slots: Vec<u64>,
     points: usize,
 }
-
-crate::saved_struct!(Shard { slots, points });
 
 /// What became of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

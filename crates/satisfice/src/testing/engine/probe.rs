@@ -120,7 +120,7 @@ impl<S: Real> Restored<S> {
                 let mut reader = Reader::new(&cut);
                 if next.restore(&mut reader).and_then(|()| reader.finish()).is_ok() {
                     self.findings
-                        .add(|| format!("{length} of {} words were enough", state.0.len()));
+                        .add(|| format!("{length} of {} bytes were enough", state.0.len()));
                 }
             }
         }
