@@ -1,4 +1,4 @@
-//! The conformance suite of engines: what every engine keeps to, whatever it does.
+//! The conformance suite of engines: the laws that every engine keeps.
 //!
 //! ```
 //! use satisfice::{engine, testing};
@@ -29,31 +29,32 @@ pub enum Law {
     Proposals,
     /// Every candidate is inside the bounds, and whole on integer axes.
     Inside,
-    /// A report's numbers fit each other and what the problem has seen; its hits are hits, and distinct.
-    Books,
+    /// The numbers of a report agree with each other and with the calls of the problem; its hits are hits, and distinct.
+    Accounting,
     /// A budget of evaluations is kept exactly, unless the engine has nothing more to propose.
     Budget,
     /// The same seed gives the same report.
     SameSeed,
-    /// So it does where points are evaluated by hand, whether or not the engine [advances](crate::engine::Engine::advance).
+    /// The same holds where points are evaluated by hand, whether or not the engine
+    /// [advances](crate::engine::Engine::advance).
     ByHand,
-    /// So it does on any number of threads (feature `rayon`).
+    /// The same holds on any number of threads (feature `rayon`).
     Threads,
     /// A short run is the beginning of a long one; under one horizon where a schedule follows the budget.
     Prefix,
-    /// Fitness of NaN and of either infinity is the same to the search, and harmless.
+    /// NaN and both infinities have the same, harmless effect as a fitness.
     NonFinite,
     /// An easy problem has hits, at least a quarter of all and no more than there are; under thresholds of 0 and below too.
     HitCount,
-    /// An engine saved and restored at any time goes on as if nothing had been, and refuses a state that is cut short.
+    /// An engine that is saved and restored at any time continues as without, and refuses a truncated state.
     Restore,
     /// A search goes on with a second slice, under each rule of warm starts.
     Slices,
-    /// Who says that the space is covered has covered it.
+    /// An engine that says that the space is covered has covered it.
     Covered,
 }
 
-/// What the suite reports.
+/// A law that an engine breaks.
 pub type Violation = super::Violation<Law>;
 
 /// Evaluations of an ordinary run.
@@ -130,7 +131,7 @@ impl<S: Real> Suite<'_, S> {
         Ok(Search::new(self.engine.clone()).seed(42))
     }
 
-    /// A run by the engine, its books audited.
+    /// A run by the engine; its report is audited.
     fn run(&mut self, case: &Case<S>, budget: &Budget) -> Result<Report<Located<S>>, Error> {
         let mut search = self.search()?;
         self.run_by(&mut search, case, budget)
@@ -149,7 +150,7 @@ impl<S: Real> Suite<'_, S> {
         }
     }
 
-    /// A slice of this search, its books audited.
+    /// A slice of this search; its report is audited.
     fn run_by(
         &mut self,
         search: &mut Search<S, Located<S>>,

@@ -184,4 +184,44 @@ mod tests {
             }
         }
     }
+
+    /// Igel, Suttorp, Hansen 2006: p := (1 - c) p + c [success], sigma := sigma exp((p - pt) / (d (1 - pt))), with c = 1/12,
+    /// pt = 2/11, d = 1 + n/2.
+    #[test]
+    fn the_step_size_follows_the_success_rate() {
+        let mut mutation = Mutation::default();
+        mutation.reset(4, 0.5);
+        let (mut rate, mut sigma): (f64, f64) = (2.0 / 11.0, 0.5);
+        for success in [false, true, true, false, false, true] {
+            let mut position = [0.0_f64; 4];
+            mutation.apply(&mut SearchRng::new(1), core::iter::repeat(1.0), &mut position);
+            mutation.adapt(success);
+            rate = (11.0 * rate + f64::from(u8::from(success))) / 12.0;
+            sigma *= ((rate - 2.0 / 11.0) / (3.0 * (9.0 / 11.0))).exp();
+            approx::assert_relative_eq!(mutation.success, rate, max_relative = 1e-13);
+            approx::assert_relative_eq!(mutation.sigma, sigma, max_relative = 1e-13);
+        }
+    }
+
+    /// A first success below the stall threshold: C := (1 - ccov) C + ccov p p^T with p = sqrt(cc (2 - cc)) y, where y is the
+    /// step, cc = 2 / (n + 2) and ccov = 2 / (n^2 + 6).
+    #[test]
+    fn the_covariance_takes_up_the_path() {
+        let mut mutation = Mutation::default();
+        mutation.reset(2, 1.0);
+        let mut y = [0.0_f64; 2];
+        mutation.apply(&mut SearchRng::new(9), core::iter::repeat(1.0), &mut y);
+        mutation.adapt(true);
+        let square = 0.5 * (2.0 - 0.5); // cc (2 - cc)
+        let ccov = 0.2;
+        let a = &mutation.factor;
+        for i in 0..2 {
+            for j in 0..2 {
+                let covariance = a[2 * i] * a[2 * j] + a[2 * i + 1] * a[2 * j + 1];
+                let identity = f64::from(u8::from(i == j));
+                let expected = (1.0 - ccov) * identity + ccov * square * y[i] * y[j];
+                approx::assert_relative_eq!(covariance, expected, max_relative = 1e-12, epsilon = 1e-12);
+            }
+        }
+    }
 }

@@ -62,7 +62,7 @@ struct Climb<S> {
     fitness: S,
     running: bool,
     /// Evaluations since the last improvement, and how many end the search.
-    barren: u64,
+    stalled: u64,
     patience: u64,
     mutation: Mutation,
 }
@@ -100,7 +100,7 @@ impl<S: Real> Searches<S> {
             position: Vec::new(),
             fitness: S::infinity(),
             running: false,
-            barren: 0,
+            stalled: 0,
             patience: 0,
             mutation: Mutation::default(),
         };
@@ -133,7 +133,7 @@ impl<S: Real> Searches<S> {
                 out.push(&self.position);
             } else {
                 // Paid like a miss: looking costs time, and a source that has run dry is not to be asked for ever.
-                self.arms[1].book(false);
+                self.arms[1].count(false);
             }
         }
     }
@@ -144,7 +144,7 @@ impl<S: Real> Searches<S> {
         let climb = &mut self.climbs[index];
         let dimension = space.dimension();
         climb.running = true;
-        climb.barren = 0;
+        climb.stalled = 0;
         climb.patience = luby(self.restarts)
             .saturating_mul(self.patience)
             .saturating_mul(dimension as u64);
@@ -197,16 +197,16 @@ impl<S: Real> Searches<S> {
 impl<S: Real> Climb<S> {
     /// Takes what became of a step.
     fn learn(&mut self, position: &[S], outcome: Outcome<S>, converged: f64) {
-        // A hit is found; a known hit shows that this basin is.
+        // The basin's hit is found, or was found before.
         if outcome.is_hit() || outcome == Outcome::Deleted {
             self.running = false;
             return;
         }
         let fitness = outcome.fitness();
-        self.barren = if fitness < self.fitness {
+        self.stalled = if fitness < self.fitness {
             0
         } else {
-            self.barren + 1
+            self.stalled + 1
         };
         let no_worse = fitness <= self.fitness;
         if self.fitness < S::infinity() {
@@ -217,7 +217,7 @@ impl<S: Real> Climb<S> {
             self.position.copy_from_slice(position);
             self.fitness = fitness;
         }
-        self.running = self.mutation.sigma >= converged && self.barren <= self.patience;
+        self.running = self.mutation.sigma >= converged && self.stalled <= self.patience;
     }
 }
 
@@ -291,10 +291,10 @@ impl<S: Real> Engine<S> for Searches<S> {
         }
         for (i, (position, &outcome)) in batch.points().zip(outcomes).enumerate() {
             if i < self.stepped {
-                self.arms[0].book(outcome.is_hit());
+                self.arms[0].count(outcome.is_hit());
                 self.climbs[i].learn(position, outcome, converged);
             } else {
-                self.arms[1].book(outcome.is_hit());
+                self.arms[1].count(outcome.is_hit());
                 if let Outcome::Miss(fitness) = outcome {
                     self.keep(position, fitness);
                 }

@@ -84,3 +84,40 @@ impl<S: Real> Engine<S> for LatestHitWalk<S> {
 
     crate::saved_fields!(latest_hit);
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::Walk;
+    use crate::{Budget, Search, Space, from_fn};
+
+    /// A step is s U(-1, 1) with s = q^u, q = 1e-4 the shortest and u ~ U(0, 1), in units of the axis. It is shorter than t with
+    /// probability 1 - ln(t) / ln(q) + (t - 1) / ln(q), integrated over u.
+    #[test]
+    fn lengths_of_steps_are_log_uniform() {
+        let visited = Mutex::new(Vec::new());
+        // Every point is a hit, so that each step starts at the point before.
+        let problem = from_fn(Space::cube(1, -1.0, 1.0).unwrap(), 1.0, |x: &[f64]| {
+            visited.lock().unwrap().push(x[0]);
+            0.0
+        })
+        .separation(0.0);
+        let settings = Walk {
+            uniform: 0.0,
+            ..Walk::default()
+        };
+        let budget = Budget::evaluations(20_000);
+        Search::new(settings).probes(0.0).run(&problem, &budget).unwrap();
+        let visited = visited.into_inner().unwrap();
+        let logarithm = 1e-4_f64.ln();
+        for t in [1e-3_f64, 1e-2, 1e-1] {
+            let shorter = visited
+                .windows(2)
+                .filter(|pair| (pair[1] - pair[0]).abs() / 2.0 < t)
+                .count();
+            let expected = 1.0 - t.ln() / logarithm + (t - 1.0) / logarithm;
+            approx::assert_abs_diff_eq!(shorter as f64 / visited.len() as f64, expected, epsilon = 0.02);
+        }
+    }
+}

@@ -23,9 +23,9 @@ pub(in crate::engine) struct Arm {
 }
 
 impl Arm {
-    /// Books one candidate.
+    /// Counts one candidate.
     #[inline]
-    pub(in crate::engine) fn book(&mut self, hit: bool) {
+    pub(in crate::engine) fn count(&mut self, hit: bool) {
         self.evaluations += 1.0;
         self.hits += f64::from(u8::from(hit));
         self.total_evaluations += 1;
@@ -73,12 +73,39 @@ mod tests {
             } else {
                 (&mut bad, 0.005)
             };
-            arm.book(rng.uniform() < rate);
+            arm.count(rng.uniform() < rate);
             let mut arms = [good, bad];
             Arm::fade(&mut arms, 1);
             [good, bad] = arms;
             pulls[usize::from(choose_good)] += 1;
         }
         assert!(pulls[1] > 4 * pulls[0] && pulls[0] > 100, "{pulls:?}");
+    }
+
+    /// The posterior of hits h and evaluations n with a prior of (1/4, 20) is Gamma(h + 1/4, n + 20): mean (h + 1/4) / (n + 20),
+    /// variance (h + 1/4) / (n + 20)^2.
+    #[test]
+    fn an_arm_is_drawn_from_its_posterior() {
+        let mut arm = Arm::default();
+        for i in 0..80 {
+            arm.count(i % 10 == 0);
+        }
+        let mut rng = SearchRng::new(2);
+        let draws: Vec<f64> = (0..40_000).map(|_| arm.draw(&mut rng)).collect();
+        let mean = draws.iter().sum::<f64>() / 40_000.0;
+        let variance = draws.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 40_000.0;
+        approx::assert_relative_eq!(mean, 8.25 / 100.0, max_relative = 0.01);
+        approx::assert_relative_eq!(variance, 8.25 / 10_000.0, max_relative = 0.05);
+    }
+
+    #[test]
+    fn the_past_fades_by_1_over_e_in_the_memory_of_a_thousand() {
+        let mut arms = [Arm::default()];
+        for _ in 0..10 {
+            arms[0].count(true);
+        }
+        Arm::fade(&mut arms, 1000);
+        approx::assert_relative_eq!(arms[0].hits, 10.0 / core::f64::consts::E, max_relative = 1e-14);
+        assert_eq!(arms[0].total_hits, 10);
     }
 }

@@ -10,7 +10,7 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::Saved;
 
-/// Barren evaluations an axis after which the shortest of the restart sequence's runs ends.
+/// Evaluations without improvement, for each axis, after which the shortest run of the restart sequence ends.
 const PATIENCE: u64 = 8;
 /// Likewise, this many times the number of neighbours.
 const NEIGHBOUR_PATIENCE: u64 = 2;
@@ -33,7 +33,7 @@ struct Climber<S> {
     position: Vec<S>,
     fitness: S,
     running: bool,
-    barren: u64,
+    stalled: u64,
     patience: u64,
     mutation: Mutation,
     /// Neighbours not tried yet, in random order, once they are listed.
@@ -65,7 +65,7 @@ impl<S: Real> Climbers<S> {
             position: Vec::new(),
             fitness: S::infinity(),
             running: false,
-            barren: 0,
+            stalled: 0,
             patience: 0,
             mutation: Mutation::default(),
             neighbours: Vec::new(),
@@ -171,9 +171,9 @@ impl<S: Real> Climbers<S> {
         let fitness = outcome.fitness();
         let improved = fitness < climber.fitness;
         if let Some(kind) = climber.last {
-            self.moves.book(kind, improved);
+            self.moves.count(kind, improved);
         }
-        // A hit is found; a known hit shows that this basin is.
+        // The basin's hit is found, or was found before.
         if outcome.is_hit() || outcome == Outcome::Deleted {
             climber.running = false;
             return;
@@ -182,14 +182,14 @@ impl<S: Real> Climbers<S> {
         if mutated {
             climber.mutation.adapt(fitness <= climber.fitness);
         }
-        climber.barren = if improved { 0 } else { climber.barren + 1 };
+        climber.stalled = if improved { 0 } else { climber.stalled + 1 };
         // Moves to equal fitness cross plateaus.
         if fitness <= climber.fitness {
             climber.position.copy_from_slice(position);
             climber.fitness = fitness;
             climber.listed = false;
         }
-        if (mutated && climber.mutation.sigma < CONVERGED) || climber.barren > climber.patience {
+        if (mutated && climber.mutation.sigma < CONVERGED) || climber.stalled > climber.patience {
             climber.running = false;
         }
     }
@@ -203,7 +203,7 @@ impl<S: Real> Climber<S> {
         rng.position(space, &mut self.position);
         self.fitness = S::infinity();
         self.running = true;
-        self.barren = 0;
+        self.stalled = 0;
         self.patience = length * PATIENCE * dimension as u64;
         self.listed = false;
         self.last = None;

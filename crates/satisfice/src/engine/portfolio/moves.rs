@@ -123,8 +123,8 @@ impl Moves {
         }
     }
 
-    /// Books a move of this kind.
-    pub(super) fn book(&mut self, of: Move, improved: bool) {
+    /// Counts a move of this kind.
+    pub(super) fn count(&mut self, of: Move, improved: bool) {
         let kind = of.index();
         self.trials[kind] += 1.0;
         self.improvements[kind] += f64::from(u8::from(improved));
@@ -140,4 +140,30 @@ fn log_uniform_step<S: Real>(space: &Space<S>, axis: usize, rng: &mut SearchRng)
     let (share, sign) = rng.uniform_and_sign();
     let length = space.axes()[axis].width().f64().powf(share).floor().max(1.0);
     S::of(if sign { length } else { -length })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Probability matching: a kind is drawn with its rate of improvement plus the floor, over the sum of all.
+    #[test]
+    fn moves_are_drawn_by_their_rates_of_improvement() {
+        let mut moves = Moves::default();
+        for i in 0..98 {
+            moves.count(Move::Neighbour, i < 39);
+            moves.count(Move::Mutation, false);
+        }
+        // (1 + 39) / (2 + 98) + 0.02 = 0.42 against 1 / 100 + 0.02 = 0.03.
+        let mut rng = SearchRng::new(4);
+        let draws = 20_000;
+        let neighbours = (0..draws)
+            .filter(|_| moves.choose([false, true, true], &mut rng) == Move::Neighbour)
+            .count();
+        approx::assert_relative_eq!(
+            neighbours as f64 / f64::from(draws),
+            0.42 / 0.45,
+            max_relative = 0.01
+        );
+    }
 }

@@ -70,7 +70,7 @@ impl<S: Real> NearMisses<S> {
     pub(super) fn begin(&mut self, dimension: usize, follows: bool) {
         let mut left = core::mem::take(&mut self.now);
         if follows {
-            // What nobody came to try again is as good as it was.
+            // Those that were not tried again are as good as before.
             for index in self.cursor..self.before.fitness.len() {
                 left.push(self.before.fitness[index], self.before.row(index, dimension));
             }
@@ -105,8 +105,8 @@ impl<S: Real> NearMisses<S> {
         true
     }
 
-    /// Books one that was tried.
-    pub(super) fn book(&mut self, hit: bool) {
+    /// Counts one that was tried.
+    pub(super) fn count(&mut self, hit: bool) {
         self.trials += 1.0;
         self.hits += f64::from(u8::from(hit));
         if self.trials > MEMORY {

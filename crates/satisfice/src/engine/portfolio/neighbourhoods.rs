@@ -8,8 +8,8 @@ use crate::context::Context;
 use crate::scalar::Real;
 use crate::state::{Reader, Saved, State};
 
-/// Past trials are halved at this number. Long, because gaps between patches of hits take many: on the teapots, 64 finds 580 of
-/// 977 pairs in 10,000 evaluations, 256 finds 842, this 935.
+/// Past trials are halved at this number. Long, because it takes many trials to cross a gap between patches
+/// of hits.
 const MEMORY: f64 = 1000.0;
 /// Once so many candidates are known, only hits are expanded: some 60 MB at two axes.
 const MOST: usize = 1 << 20;
@@ -42,8 +42,7 @@ struct Entry {
 /// first.
 ///
 /// A candidate's fitness is predicted by the mean of its evaluated neighbours', shrunk by one observation towards the mean of
-/// all candidates so far. On the colliding teapots this finds 930 of 977 pairs in 7,500 evaluations where breadth-first
-/// order finds 770 to 805, and it crosses the gaps between patches of hits.
+/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits.
 ///
 /// Lazily, the neighbours of an evaluated point are entered when it is their turn, as predicted from this point alone. Most
 /// points that miss never come to that, which saves dozens of entries an evaluation; but then they do not tell against the
@@ -179,8 +178,8 @@ impl<S: Real> Neighbourhoods<S> {
         false
     }
 
-    /// Books a candidate's fitness.
-    pub(super) fn book(&mut self, fitness: S, hit: bool) {
+    /// Counts a candidate and its fitness.
+    pub(super) fn count(&mut self, fitness: S, hit: bool) {
         self.trials += 1.0;
         self.hits += f64::from(u8::from(hit));
         if self.trials > MEMORY {

@@ -42,7 +42,7 @@ struct Population<S> {
     turned: Vec<f64>,
     best: f64,
     /// Generations since the best fell.
-    barren: usize,
+    stalled: usize,
 }
 
 /// Restarted populations. The sizes follow the universal restart sequence; the starts are spread over the space by an additive
@@ -203,7 +203,7 @@ impl<S: Real> Population<S> {
         let sum: f64 = self.weights.iter().sum();
         self.weights.iter_mut().for_each(|weight| *weight /= sum);
         self.turned.resize(n, 0.0);
-        (self.proposed, self.told, self.barren) = (0, 0, 0);
+        (self.proposed, self.told, self.stalled) = (0, 0, 0);
         self.best = f64::INFINITY;
         self.running = true;
     }
@@ -251,7 +251,7 @@ impl<S: Real> Population<S> {
 
         let best = self.fitness[order[0]];
         let middle = self.fitness[order[parents]];
-        self.barren = if best < self.best { 0 } else { self.barren + 1 };
+        self.stalled = if best < self.best { 0 } else { self.stalled + 1 };
         self.best = self.best.min(best);
 
         let widths = context.space().axes().iter().map(crate::Axis::width);
@@ -294,7 +294,7 @@ impl<S: Real> Population<S> {
         let hopeless = HOPELESS * (middle - best) < lacking;
         self.running = spread > CONVERGED
             && spread.is_finite()
-            && self.barren <= patience
+            && self.stalled <= patience
             && !hopeless
             && !context.is_deleted(&self.mean);
         (self.proposed, self.told) = (0, 0);
@@ -319,6 +319,21 @@ mod tests {
                 }
             }
             assert!(seen.iter().flatten().all(|seen| *seen), "{dimension}");
+        }
+    }
+
+    /// x_k = frac(x_0 + k g^-(j+1)) on axis j; in the plane, g = 1.3247… is the real root of g^3 = g + 1.
+    #[test]
+    fn starts_are_the_published_recurrence() {
+        let g = 1.324_717_957_244_746_f64;
+        let space = Space::<f64>::cube(2, 0.0, 1.0).unwrap();
+        let mut position = [0.0; 2];
+        for k in 1..50 {
+            spread(&[0.5, 0.25], k, &space, &mut position);
+            let expected = [(0.5 + k as f64 / g).fract(), (0.25 + k as f64 / (g * g)).fract()];
+            for (x, expected) in position.iter().zip(expected) {
+                approx::assert_abs_diff_eq!(*x, expected, epsilon = 1e-10);
+            }
         }
     }
 }

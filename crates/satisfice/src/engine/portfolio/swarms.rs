@@ -25,11 +25,11 @@ struct SubSwarm<S> {
     /// How many particles still have to be evaluated for the first time.
     unborn: usize,
     /// Evaluations since its last hit.
-    barren: usize,
+    stalled: usize,
 }
 
 /// K swarms of N particles that take turns. Sharing the latest hit between them would destroy their gain: each works in a
-/// region of its own, until it has been barren for too long and starts anew.
+/// region of its own, until it has stalled for too long and starts anew.
 ///
 /// Differs from the paper in: several swarms, alpha below 1, restarts, one particle of each swarm a batch.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ impl<S: Real> Swarms<S> {
             has_hit: false,
             turn: 0,
             unborn: 0,
-            barren: 0,
+            stalled: 0,
         };
         Self {
             particles,
@@ -115,7 +115,7 @@ impl<S: Real> Swarms<S> {
     pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
         let swarm = &mut self.swarms[index];
         swarm.tell(self.particles, position, outcome);
-        if swarm.barren > self.restart {
+        if swarm.stalled > self.restart {
             swarm.start_anew();
         }
     }
@@ -126,7 +126,7 @@ impl<S: Real> SubSwarm<S> {
         self.positions.clear();
         self.has_hit = false;
         self.turn = 0;
-        self.barren = 0;
+        self.stalled = 0;
     }
 
     fn propose(
@@ -190,9 +190,9 @@ impl<S: Real> SubSwarm<S> {
         if outcome.is_hit() {
             self.latest_hit.copy_from_slice(position);
             self.has_hit = true;
-            self.barren = 0;
+            self.stalled = 0;
         } else {
-            self.barren += 1;
+            self.stalled += 1;
         }
         self.unborn = self.unborn.saturating_sub(1);
         self.turn = (self.turn + 1) % particles;

@@ -1,6 +1,6 @@
 //! Steps that have led from one hit to another, and their application to every hit.
 //!
-//! On a lattice the unit steps along each axis are among them from the start, so that exhausting a hit's neighbourhood is the
+//! On a lattice the unit steps along each axis are among them from the start, so that a flood fill around a hit is the
 //! special case of well-tried short steps. Others are learned: the difference of two hits, applied to a third one, is worth a
 //! trial wherever hits repeat or lie on a manifold.
 
@@ -58,7 +58,7 @@ impl<S: Real> Translations<S> {
     }
 
     /// The step with the best rate among those that have not met all `hits`, with `(hits, trials)` as a posterior of its rate.
-    /// `base` is the rate of steps nobody has tried. Cost: O(steps).
+    /// `base` is the rate of untried steps. Cost: O(steps).
     pub(super) fn best(&self, hits: usize, base: f64) -> Option<(usize, f64, f64)> {
         let rate = |step: &Step| (step.hits + base) / (step.trials + 1.0);
         let open = self
@@ -86,9 +86,9 @@ impl<S: Real> Translations<S> {
         true
     }
 
-    /// Books a trial of step `index`.
+    /// Counts a trial of step `index`.
     #[inline]
-    pub(super) fn book(&mut self, index: usize, hit: bool) {
+    pub(super) fn count(&mut self, index: usize, hit: bool) {
         let step = &mut self.steps[index];
         step.trials += 1.0;
         step.hits += f64::from(u8::from(hit));

@@ -4,7 +4,7 @@ use crate::scalar::Real;
 use crate::space::Space;
 
 /// Tables that the points are spread over. Each grows by itself, and moves few points when it does: one table for all would
-/// stand still for tens of milliseconds at a million points, in the middle of a slice.
+/// stop the search for tens of milliseconds when it grows at a million points.
 const SHARDS: usize = 16;
 /// Slots of a table at first, and at most: half of them are used, so 2^21 points are remembered exactly, in 32 MiB.
 const FIRST: usize = 1 << 6;
@@ -13,7 +13,7 @@ const MOST: usize = 1 << 18;
 const EMPTY: u64 = u64::MAX;
 
 /// A set of lattice points, exact up to 2^21 points. Beyond, a new point takes the place of an old one, so that a point may be
-/// proposed again but none is ever held for visited that was not (but for 64-bit collisions in spaces of 2^63 points and
+/// proposed again but none is ever taken for visited that was not (but for 64-bit collisions in spaces of 2^63 points and
 /// more).
 ///
 /// Cost: a multiplication an axis and a cache line or two. Memory: about 16 to 32 bytes a point, 8 KiB at least.
@@ -69,8 +69,8 @@ impl Shard {
             self.grow();
             return self.insert(hash, key);
         }
-        // In the key's first slot: whoever passed it on his way still finds his way past it. An empty one stays empty, so that
-        // every search ends; then the point is forgotten at once.
+        // Replace the key in the first slot, which keeps every probe sequence intact. An empty slot stays empty, so that every
+        // search ends; the point is then forgotten at once.
         #[expect(clippy::cast_possible_truncation, reason = "the lowest bits are wanted")]
         let first = hash as usize & (MOST - 1);
         if self.slots[first] != EMPTY {

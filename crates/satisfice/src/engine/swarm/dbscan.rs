@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn dense_points_are_niches_and_lonely_ones_are_none() {
+    fn dense_points_are_niches_and_isolated_ones_are_outliers() {
         // All of 9, 9.5 and 10 are cores; of 0, 1 and 2 only the one in the middle is, which comes later.
         assert_eq!(
             on_a_line(&[0.0, 9.0, 1.0, 50.0, 9.5, 2.0, 10.0]),

@@ -1,4 +1,4 @@
-//! Who informs whom in a swarm with a random topology.
+//! The links between particles of a swarm with a random topology.
 
 use crate::error::Error;
 use crate::seed::SearchRng;

@@ -67,3 +67,15 @@ impl EngineConfig for LatestHitQpso {
         Box::new(QuantumSwarm::new(rules, Schedule::fixed(self.alpha)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// N = 30 particles and alpha = 1 (Chen et al. 2012).
+    #[test]
+    fn the_defaults_are_the_published_ones() {
+        let settings = LatestHitQpso::default();
+        assert_eq!((settings.particles, settings.alpha, settings.batch), (30, 1.0, 1));
+    }
+}

@@ -135,7 +135,7 @@ impl<S: Real> NichingSwarm<S> {
                 let pairs = swarm.best(i).iter().zip(swarm.best(j));
                 let square = axes.iter().zip(pairs).fold(0.0, |sum, (axis, (&p, &q))| {
                     let width = axis.width().f64();
-                    // An axis of one value tells nobody apart.
+                    // An axis of one value separates no particles.
                     let share = if width > 0.0 { (p - q).f64() / width } else { 0.0 };
                     sum + share * share
                 });
@@ -261,7 +261,7 @@ impl<S: Real> Engine<S> for NichingSwarm<S> {
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin == Origin::Engine && self.swarm.has_started() {
-            // What the boundary has turned back flies back.
+            // A particle that the bound reflects flies back.
             let factor = match context.space().boundary() {
                 Boundary::Reflect => -S::one(),
                 Boundary::Clamp => S::zero(),
@@ -284,7 +284,7 @@ impl<S: Real> Engine<S> for NichingSwarm<S> {
         true
     }
 
-    /// The paper's rule, for all swarms alike.
+    /// The paper's rule, for every swarm.
     fn warm_start(&self) -> WarmStart {
         WarmStart::Engine
     }

@@ -11,7 +11,7 @@ use crate::scalar::{Real, copy_row};
 use crate::seed::SearchRng;
 use crate::state::Part;
 
-/// Who attracts.
+/// The point that attracts a swarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attractor {
     /// The best of the personal bests.
@@ -205,7 +205,7 @@ impl<S: Real> Swarm<S> {
         }
     }
 
-    /// Enters what became of the start points, of the particles that were due, or of a hit that somebody else found.
+    /// Records the outcomes of the start points, of the particles that were due, or of hits found elsewhere.
     #[inline]
     pub(super) fn tell(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin == Origin::Engine && self.started {
@@ -219,7 +219,7 @@ impl<S: Real> Swarm<S> {
         }
     }
 
-    /// Enters the start points, or a hit that somebody else found.
+    /// Records the start points, or hits found elsewhere.
     #[cold]
     fn tell_of_others(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin != Origin::Engine {
@@ -266,7 +266,7 @@ impl<S: Real> Swarm<S> {
         more
     }
 
-    /// Enters what became of the particle whose turn it was, at its new position.
+    /// Records the outcome of the particle whose turn it was, at its new position.
     #[inline(always)]
     #[expect(
         clippy::inline_always,

@@ -96,4 +96,22 @@ mod tests {
         mean_best(&[1.0, 10.0, 2.0, 20.0, 6.0, 60.0], &mut mean);
         approx::assert_relative_eq!(mean[..], [3.0, 30.0][..], max_relative = 1e-15);
     }
+
+    /// Eq. 2 with the same draws: phi P + (1 - phi) G ± alpha |m - X| ln(1/u).
+    #[test]
+    fn a_draw_is_the_published_equation() {
+        let (x, best, attractor, mean, alpha) = (0.3, 2.0, -1.0, 1.7, 0.75);
+        let (mut rng, mut twin) = (SearchRng::new(7), SearchRng::new(7));
+        let mut signs = [0; 2];
+        for _ in 0..200 {
+            let drawn = draw(&mut rng, alpha, x, best, attractor, mean);
+            let (phi, negative) = twin.uniform_and_sign();
+            let logarithm: f64 = twin.exponential(); // ln(1/u) for u ~ U(0, 1]
+            let sign = if negative { -1.0 } else { 1.0 };
+            let expected = phi * best + (1.0 - phi) * attractor + sign * alpha * 1.4 * logarithm;
+            approx::assert_relative_eq!(drawn, expected, max_relative = 1e-12, epsilon = 1e-12);
+            signs[usize::from(negative)] += 1;
+        }
+        assert!(signs[0] > 60 && signs[1] > 60, "{signs:?}");
+    }
 }

@@ -49,3 +49,15 @@ impl EngineConfig for Pso1995 {
         Box::new(VelocitySwarm::new(rules, coefficients))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_coefficients_are_the_published_ones() {
+        let settings = Pso1995::default();
+        assert_eq!((settings.c1, settings.c2, settings.v_max), (2.0, 2.0, 0.2));
+        assert!(!settings.deletion && !settings.is_scheduled());
+    }
+}

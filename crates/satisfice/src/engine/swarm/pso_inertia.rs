@@ -58,3 +58,24 @@ impl EngineConfig for PsoInertia {
         self.w != self.w_end
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// w(t) = 0.9 - 0.5 t, t the share of the budget (Shi, Eberhart 1999).
+    #[test]
+    fn inertia_falls_from_0_9_to_0_4_in_a_straight_line() {
+        let settings = PsoInertia::default();
+        let inertia = Schedule::<f64>::linear(settings.w, settings.w_end);
+        for share in [0.0, 0.2, 0.5, 1.0] {
+            approx::assert_relative_eq!(inertia.at(|| share), 0.9 - 0.5 * share, max_relative = 1e-14);
+        }
+        assert!(settings.is_scheduled());
+        let fixed = PsoInertia {
+            w_end: 0.9,
+            ..settings
+        };
+        assert!(!fixed.is_scheduled());
+    }
+}

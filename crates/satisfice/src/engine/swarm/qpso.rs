@@ -47,3 +47,21 @@ impl EngineConfig for Qpso {
         self.alpha_end.is_some_and(|end| end != self.alpha)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sun et al. 2012: alpha from 1 to 0.5 in a straight line.
+    #[test]
+    fn alpha_follows_the_budget_only_where_an_end_is_given() {
+        assert!(!Qpso::default().is_scheduled());
+        let falling = Qpso {
+            alpha_end: Some(0.5),
+            ..Qpso::default()
+        };
+        assert!(falling.is_scheduled());
+        let alpha = Schedule::<f64>::linear(falling.alpha, 0.5);
+        approx::assert_relative_eq!(alpha.at(|| 0.25), 0.875, max_relative = 1e-15);
+    }
+}

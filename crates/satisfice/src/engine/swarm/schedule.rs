@@ -4,8 +4,7 @@ use crate::scalar::Real;
 
 /// A coefficient that goes in a straight line from one value to another as the budget is used.
 ///
-/// It follows the elapsed share of the budget, never a count of sweeps: whoever sets a deadline does not know how many
-/// sweeps fit into it.
+/// It follows the elapsed share of the budget, never a count of sweeps: how many sweeps fit into a deadline is not known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Schedule<S> {
     from: S,

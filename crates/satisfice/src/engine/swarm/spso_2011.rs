@@ -112,6 +112,16 @@ impl<S: Real> Spso2011Swarm<S> {
     }
 }
 
+/// g - X on one axis: the centre of gravity of X, of a point beyond `own` and, if another particle informs, of one beyond its
+/// `local` best.
+#[inline]
+fn pull<S: Real>(c: S, x: S, own: S, local: Option<S>) -> S {
+    match local {
+        None => c * (own - x) / S::of(2.0),
+        Some(local) => c * (own - x) / S::of(3.0) + c * (local - x) / S::of(3.0),
+    }
+}
+
 /// Lengths are measured in these: the width of an axis, 1 where it has none.
 #[inline]
 fn unit<S: Real>(axis: &crate::space::Axis<S>) -> S {
@@ -147,7 +157,7 @@ impl<S: Real> Engine<S> for Spso2011Swarm<S> {
         let axes = context.space().axes();
         let confined = context.space().boundary() != Boundary::Wrap;
         let c = self.acceleration;
-        let (two, three) = (S::of(2.0), S::of(3.0));
+        let two = S::of(2.0);
         for (place, i) in swarm.due().enumerate() {
             let informant = self.informants.of(i).fold(i, |best, j| {
                 if swarm.fitness(j) < swarm.fitness(best) {
@@ -162,13 +172,7 @@ impl<S: Real> Engine<S> for Spso2011Swarm<S> {
             out.push(swarm.position(i));
             let position = out.point_mut(place);
             // g - X, from which the radius follows.
-            let pull = |j: usize, x: S| {
-                if informant == i {
-                    c * (own[j] - x) / two
-                } else {
-                    c * (own[j] - x) / three + c * (local[j] - x) / three
-                }
-            };
+            let pull = |j: usize, x: S| pull(c, x, own[j], (informant != i).then(|| local[j]));
             let mut square = S::zero();
             for (j, axis) in axes.iter().enumerate() {
                 let length = pull(j, position[j]) / unit(axis);
@@ -202,10 +206,59 @@ impl<S: Real> Engine<S> for Spso2011Swarm<S> {
         self.swarm.deletes()
     }
 
-    /// The paper's rule, for all swarms alike.
+    /// The paper's rule, for every swarm.
     fn warm_start(&self) -> WarmStart {
         WarmStart::Engine
     }
 
     crate::saved_fields!(swarm, informants, velocities, least_before, direction; check);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// w = 1 / (2 ln 2) and c = 1/2 + ln 2.
+    #[test]
+    fn the_coefficients_are_the_published_ones() {
+        let settings = Spso2011::default();
+        let ln2 = core::f64::consts::LN_2;
+        approx::assert_relative_eq!(settings.w, 1.0 / (2.0 * ln2), max_relative = 1e-15);
+        approx::assert_relative_eq!(settings.c, 0.5 + ln2, max_relative = 1e-15);
+        assert_eq!((settings.particles, settings.informed), (40, 3));
+    }
+
+    /// A direction is of length one, and in three dimensions each coordinate is uniform in [-1, 1] (Archimedes).
+    #[test]
+    fn directions_are_uniform_on_the_sphere() {
+        let (mut rng, mut direction) = (SearchRng::new(11), [0.0_f64; 3]);
+        let (mut below, mut sum) = (0, [0.0; 3]);
+        for _ in 0..20_000 {
+            Spso2011Swarm::draw_direction(&mut direction, &mut rng);
+            let square: f64 = direction.iter().map(|e| e * e).sum();
+            approx::assert_relative_eq!(square, 1.0, max_relative = 1e-12);
+            below += u32::from(direction[0] < -0.5);
+            for (sum, e) in sum.iter_mut().zip(direction) {
+                *sum += e;
+            }
+        }
+        // A quarter of the uniform interval, within five standard deviations; likewise the mean of 0.
+        assert!((4694..=5306).contains(&below), "{below}");
+        assert!(
+            sum.iter()
+                .all(|sum| sum.abs() < 5.0 * (20_000.0_f64 / 3.0).sqrt()),
+            "{sum:?}"
+        );
+    }
+
+    /// g - X is c (P - X) / 2 where the particle is its own informant, and c ((P - X) + (L - X)) / 3 where L is another's: the
+    /// centres of gravity of the published equations, less X.
+    #[test]
+    fn the_centre_of_gravity_is_the_published_one() {
+        let (x, own, local, c) = (2.0_f64, 5.0, -1.0, 1.25);
+        let three = (x + (x + c * (own - x)) + (x + c * (local - x))) / 3.0;
+        let two = (x + (x + c * (own - x))) / 2.0;
+        approx::assert_relative_eq!(pull(c, x, own, Some(local)), three - x, epsilon = 1e-12);
+        approx::assert_relative_eq!(pull(c, x, own, None), two - x, epsilon = 1e-12);
+    }
 }

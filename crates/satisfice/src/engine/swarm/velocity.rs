@@ -155,7 +155,7 @@ impl<S: Real> Engine<S> for VelocitySwarm<S> {
         self.swarm.deletes()
     }
 
-    /// The paper's rule, for all swarms alike.
+    /// The paper's rule, for every swarm.
     fn warm_start(&self) -> WarmStart {
         WarmStart::Engine
     }
@@ -236,5 +236,48 @@ mod tests {
         let mut velocities = [least, -least, least / 2.0, -least / 2.0, 5e-324, 0.0, -3.0];
         drop_subnormals(&mut velocities);
         assert_eq!(velocities, [least, -least, 0.0, 0.0, 0.0, 0.0, -3.0]);
+    }
+
+    /// V := w V + c1 r1 (P - X) + c2 r2 (G - X), |V| <= Vmax; X := X + V.
+    #[test]
+    fn a_particle_moves_by_the_published_equation() {
+        let coefficients = Coefficients {
+            inertia: Schedule::fixed(0.7),
+            cognitive: 1.5,
+            social: 2.0,
+            v_max: 0.5,
+        };
+        let (mut x, mut v) = ([1.0, 1.0, 1.0], [0.25, -0.5, 0.0]);
+        let (best, attractor, limits) = ([2.0, 0.0, 1.0], [4.0, 1.0, 1000.0], [100.0, 100.0, 0.5]);
+        let mut rng = SearchRng::new(5);
+        coefficients.displace(&mut rng, 0.7, &mut x, &mut v, (&best, &attractor, &limits));
+
+        let mut twin = SearchRng::new(5);
+        let mut draws = || (twin.uniform(), twin.uniform());
+        let (r1, r2) = draws();
+        let first: f64 = 0.7 * 0.25 + 1.5 * r1 * (2.0 - 1.0) + 2.0 * r2 * (4.0 - 1.0);
+        let (r1, _) = draws();
+        let second: f64 = 0.7 * -0.5 + 1.5 * r1 * (0.0 - 1.0); // the attractor is where the particle is
+        // The third axis is pulled far beyond its limit.
+        for (value, expected) in v.iter().zip([first, second, 0.5]) {
+            approx::assert_relative_eq!(*value, expected, max_relative = 1e-14);
+        }
+        for (value, expected) in x.iter().zip([1.0 + first, 1.0 + second, 1.5]) {
+            approx::assert_relative_eq!(*value, expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_velocity_turns_round_at_a_reflecting_bound_and_ends_at_a_clamping_one() {
+        for (boundary, expected) in [
+            (Boundary::Reflect, [-2.0, 3.0]),
+            (Boundary::Clamp, [0.0, 3.0]),
+            (Boundary::Wrap, [2.0, 3.0]),
+        ] {
+            let mut velocity = [2.0, 3.0];
+            // On the first axis, the particle is not where its velocity took it.
+            bounce(boundary, &mut velocity, &[9.0, 4.0], |j, _| [11.0, 4.0][j]);
+            assert_eq!(velocity, expected, "{boundary:?}");
+        }
     }
 }

@@ -28,25 +28,25 @@ pub(super) fn audit<S: Real>(
     let counts = report.counts;
     if calls != counts.fitness_calls {
         say(
-            Law::Books,
+            Law::Accounting,
             format!("{} fitness calls counted, {calls} made", counts.fitness_calls),
         );
     }
     if counts.fitness_calls > counts.evaluations || counts.duplicates > counts.evaluations {
-        say(Law::Books, format!("{counts:?}"));
+        say(Law::Accounting, format!("{counts:?}"));
     }
     let mut last = 0;
     for hit in report.hits() {
         let fitness = case.value(&hit.solution.coordinates);
         if !(fitness < case.threshold() && fitness.is_finite()) {
             say(
-                Law::Books,
+                Law::Accounting,
                 format!("{:?} with F = {fitness} is no hit", hit.solution),
             );
         }
         if hit.evaluation <= last || hit.evaluation > counts.evaluations {
             say(
-                Law::Books,
+                Law::Accounting,
                 format!("a hit at {} after one at {last}", hit.evaluation),
             );
         }
@@ -54,7 +54,7 @@ pub(super) fn audit<S: Real>(
     }
     let hits: Vec<_> = report.hits().map(|hit| hit.solution).collect();
     if let Some(i) = (1..hits.len()).find(|&i| hits[..i].contains(&hits[i])) {
-        say(Law::Books, format!("{:?} is listed twice", hits[i]));
+        say(Law::Accounting, format!("{:?} is listed twice", hits[i]));
     }
     let end = report.trace.last().map(|point| (point.evaluations, point.hits));
     if end != Some((counts.evaluations, hits.len() as u64))
@@ -63,7 +63,7 @@ pub(super) fn audit<S: Real>(
             .is_sorted_by_key(|point| (point.evaluations, point.hits))
     {
         say(
-            Law::Books,
+            Law::Accounting,
             format!("the trace ends at {end:?}, {} hits in {counts:?}", hits.len()),
         );
     }

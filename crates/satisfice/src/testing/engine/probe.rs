@@ -10,7 +10,7 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
 
-/// What was found out, shared with whoever asked.
+/// What was found out, shared with the suite.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Findings(Arc<Mutex<Option<String>>>);
 
