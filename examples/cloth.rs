@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 use satisfice_cloth::{Response, Settings, Simulation};
-use satisfice_draw::picture::{Picture, View, strip};
+use satisfice_picture::{Picture, View, strip};
 
 const FRAMES: usize = 66;
 /// Frames between two pictures.

@@ -14,7 +14,7 @@ use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, Completeness, Contact, Scene, Skips};
 use satisfice_collision::{Mesh, Placement, generate};
-use satisfice_draw::picture::{Picture, View};
+use satisfice_picture::{Picture, View};
 
 const KIND: PairKind = PairKind::TriangleTriangle;
 /// The flat cloth is 3 long and 1 wide.

@@ -1,7 +1,7 @@
 //! Experiment I: two teapots run into each other. How many of the vertex pairs closer than delta does each engine find?
 //!
-//! `cargo run --release --example teapots`; writes its pictures to `out/teapots`, or to the folder `SATISFICE_OUT`.
-//! `SATISFICE_QUICK=1` uses two seeds and short runs: a check that it works, not a measurement.
+//! `cargo run --release --example teapots` writes a picture to `out/teapots`, or to the folder `SATISFICE_OUT`.
+//! `satisfice bench experiment-one` draws charts of such runs. `SATISFICE_QUICK=1` uses two seeds and short runs: a check that it works, not a measurement.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -15,8 +15,7 @@ use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
 use satisfice_collision::broad::PointGrid;
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::Teapots;
-use satisfice_draw::picture::{Picture, View};
-use satisfice_draw::plot::{self, Chart, Curve, Format, Panel};
+use satisfice_picture::{Picture, View};
 
 type Pair = (u32, u32);
 type Found = Report<Pair>;
@@ -70,9 +69,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         print_slice(name, &reports, truth.len());
         runs.push((name, reports));
     }
-    let chart = chart(&runs, truth.len(), seeds);
-    write(&folder, "slice.svg", &plot::draw(&chart, Format::Svg)?)?;
-    write(&folder, "slice.png", &plot::draw(&chart, Format::Png)?)?;
     let shown = median(&runs[0].1);
     println!(
         "  the scene with what {} found in seed {}, {} of {} pairs in vermilion, the others black:",
@@ -242,46 +238,6 @@ fn print_slice(name: &str, reports: &[Found], truth: usize) {
     );
 }
 
-/// |C(t)|, recall(t) and r(t) side by side: r alone rewards an engine that finds little and stalls.
-fn chart(runs: &[(&str, Vec<Found>)], truth: usize, seeds: u64) -> Chart {
-    let times = || (0..=100).map(f64::from);
-    let curves = |value: &dyn Fn(&Found, f64) -> f64| {
-        runs.iter()
-            .map(|(name, reports)| Curve {
-                label: Some((*name).to_owned()),
-                points: times()
-                    .map(|t| (t, Spread::of(reports.iter().map(|report| value(report, t))).mean))
-                    .collect(),
-                band: Vec::new(),
-                marks: false,
-                steps: false,
-            })
-            .collect::<Vec<_>>()
-    };
-    let panel = |y_label: &str, curves, mark| Panel {
-        x_label: "time (ms)".to_owned(),
-        y_label: y_label.to_owned(),
-        curves,
-        mark,
-        ..Panel::default()
-    };
-    let hits = panel(
-        "distinct hits |C(t)|",
-        curves(&hits_by),
-        Some((truth as f64, format!("all {truth}"))),
-    );
-    let recall = curves(&|report, t| 100.0 * hits_by(report, t) / truth as f64);
-    let share = curves(&|report, t| 100.0 * hits_by(report, t) / report.hit_count().max(1) as f64);
-    Chart {
-        title: format!("{SCENE}; mean of {seeds} seeds"),
-        panels: vec![
-            Panel { log_y: true, ..hits },
-            panel("recall(t) (%)", recall, None),
-            panel("r(t) = |C(t)| / |C(100 ms)| (%)", share, None),
-        ],
-    }
-}
-
 /// The run with the median number of hits.
 fn median(reports: &[Found]) -> &Found {
     let mut order: Vec<_> = reports.iter().collect();
@@ -293,7 +249,7 @@ fn picture(
     problem: &Teapots,
     report: &Found,
     truth: &BTreeSet<Pair>,
-) -> Result<Vec<u8>, satisfice_draw::Error> {
+) -> Result<Vec<u8>, satisfice_picture::Error> {
     let pairs = problem.pairs();
     let mut picture = Picture::new(1000, 560, View::default());
     picture.body(pairs.a());

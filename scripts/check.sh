@@ -36,10 +36,10 @@ cargo test -p satisfice --quiet --no-default-features --features serde --test ch
 step "every example, as a user runs it ($profile)"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-for example in examples/*.rs crates/satisfice-bench/examples/*.rs; do
+for example in examples/*.rs crates/satisfice-{bench,draw}/examples/*.rs; do
   name=$(basename "$example" .rs)
   package=satisfice-workspace
-  case $example in crates/*) package=satisfice-bench ;; esac
+  case $example in crates/*) package=$(cut -d / -f 2 <<< "$example") ;; esac
   echo "-- $name"
   SATISFICE_QUICK=1 SATISFICE_OUT="$out/$name" cargo run --profile "$profile" --quiet -p "$package" --example "$name" > "$out/$name.txt" \
     || { tail -n 40 "$out/$name.txt"; exit 1; }

@@ -13,8 +13,8 @@ use std::path::PathBuf;
 
 use moving_teapots::{MovingTeapots, Way};
 use rayon::prelude::*;
-use satisfice::{Budget, WarmStart};
-use satisfice_catalogue::{Instance, Request, catalogue};
+use satisfice::WarmStart;
+use satisfice_catalogue::{Instance, RunControl, RunSpec, catalogue};
 use satisfice_problems::Cec2013;
 
 /// Ten problems for the geometric mean and the teapots; then problems of other structure: many optima of a smooth function,
@@ -140,11 +140,11 @@ fn mean_hits(
 ) -> Result<f64, satisfice_catalogue::Error> {
     // A busy core does not affect results under a budget of evaluations.
     let hits = (0..seeds).into_par_iter().map(|seed| {
-        let mut request = Request::new(engine, Budget::evaluations(evaluations)).seed(seed);
+        let mut spec = RunSpec::new(engine).evaluations(evaluations).seed(seed);
         if let Some((name, value)) = setting.split_once('=') {
-            request = request.set(name, value);
+            spec = spec.set(name, value);
         }
-        Ok(problem.run(&request, &mut |_| {})?.hits)
+        Ok(problem.run(&spec, RunControl::default())?.hits)
     });
     let hits: Vec<u64> = hits.collect::<Result<_, satisfice_catalogue::Error>>()?;
     Ok(hits.iter().sum::<u64>() as f64 / seeds as f64)

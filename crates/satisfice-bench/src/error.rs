@@ -9,9 +9,12 @@ pub enum Error {
     /// A run failed, or the framework refused a name, a value or a budget.
     #[error(transparent)]
     Run(#[from] satisfice_catalogue::Error),
-    /// A figure or a picture cannot be drawn.
+    /// A chart cannot be drawn.
     #[error(transparent)]
     Draw(#[from] satisfice_draw::Error),
+    /// A picture of a scene cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] satisfice_picture::Error),
     /// A suite that cannot be run as it is written.
     #[error("{place}: {what}")]
     Suite {

@@ -2,6 +2,8 @@
 
 use satisfice_draw::plot::Chart;
 
+use crate::table;
+
 /// A chart with the name of its file and what it shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
@@ -35,21 +37,7 @@ impl Finding {
         let mut text = format!("{}\n", self.title);
         for (caption, rows) in &self.tables {
             text.push_str(&format!("  {caption}\n"));
-            let columns = rows.first().map_or(0, Vec::len);
-            let width = |column: usize| {
-                rows.iter()
-                    .map(|row| row[column].chars().count())
-                    .max()
-                    .unwrap_or(0)
-            };
-            let widths: Vec<usize> = (0..columns).map(width).collect();
-            for row in rows {
-                let cells = row
-                    .iter()
-                    .zip(&widths)
-                    .map(|(cell, width)| format!("{cell:>width$}"));
-                text.push_str(&format!("    {}\n", cells.collect::<Vec<_>>().join("  ")));
-            }
+            text.push_str(&table::plain(rows, 4, 0));
         }
         text
     }

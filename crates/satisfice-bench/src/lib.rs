@@ -6,6 +6,7 @@ pub mod plain_grid;
 pub mod statistics;
 pub mod studies;
 pub mod sweep;
+pub mod table;
 
 pub use error::Error;
 pub use finding::{Figure, Finding};

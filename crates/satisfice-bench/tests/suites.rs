@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use satisfice_bench::sweep::{self, Plan, Suite};
+use satisfice_catalogue::Catalogue;
 
 #[test]
 fn every_named_suite_is_valid() {
@@ -25,7 +26,7 @@ fn every_named_suite_is_valid() {
                 .settings
                 .push((small.0.to_owned(), vec![small.1.to_owned()]));
         }
-        if let Err(error) = Plan::new(suite) {
+        if let Err(error) = Plan::new(suite, &Catalogue::bundled()) {
             panic!("{name}: {error}");
         }
         names += 1;
@@ -44,7 +45,7 @@ const QUEENS: &str = r#"
 
 #[test]
 fn what_stands_beside_a_problem_is_said_with_its_figures_alone() {
-    let plan = Plan::new(Suite::parse("mine", QUEENS).unwrap()).unwrap();
+    let plan = Plan::new(Suite::parse("mine", QUEENS).unwrap(), &Catalogue::bundled()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let done = sweep::execute(&plan, folder.path(), 1, &satisfice::Cancel::new(), &mut |_| {}).unwrap();
     let groups = sweep::groups(&plan, &done.rows);
@@ -64,10 +65,16 @@ fn what_stands_beside_a_problem_is_said_with_its_figures_alone() {
 fn something_beside_a_problem_that_is_not_there_is_refused() {
     for (wrong, hint) in [
         (r#""queen n=4" = "x""#, "did you mean `queens n=4`"),
-        (r#""queens n=4" = 2"#, "is not allowed"),
+        (
+            r#""queens n=4" = 2"#,
+            "beside, queens n=4: invalid type: integer `2`, expected a string",
+        ),
     ] {
         let text = QUEENS.replace(r#""queens n=4" = "backtracking: both in a moment""#, wrong);
-        let error = Suite::parse("mine", &text).and_then(Plan::new).err().unwrap();
+        let error = Suite::parse("mine", &text)
+            .and_then(|suite| Plan::new(suite, &Catalogue::bundled()))
+            .err()
+            .unwrap();
         assert!(error.to_string().contains(hint), "{error}");
     }
 }

@@ -1,4 +1,6 @@
-//! Every problem that has a name. One line each in [`all`].
+//! Every problem that has a name: the bundled ones, one line each in [`all`], and those that a program adds.
+
+use core::fmt;
 
 use satisfice::catalogue::{Catalogued, Parameter, Params};
 use satisfice_cloth::Cloth;
@@ -15,12 +17,12 @@ use crate::error::Error;
 use crate::exact::Geometric;
 use crate::instance::{self, Instance};
 
-/// What makes an instance from its parameters.
-pub type Build = fn(&Params) -> Result<Box<dyn Instance>, Error>;
+/// Makes an instance from its parameters.
+type Build = fn(&Params) -> Result<Box<dyn Instance>, Error>;
 
-/// One problem of the catalogue.
-#[derive(Debug, Clone, Copy)]
-pub struct Entry {
+/// A problem of a catalogue: name, parameters, and how to build it.
+#[derive(Clone, Copy)]
+pub struct ProblemSpec {
     /// Its name, in lower case with hyphens.
     pub name: &'static str,
     /// One line.
@@ -32,35 +34,32 @@ pub struct Entry {
     build: Build,
 }
 
-/// The entry of a problem type, also of one that is not in [`all`].
-#[must_use]
-pub const fn entry<P>() -> Entry
-where
-    P: Catalogued + Send + 'static,
-    P::Solution: Serialize + DeserializeOwned,
-{
-    Entry {
-        name: P::NAME,
-        summary: P::SUMMARY,
-        source: P::SOURCE,
-        parameters: P::PARAMETERS,
-        build: instance::build::<P>,
+impl ProblemSpec {
+    /// The problem of type `P`.
+    #[must_use]
+    pub const fn of<P>() -> Self
+    where
+        P: Catalogued + Send + 'static,
+        P::Solution: Serialize + DeserializeOwned,
+    {
+        Self {
+            name: P::NAME,
+            summary: P::SUMMARY,
+            source: P::SOURCE,
+            parameters: P::PARAMETERS,
+            build: instance::build::<P>,
+        }
     }
-}
 
-/// The entry of a problem of vertex pairs, on which exact methods run as well.
-#[must_use]
-pub const fn geometric<P: Geometric + Send + 'static>() -> Entry {
-    Entry {
-        name: P::NAME,
-        summary: P::SUMMARY,
-        source: P::SOURCE,
-        parameters: P::PARAMETERS,
-        build: instance::build_geometric::<P>,
+    /// The problem of type `P`, whose solutions are pairs of vertices, so that exact methods run on it as well.
+    #[must_use]
+    pub const fn geometric<P: Geometric + Send + 'static>() -> Self {
+        Self {
+            build: instance::build_geometric::<P>,
+            ..Self::of::<P>()
+        }
     }
-}
 
-impl Entry {
     /// The problem with parameters `(name, text)`, the others at their defaults.
     ///
     /// # Errors
@@ -73,48 +72,121 @@ impl Entry {
     }
 }
 
-static PROBLEMS: &[Entry] = &[
-    geometric::<Teapots>(),
-    entry::<Pleats>(),
-    geometric::<Cloth>(),
-    entry::<Rastrigin>(),
-    entry::<Shell>(),
-    entry::<Islands>(),
-    entry::<Needles>(),
-    entry::<DiscPacking>(),
-    entry::<Cec2006>(),
-    entry::<Arm>(),
-    entry::<SevenJoints>(),
-    entry::<Puma>(),
-    entry::<SallenKey>(),
-    entry::<Falsification>(),
-    entry::<Transmission>(),
-    entry::<Queens>(),
-    entry::<GraphColouring>(),
-    entry::<Costas>(),
-    entry::<MagicSquare>(),
-    entry::<LatinSquare>(),
-    entry::<Langford>(),
-    entry::<Sat>(),
-    entry::<Roots>(),
-    entry::<Himmelblau>(),
-    entry::<System>(),
-    entry::<Cec2013>(),
-];
-
-/// Every problem, in the order of the docs.
-#[must_use]
-pub fn all() -> &'static [Entry] {
-    PROBLEMS
+impl fmt::Debug for ProblemSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ProblemSpec")
+            .field("name", &self.name)
+            .field("summary", &self.summary)
+            .finish_non_exhaustive()
+    }
 }
 
-/// The problem with this name.
+/// The problems that a program knows by name.
+///
+/// ```
+/// use satisfice_catalogue::Catalogue;
+/// assert!(Catalogue::bundled().find("queens").is_ok());
+/// assert!(Catalogue::empty().with::<satisfice_problems::Queens>().find("qeens").is_err());
+/// ```
+#[derive(Debug, Clone)]
+pub struct Catalogue {
+    problems: Vec<ProblemSpec>,
+}
+
+impl Catalogue {
+    /// The problems that come with this crate.
+    #[must_use]
+    pub fn bundled() -> Self {
+        Self {
+            problems: BUNDLED.to_vec(),
+        }
+    }
+
+    /// No problem.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self { problems: Vec::new() }
+    }
+
+    /// Adds a problem, before the others. It replaces one of the same name.
+    #[must_use]
+    pub fn with<P>(mut self) -> Self
+    where
+        P: Catalogued + Send + 'static,
+        P::Solution: Serialize + DeserializeOwned,
+    {
+        self.problems.retain(|problem| problem.name != P::NAME);
+        self.problems.insert(0, ProblemSpec::of::<P>());
+        self
+    }
+
+    /// Its problems.
+    #[must_use]
+    pub fn problems(&self) -> &[ProblemSpec] {
+        &self.problems
+    }
+
+    /// The problem with this name.
+    ///
+    /// # Errors
+    /// [`Error::Search`] with the nearest name.
+    pub fn find(&self, name: &str) -> Result<&ProblemSpec, Error> {
+        search(&self.problems, name)
+    }
+}
+
+impl Default for Catalogue {
+    fn default() -> Self {
+        Self::bundled()
+    }
+}
+
+/// Every bundled problem, in the order of the docs.
+#[must_use]
+pub fn all() -> &'static [ProblemSpec] {
+    BUNDLED
+}
+
+/// The bundled problem with this name.
 ///
 /// # Errors
 /// [`Error::Search`] with the nearest name.
-pub fn find(name: &str) -> Result<&'static Entry, Error> {
-    let entry = all().iter().find(|entry| entry.name == name);
-    entry.ok_or_else(|| {
-        satisfice::Error::unknown("problem", name, all().iter().map(|entry| entry.name)).into()
+pub fn find(name: &str) -> Result<&'static ProblemSpec, Error> {
+    search(BUNDLED, name)
+}
+
+fn search<'a>(problems: &'a [ProblemSpec], name: &str) -> Result<&'a ProblemSpec, Error> {
+    let found = problems.iter().find(|problem| problem.name == name);
+    found.ok_or_else(|| {
+        satisfice::Error::unknown("problem", name, problems.iter().map(|problem| problem.name)).into()
     })
 }
+
+static BUNDLED: &[ProblemSpec] = &[
+    ProblemSpec::geometric::<Teapots>(),
+    ProblemSpec::of::<Pleats>(),
+    ProblemSpec::geometric::<Cloth>(),
+    ProblemSpec::of::<Rastrigin>(),
+    ProblemSpec::of::<Shell>(),
+    ProblemSpec::of::<Islands>(),
+    ProblemSpec::of::<Needles>(),
+    ProblemSpec::of::<DiscPacking>(),
+    ProblemSpec::of::<Cec2006>(),
+    ProblemSpec::of::<Arm>(),
+    ProblemSpec::of::<SevenJoints>(),
+    ProblemSpec::of::<Puma>(),
+    ProblemSpec::of::<SallenKey>(),
+    ProblemSpec::of::<Falsification>(),
+    ProblemSpec::of::<Transmission>(),
+    ProblemSpec::of::<Queens>(),
+    ProblemSpec::of::<GraphColouring>(),
+    ProblemSpec::of::<Costas>(),
+    ProblemSpec::of::<MagicSquare>(),
+    ProblemSpec::of::<LatinSquare>(),
+    ProblemSpec::of::<Langford>(),
+    ProblemSpec::of::<Sat>(),
+    ProblemSpec::of::<Roots>(),
+    ProblemSpec::of::<Himmelblau>(),
+    ProblemSpec::of::<System>(),
+    ProblemSpec::of::<Cec2013>(),
+];

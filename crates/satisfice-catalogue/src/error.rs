@@ -1,6 +1,6 @@
 //! Every error of this crate, as data.
 
-/// What was wrong with a request, a record or a checkpoint.
+/// What was wrong with a specification, a report or a checkpoint.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -11,23 +11,28 @@ pub enum Error {
     #[error("a solution cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     /// The file is not a checkpoint of this problem.
-    #[error("no checkpoint of a run of this problem: {0}")]
+    #[error("this is not a checkpoint of a run of this problem: {0}")]
     Checkpoint(String),
     /// The checkpoint belongs to another run.
-    #[error("the checkpoint's {what} is {saved}, not {now}: give the arguments that the run was begun with")]
-    Other {
-        /// What differs.
-        what: &'static str,
-        /// What the checkpoint says.
+    #[error(
+        "the checkpoint's {what} is {saved}, not {now}: give the arguments that the run was started with"
+    )]
+    Differs {
+        /// What differs, as a path in the JSON of a [`RunSpec`](crate::RunSpec).
+        what: String,
+        /// Its value in the checkpoint.
         saved: String,
-        /// What was asked for.
+        /// The value asked for.
         now: String,
     },
-    /// The request has 0 slices.
+    /// Islands cannot be saved or resumed.
+    #[error("checkpoints of islands are not kept: leave out the islands or the checkpoint")]
+    Islands,
+    /// The specification has 0 slices.
     #[error("0 slices leave nothing to run: give at least 1")]
     NoSlices,
     /// An exact method was asked for on a problem that does not search for vertex pairs.
-    #[error("`{method}` finds pairs of vertices, and `{problem}` has none: take an engine")]
+    #[error("`{method}` finds pairs of vertices, and `{problem}` has none: choose an engine")]
     Exact {
         /// The method.
         method: String,

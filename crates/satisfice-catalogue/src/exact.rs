@@ -1,20 +1,18 @@
-//! Exact methods for pairs of vertices, entered on the same ledger as the engines: hits, evaluations, seconds.
+//! Exact methods for pairs of vertices, reported like engines: hits, evaluations, seconds.
 
 use std::time::Instant;
 
 use satisfice::catalogue::Catalogued;
-use satisfice::{Completeness, Counts, SatisficingProblem, StopReason, TracePoint};
+use satisfice::{SatisficingProblem, StopReason};
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::{FeatureTree, Pair, PointGrid, TreeJoin};
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::{Prepared, Recipe};
 use satisfice_collision::{Mesh, Placement, VertexPairs};
-use serde::Serialize;
 
 use crate::error::Error;
-use crate::record::{Limits, Record, Solution};
-use crate::run::Request;
-use crate::settings::Settings;
+use crate::report::RunReport;
+use crate::spec::RunSpec;
 
 /// A method that finds all hits of a problem of vertex pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +50,7 @@ pub fn find(name: &str) -> Option<&'static Method> {
     METHODS.iter().find(|method| method.name == name)
 }
 
-/// A problem that is one of vertex pairs at its heart.
+/// A problem whose solutions are pairs of vertices.
 pub trait Geometric: Catalogued<Solution = (u32, u32)> {
     /// The vertex pairs.
     fn vertex_pairs(&self) -> &VertexPairs;
@@ -64,14 +62,14 @@ impl<R: Recipe<Pairs = VertexPairs>> Geometric for Prepared<R> {
     }
 }
 
-/// Runs an exact method. All pairs are there when it ends, so every hit is stamped with all evaluations and the whole time,
-/// which includes the building of whatever structure it needs. The budget of the request is not looked at.
+/// Runs an exact method. All pairs are known when it ends, so every hit is listed with all evaluations and the whole time,
+/// which includes building the structure that the method needs. The budget is ignored.
 ///
 /// # Errors
 /// [`Error::Search`] for an unknown method; [`Error::Json`] for a solution that is not representable.
-pub(crate) fn run(pairs: &VertexPairs, request: &Request) -> Result<Record, Error> {
+pub(crate) fn run(pairs: &VertexPairs, spec: RunSpec) -> Result<RunReport, Error> {
     let scene = Scene::new(pairs)?;
-    let ((found, evaluations), seconds) = match request.engine.as_str() {
+    let ((found, evaluations), seconds) = match spec.engine.as_str() {
         "aabb" => scene.timed(Scene::by_trees)?,
         "grid" => scene.timed(Scene::by_grid)?,
         "brute-force" => scene.timed(Scene::by_brute_force)?,
@@ -80,7 +78,7 @@ pub(crate) fn run(pairs: &VertexPairs, request: &Request) -> Result<Record, Erro
             return Err(satisfice::Error::unknown("exact method", other, known).into());
         }
     };
-    write_up(pairs, request, &found, evaluations, seconds)
+    report(pairs, spec, &found, (evaluations, seconds))
 }
 
 /// The chosen vertices of the two bodies, laid out for the methods before the clock starts.
@@ -99,7 +97,7 @@ impl<'a> Scene<'a> {
     fn new(problem: &'a VertexPairs) -> Result<Self, Error> {
         let axes = problem.space().axes();
         let (a, b) = (problem.a(), problem.b());
-        // Whoever pairs a body with itself hands out the same mesh twice.
+        // A problem within one body returns the same mesh twice.
         let one_body = std::ptr::eq(a, b);
         let vertex = |axis: usize, place: f64| {
             let mut values = [axes[0].upper(), axes[1].upper()];
@@ -140,7 +138,7 @@ impl<'a> Scene<'a> {
 
     #[expect(
         clippy::disallowed_methods,
-        reason = "an exact method has no budget; its time is only told"
+        reason = "an exact method has no budget; its time is only reported"
     )]
     fn timed(
         &self,
@@ -200,73 +198,24 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn write_up(
+fn report(
     problem: &VertexPairs,
-    request: &Request,
+    spec: RunSpec,
     found: &[(u32, u32)],
-    evaluations: u64,
-    seconds: f64,
-) -> Result<Record, Error> {
-    let hits = found.len() as u64;
-    Ok(Record {
-        problem: problem.description().name,
-        problem_parameters: Settings::default(),
-        engine: request.engine.clone(),
-        engine_parameters: Settings::default(),
-        scalar: "f64".to_owned(),
-        threshold: Some(problem.threshold()),
-        seed: request.seed,
-        budget: Limits {
-            time_seconds: request.budget.time.map(|time| time.as_secs_f64()),
-            evaluations: request.budget.evaluations,
-            hits: request.budget.hits,
-            slices: 1,
-        },
-        probe_share: 0.0,
-        counts: Counts {
-            evaluations,
-            fitness_calls: evaluations,
-            ..Counts::default()
-        },
-        elapsed_seconds: seconds,
-        overshoot_seconds: 0.0,
-        stop_reason: StopReason::Covered,
-        hits,
-        reference_hits: None,
-        recall: None,
-        completeness: Completeness::Proved,
-        unseen_estimate: None,
-        unseen_interval: None,
-        unseen_confidence: None,
-        unseen_method: None,
-        trace: vec![TracePoint {
-            evaluations,
-            elapsed_seconds: seconds,
-            hits,
-        }],
-        slices: Vec::new(),
-        solutions: found
-            .iter()
-            .map(|pair| {
-                Ok(Solution {
-                    solution: value(pair)?,
-                    fitness: problem.fitness(pair),
-                    evaluation: evaluations,
-                    seconds,
-                })
-            })
-            .collect::<Result<_, Error>>()?,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-    })
-}
-
-fn value(solution: &impl Serialize) -> Result<serde_json::Value, Error> {
-    Ok(serde_json::to_value(solution)?)
+    cost: (u64, f64),
+) -> Result<RunReport, Error> {
+    let hits: Vec<(serde_json::Value, f64)> = found
+        .iter()
+        .map(|pair| Ok((serde_json::to_value(pair)?, problem.fitness(pair))))
+        .collect::<Result<_, Error>>()?;
+    let mut report = RunReport::at_once(spec, problem.threshold(), hits, cost);
+    report.stop_reason = StopReason::Covered;
+    report.set_proved();
+    Ok(report)
 }
 
 #[cfg(test)]
 mod tests {
-    use satisfice::Budget;
     use satisfice_collision::generate;
 
     use super::*;
@@ -298,15 +247,15 @@ mod tests {
             (VertexPairs::within(&folded, 0.06, 1).unwrap(), 100),
         ] {
             let found = METHODS.iter().map(|method| {
-                let record = run(&problem, &Request::new(method.name, Budget::evaluations(1))).unwrap();
-                assert_eq!(record.hits as usize, record.solutions.len());
-                let mut pairs: Vec<_> = record
+                let report = run(&problem, RunSpec::new(method.name)).unwrap();
+                assert_eq!(report.hits as usize, report.solutions.len());
+                let mut pairs: Vec<_> = report
                     .solutions
                     .iter()
                     .map(|hit| hit.solution.to_string())
                     .collect();
                 pairs.sort_unstable();
-                (pairs, record.counts.evaluations)
+                (pairs, report.counts.evaluations)
             });
             let found: Vec<_> = found.collect();
             assert!(found[2].0.len() >= least, "{}", found[2].0.len());
@@ -316,7 +265,7 @@ mod tests {
         assert!(
             run(
                 &VertexPairs::within(&folded, 0.06, 1).unwrap(),
-                &Request::new("aab", Budget::evaluations(1))
+                RunSpec::new("aab")
             )
             .is_err()
         );

@@ -1,58 +1,40 @@
-//! A problem with its parameters set, behind one virtual call a run.
+//! A problem with its parameters set, behind one virtual call per run.
 
 use satisfice::catalogue::{Catalogued, Params};
 use satisfice_collision::VertexPairs;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::control::RunControl;
 use crate::error::Error;
 use crate::exact::{self, Geometric};
-use crate::record::Record;
-use crate::resume::{Keeping, Saved};
-use crate::run::{Progress, Request, search, search_keeping};
+use crate::report::RunReport;
+use crate::run::run;
 use crate::settings::Settings;
+use crate::spec::RunSpec;
 use crate::verify::{self, Mismatch};
 
-/// A problem of the catalogue with its parameters set. Built once, run as often as wanted, from any thread.
+/// A problem of the catalogue with its parameters set. It is built once and can run any number of times, from any thread.
 pub trait Instance: Send + Sync {
     /// Name of the problem.
     fn name(&self) -> &'static str;
     /// All its parameters.
     fn parameters(&self) -> &Settings;
-    /// Runs an engine on it; as [`search`], which see. The reference count is left open.
+    /// Runs `spec` on it, whatever problem `spec` names. The reference count is left open:
+    /// [`RunReport::set_reference`].
     ///
     /// # Errors
-    /// As [`search`].
-    fn run(&self, request: &Request, watch: &mut dyn FnMut(&Progress)) -> Result<Record, Error>;
-    /// The same while checkpoints are kept, or from one on.
-    ///
-    /// # Errors
-    /// As [`search`], and [`Error::Checkpoint`] and [`Error::Other`] for a checkpoint that does not fit.
-    fn run_keeping(
-        &self,
-        request: &Request,
-        watch: &mut dyn FnMut(&Progress),
-        keeping: Keeping<'_>,
-    ) -> Result<Record, Error>;
-    /// Whether [`Instance::exact`] works.
-    fn is_geometric(&self) -> bool {
-        false
-    }
-    /// Runs one of [`crate::exact::METHODS`] on it, for problems of vertex pairs.
-    ///
-    /// # Errors
-    /// [`Error::Exact`] for a problem that is none.
-    fn exact(&self, request: &Request) -> Result<Record, Error> {
-        Err(Error::Exact {
-            method: request.engine.clone(),
-            problem: self.name(),
-        })
-    }
-    /// How many distinct hits there are, where that is known. May take long: call it outside any clock.
+    /// [`Error::Search`] for an unknown engine, a parameter out of range or a budget that cannot be used;
+    /// [`Error::Exact`] for an exact method where [`is_geometric`](Self::is_geometric) is false; [`Error::Checkpoint`] and
+    /// [`Error::Differs`] for a checkpoint that does not fit.
+    fn run(&self, spec: &RunSpec, control: RunControl<'_>) -> Result<RunReport, Error>;
+    /// Whether the [exact methods](crate::exact) run on it.
+    fn is_geometric(&self) -> bool;
+    /// The number of all hits, where it is known. May take long: call it outside any clock.
     fn reference_hits(&self) -> Option<u64>;
-    /// Evaluates every solution of a record anew and checks its books; what does not fit, in the order of the record.
-    /// `reference` is [`Instance::reference_hits`].
-    fn verify(&self, record: &Record, reference: Option<u64>) -> Vec<Mismatch>;
+    /// Evaluates every solution of a report again and checks its counts; returns what does not fit, in the order of the
+    /// report. `reference` is [`Instance::reference_hits`].
+    fn verify(&self, report: &RunReport, reference: Option<u64>) -> Vec<Mismatch>;
 }
 
 /// The instance of a problem type.
@@ -62,7 +44,7 @@ struct Built<P> {
     pairs: Option<fn(&P) -> &VertexPairs>,
 }
 
-/// Builds the instance with these values.
+/// Builds the instance with these parameters.
 pub(crate) fn build<P>(params: &Params) -> Result<Box<dyn Instance>, Error>
 where
     P: Catalogued + Send + 'static,
@@ -103,54 +85,34 @@ where
         &self.parameters
     }
 
-    fn run(&self, request: &Request, watch: &mut dyn FnMut(&Progress)) -> Result<Record, Error> {
-        Ok(Record {
+    fn run(&self, spec: &RunSpec, control: RunControl<'_>) -> Result<RunReport, Error> {
+        let spec = RunSpec {
             problem: P::NAME.to_owned(),
             problem_parameters: self.parameters.clone(),
-            ..search(&self.problem, request, watch)?
-        })
-    }
-
-    fn run_keeping(
-        &self,
-        request: &Request,
-        watch: &mut dyn FnMut(&Progress),
-        keeping: Keeping<'_>,
-    ) -> Result<Record, Error> {
-        let asked = Saved::new(P::NAME, &self.parameters, request);
-        Ok(Record {
-            problem: P::NAME.to_owned(),
-            problem_parameters: self.parameters.clone(),
-            ..search_keeping(&self.problem, request, watch, asked, keeping)?
-        })
+            ..spec.clone()
+        };
+        if exact::find(&spec.engine).is_none() {
+            return run(&self.problem, spec, control);
+        }
+        let pairs = self.pairs.ok_or_else(|| Error::Exact {
+            method: spec.engine.clone(),
+            problem: P::NAME,
+        })?;
+        exact::run(pairs(&self.problem), spec.complete()?)
     }
 
     fn is_geometric(&self) -> bool {
         self.pairs.is_some()
     }
 
-    fn exact(&self, request: &Request) -> Result<Record, Error> {
-        let Some(pairs) = self.pairs else {
-            return Err(Error::Exact {
-                method: request.engine.clone(),
-                problem: self.name(),
-            });
-        };
-        Ok(Record {
-            problem: P::NAME.to_owned(),
-            problem_parameters: self.parameters.clone(),
-            ..exact::run(pairs(&self.problem), request)?
-        })
-    }
-
     fn reference_hits(&self) -> Option<u64> {
         self.problem.reference_hits()
     }
 
-    fn verify(&self, record: &Record, reference: Option<u64>) -> Vec<Mismatch> {
-        let mut mismatches = verify::books(record);
-        mismatches.extend(verify::solutions(&self.problem, record));
-        mismatches.extend(verify::reference(record, reference));
+    fn verify(&self, report: &RunReport, reference: Option<u64>) -> Vec<Mismatch> {
+        let mut mismatches = verify::accounting(report);
+        mismatches.extend(verify::solutions(&self.problem, report));
+        mismatches.extend(verify::reference(report, reference));
         mismatches
     }
 }

@@ -1,39 +1,43 @@
-//! Runs any engine on any problem by name: the [catalogue] of problems, records of runs as JSON, their verification.
+//! Runs any engine on any problem by name: the [catalogue] of problems, [specifications](RunSpec) and [reports](RunReport)
+//! of runs as JSON, and their [verification](verify).
 //!
-//! A problem is generic and inlines on the hot path; here it is behind one [`Instance`], whose inside stays monomorphic:
+//! A problem is generic and inlines on the hot path; here it is behind an [`Instance`], whose inside stays monomorphic:
 //! only the call of a whole run is virtual.
 //!
 //! ```
-//! use satisfice::Budget;
-//! use satisfice_catalogue::{Request, catalogue};
-//! # if catalogue::all().is_empty() { return Ok(()); }
-//! let problem = catalogue::all()[0].build([])?;
-//! let request = Request::new("random", Budget::evaluations(1000)).seed(7);
-//! let record = problem.run(&request, &mut |_| {})?;
-//! assert_eq!(record.counts.evaluations, 1000);
-//! println!("{}", serde_json::to_string_pretty(&record)?);
+//! use satisfice_catalogue::{RunControl, RunSpec, catalogue};
+//! let problem = catalogue::find("queens")?.build([("n", "6")])?;
+//! let report = problem.run(&RunSpec::new("random").evaluations(1000).seed(7), RunControl::default())?;
+//! assert_eq!(report.counts.evaluations, 1000);
+//! println!("{}", serde_json::to_string_pretty(&report)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod catalogue;
+pub mod checkpoint;
+mod control;
 mod error;
 pub mod exact;
 mod instance;
 pub mod json;
 pub mod listing;
 mod machine;
+pub mod options;
 pub mod quantity;
-pub mod record;
-pub mod resume;
-pub mod run;
-pub mod settings;
+pub mod report;
+mod run;
+mod settings;
+mod spec;
 pub mod verify;
 
+pub use catalogue::{Catalogue, ProblemSpec};
+pub use control::{Progress, RunControl};
 pub use error::Error;
 pub use instance::Instance;
 pub use machine::machine;
-pub use record::Record;
-pub use resume::{Keeping, Saved};
-pub use run::{Progress, Request, search};
+pub use options::RunOption;
+pub use report::RunReport;
+pub use run::run;
 pub use settings::Settings;
+pub use spec::{Limits, RunSpec};
 pub use verify::Mismatch;

@@ -5,14 +5,14 @@ use satisfice::catalogue::Parameter;
 use satisfice::engine;
 use serde::Serialize;
 
-use crate::catalogue;
+use crate::catalogue::Catalogue;
 
 /// Everything that has a name.
 #[derive(Debug, Clone, Serialize)]
 pub struct Listing {
     /// The engines.
     pub engines: Vec<Item>,
-    /// The parameters that every engine takes beside its own.
+    /// The parameters that every engine takes in addition to its own.
     pub common_engine_parameters: Vec<Row>,
     /// The problems.
     pub problems: Vec<Item>,
@@ -110,9 +110,9 @@ impl From<&Parameter> for Row {
     }
 }
 
-/// All engines and problems.
+/// All engines, and the problems of a catalogue.
 #[must_use]
-pub fn listing() -> Listing {
+pub fn listing(catalogue: &Catalogue) -> Listing {
     let rows = |parameters: &[Parameter]| parameters.iter().map(Row::from).collect();
     Listing {
         engines: engine::all()
@@ -125,7 +125,8 @@ pub fn listing() -> Listing {
             })
             .collect(),
         common_engine_parameters: rows(engine::COMMON_PARAMETERS),
-        problems: catalogue::all()
+        problems: catalogue
+            .problems()
             .iter()
             .map(|entry| Item {
                 name: entry.name,

@@ -1,20 +1,17 @@
-//! Parameters as a record keeps them: names with typed values, in the order of their table.
+//! Parameters as a report keeps them: names with typed values, in the order of their table.
 
-use core::fmt;
-
-use satisfice::catalogue::ParamKind;
-use satisfice::catalogue::Parameter;
-use serde::de::{MapAccess, Visitor};
-use serde::ser::SerializeMap;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use indexmap::IndexMap;
+use satisfice::catalogue::{ParamKind, Parameter};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Names with values, in a fixed order; a map in JSON, numbers as numbers.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Settings(Vec<(String, Value)>);
+/// Names with values, in a fixed order; a map in JSON, with numbers as numbers.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Settings(IndexMap<String, Value>);
 
 impl Settings {
-    /// From texts, typed by the rows of `table` of the same names; a name without a row stays text.
+    /// From texts, typed by the rows of `table` with the same names; a name without a row stays text.
     #[must_use]
     pub fn typed(texts: &[(String, String)], table: &[Parameter]) -> Self {
         let typed = |(name, text): &(String, String)| {
@@ -36,64 +33,45 @@ impl Settings {
         self.0.iter().map(|(name, value)| (name.as_str(), value))
     }
 
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The value of this name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Value> {
-        self.iter()
-            .find_map(|(known, value)| (known == name).then_some(value))
+        self.0.get(name)
     }
 
     /// Sets a value, at the end if the name is new.
     pub fn set(&mut self, name: &str, value: impl Into<Value>) {
-        match self.0.iter_mut().find(|(known, _)| known == name) {
-            Some((_, old)) => *old = value.into(),
-            None => self.0.push((name.to_owned(), value.into())),
-        }
+        self.0.insert(name.to_owned(), value.into());
     }
 
     /// The texts from which a table of parameters reads them again.
     #[must_use]
     pub fn texts(&self) -> Vec<(String, String)> {
+        let text = |value: &Value| match value {
+            Value::String(text) => text.clone(),
+            other => other.to_string(),
+        };
         self.0
             .iter()
-            .map(|(name, value)| {
-                let text = match value {
-                    Value::String(text) => text.clone(),
-                    other => other.to_string(),
-                };
-                (name.clone(), text)
-            })
+            .map(|(name, value)| (name.clone(), text(value)))
             .collect()
     }
 }
 
-impl Serialize for Settings {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in &self.0 {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
-    }
-}
-
-impl<'de> Deserialize<'de> for Settings {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct InOrder;
-        impl<'de> Visitor<'de> for InOrder {
-            type Value = Settings;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a map from parameter names to values")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Settings, A::Error> {
-                let mut settings = Settings::default();
-                while let Some((name, value)) = map.next_entry()? {
-                    settings.0.push((name, value));
-                }
-                Ok(settings)
-            }
-        }
-        deserializer.deserialize_map(InOrder)
+impl FromIterator<(String, String)> for Settings {
+    fn from_iter<I: IntoIterator<Item = (String, String)>>(texts: I) -> Self {
+        Self(
+            texts
+                .into_iter()
+                .map(|(name, text)| (name, Value::String(text)))
+                .collect(),
+        )
     }
 }
 

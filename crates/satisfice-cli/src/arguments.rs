@@ -3,24 +3,24 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueHint};
-use satisfice::{Budget, Cancel};
-use satisfice_catalogue::{Request, Saved};
+use clap::{Arg, ArgMatches, Args, FromArgMatches, Parser, Subcommand, ValueHint};
+use satisfice_catalogue::options::OPTIONS;
+use satisfice_catalogue::{RunOption, RunSpec};
 
 pub(crate) use crate::collide::arguments::CollideArguments;
 use crate::quantity;
 
-/// The engine where none is named.
+/// The default engine.
 pub(crate) const DEFAULT_ENGINE: &str = "portfolio";
-/// The time a search has where neither a time nor a number of evaluations is given.
+/// The wall time of a search without `--time` and `--evaluations`.
 const DEFAULT_TIME: Duration = Duration::from_secs(1);
 
 /// Parses the command line.
-pub(crate) fn parse() -> Result<Command, clap::Error> {
+pub(crate) fn parse() -> Result<Subcommands, clap::Error> {
     Satisfice::try_parse().map(|satisfice| satisfice.command)
 }
 
-/// Find as many good-enough answers as you can before the deadline, and say honestly how complete the answer is.
+/// Find as many good-enough answers as possible before a deadline, and report how complete they are.
 #[derive(Debug, Parser)]
 #[command(
     name = "satisfice",
@@ -28,22 +28,22 @@ pub(crate) fn parse() -> Result<Command, clap::Error> {
     propagate_version = true,
     after_help = "\
 Examples:
-  satisfice list                                           what there is
+  satisfice list                                           all engines and problems
   satisfice run teapots --time 100ms                       what the default engine finds in a tenth of a second
   satisfice run queens --set n=6 --evaluations 1e5 --json report.json
-  satisfice verify report.json                             is that report true?
-  satisfice collide a.obj b.ply --threshold 0.01           which vertices are closer than 0.01?
-  satisfice bench mine.toml --seeds 0..16 --out results    engines compared on problems, over seeds
+  satisfice verify report.json                             check that report
+  satisfice collide a.obj b.ply --threshold 0.01           all pairs of vertices closer than 0.01
+  satisfice bench mine.toml --seeds 0..16 --out results    compare engines on problems, over seeds
 
-Exit codes: 0 at least one hit (or nothing to complain of), 1 no hit (or a report that is false), 2 an error."
+Exit codes: 0 at least one hit (or success), 1 no hit (or a report that is wrong), 2 an error."
 )]
 pub(crate) struct Satisfice {
     #[command(subcommand)]
-    command: Command,
+    command: Subcommands,
 }
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub(crate) enum Subcommands {
     List(ListArguments),
     Run(RunArguments),
     Collide(CollideArguments),
@@ -55,7 +55,7 @@ pub(crate) enum Command {
 /// List every engine and problem with its parameters, their defaults and ranges.
 #[derive(Debug, Args)]
 pub(crate) struct ListArguments {
-    /// As JSON.
+    /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -65,21 +65,21 @@ pub(crate) struct ListArguments {
 #[command(after_help = "\
 Examples:
   satisfice run teapots
-      A second of the default engine on two colliding teapots.
+      Run the default engine for a second on two colliding teapots.
   satisfice run queens --set n=6 --engine random --evaluations 200000 --json -
-      A report as JSON on stdout. Under a budget of evaluations the same command gives the same report, but for times, on any
-      machine and any number of threads.
+      Write a report as JSON to stdout. Under a budget of evaluations the same command gives the same report, apart from times,
+      on any machine and any number of threads.
   satisfice run rastrigin --set dimension=2 --engine latest-hit-qpso --engine-set particles=60 --time 2s --plot hits.svg
-      Parameters of the problem and of the engine, and the curve of hits against evaluations and time.
+      Set parameters of the problem and of the engine, and draw hits against evaluations and time.
   satisfice run shell --time 50ms --slices 10 --threads 0
-      Ten time slices of 50 ms, each warm from the hits of the one before, on all cores.
+      Run ten time slices of 50 ms, each warm from the hits of the previous one, on all cores.
   satisfice run falsification --islands 8 --threads 0 --time 5s
-      Eight engines that share their hits, on all cores.
+      Run eight engines that share their hits, on all cores.
   satisfice run arm --time 1h --checkpoint arm.json
   satisfice run arm --resume arm.json --checkpoint arm.json
-      A long run that Ctrl-C or a power cut does not lose: resumed, it finds what it would have found without interruption.
+      Run for an hour without losing hits to Ctrl-C or a power cut: a resumed run finds what an uninterrupted one finds.
 
-Ctrl-C ends the search and keeps what it found.")]
+Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
     /// Name of the problem; `satisfice list` shows them all.
     #[arg(value_name = "PROBLEM")]
@@ -96,21 +96,14 @@ pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) search: SearchArguments,
 
-    /// Number of time slices, each with the whole budget and warm from the hits of the one before [default: 1].
-    #[arg(long, value_name = "K", value_parser = quantity::count, allow_hyphen_values = true)]
-    pub(crate) slices: Option<u64>,
-
-    /// Engines side by side, each with its share of the budget, which share their hits: for a fitness so cheap that one engine
-    /// cannot keep several threads busy. The number of islands is part of the search; that of threads is not.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::islands, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["checkpoint", "resume"])]
-    pub(crate) islands: usize,
+    #[command(flatten)]
+    pub(crate) slices: Options<false>,
 
     /// Keep a checkpoint of the run in this file: at the beginning, every few seconds, at Ctrl-C and at the end.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
 
-    /// Go on with the run that this checkpoint is of. Arguments that are not given are taken from it; others have to agree.
+    /// Continue the run of this checkpoint. Arguments that are not given are taken from it; others must agree with it.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) resume: Option<PathBuf>,
 
@@ -123,98 +116,120 @@ pub(crate) struct RunArguments {
     pub(crate) plot: Option<PathBuf>,
 }
 
-/// What every search takes.
+/// Options of every search.
 #[derive(Debug, Args)]
 pub(crate) struct SearchArguments {
     /// Set a parameter of the engine; may be repeated.
     #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
     engine_set: Vec<(String, String)>,
 
-    /// Wall time, with its unit: 100us, 100ms, 1.5s, 3min, 1h [default: 1s for an engine, unless --evaluations is given].
-    #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
-    time: Option<Duration>,
+    #[command(flatten)]
+    options: Options<true>,
 
-    /// Number of evaluations, such as 5000 or 1e6; repeated solutions count, too.
-    #[arg(long, value_name = "N", value_parser = quantity::count, allow_hyphen_values = true)]
-    evaluations: Option<u64>,
-
-    /// Stop at this number of distinct hits.
-    #[arg(long, value_name = "N", value_parser = quantity::count, allow_hyphen_values = true)]
-    hits: Option<u64>,
-
-    /// Seed of the random numbers, 0 to 2^64 - 1 [default: 0].
-    #[arg(long, value_name = "N", value_parser = quantity::seed, allow_hyphen_values = true)]
-    seed: Option<u64>,
-
-    /// Share of the evaluations spent on uniform probes, 0 to 0.5, from which the hits not seen are estimated [default: the
-    /// engine's own, which is 0 for most].
-    #[arg(long, value_name = "SHARE", value_parser = quantity::share, allow_hyphen_values = true)]
-    probes: Option<f64>,
-
-    /// Threads that evaluate; 0 takes all cores.
+    /// Threads that evaluate; 0 uses all cores.
     #[arg(long, value_name = "T", default_value = "1", value_parser = quantity::threads, allow_hyphen_values = true)]
     threads: usize,
 }
 
 impl SearchArguments {
-    /// The request, of one slice, that `cancel` ends.
-    pub(crate) fn request(&self, engine: &str, cancel: &Cancel) -> anyhow::Result<Request> {
-        let time = match (self.time, self.evaluations) {
-            (None, None) => Some(DEFAULT_TIME),
-            (time, _) => time,
-        };
-        let budget = Budget {
-            time,
-            evaluations: self.evaluations,
-            hits: self.hits,
-            ..Budget::until(cancel)
-        };
-        let mut request = Request::new(engine, budget).seed(self.seed.unwrap_or_default());
-        request.engine_settings.clone_from(&self.engine_set);
-        request.threads = self.threads;
-        request.probes = self.probes;
-        // What is wrong with the engine is said before anything is made.
-        let settings = self
-            .engine_set
-            .iter()
-            .map(|(name, value)| (name.as_str(), value.as_str()));
-        satisfice::engine::find(engine)?.configure::<f64>(settings)?;
-        Ok(request)
-    }
-
-    /// What was asked for when a run was saved, with what is given here in its place.
-    pub(crate) fn over(&self, saved: &mut Saved) {
-        if !self.engine_set.is_empty() {
-            saved.engine_settings.clone_from(&self.engine_set);
+    /// A run of one slice by this engine, checked.
+    pub(crate) fn spec(&self, engine: &str) -> anyhow::Result<RunSpec> {
+        let mut spec = RunSpec::new(engine);
+        self.enter(&mut spec);
+        if spec.budget.time.is_none() && spec.budget.evaluations.is_none() {
+            spec.budget.time = Some(DEFAULT_TIME);
         }
-        saved.seed = self.seed.unwrap_or(saved.seed);
-        saved.probes = self.probes.or(saved.probes);
-        saved.budget.time = self.time.or(saved.budget.time);
-        saved.budget.evaluations = self.evaluations.or(saved.budget.evaluations);
-        saved.budget.hits = self.hits.or(saved.budget.hits);
+        // A wrong engine or parameter is an error before any file is opened.
+        satisfice::engine::find(engine)?;
+        Ok(spec.complete()?)
     }
 
-    /// Threads to evaluate on.
+    /// Enters what is given.
+    pub(crate) fn enter(&self, spec: &mut RunSpec) {
+        for (name, value) in &self.engine_set {
+            spec.engine_parameters.set(name, value.as_str());
+        }
+        self.options.enter(spec);
+        spec.threads = self.threads;
+    }
+
+    /// The number of threads that evaluate.
     pub(crate) fn threads(&self) -> usize {
         self.threads
     }
 
-    /// The options given that only an engine makes use of.
-    pub(crate) fn for_an_engine(&self) -> Vec<&'static str> {
-        [
-            ("--engine-set", !self.engine_set.is_empty()),
-            ("--evaluations", self.evaluations.is_some()),
-            ("--seed", self.seed.is_some()),
-            ("--probes", self.probes.is_some()),
-        ]
-        .into_iter()
-        .filter_map(|(name, given)| given.then_some(name))
-        .collect()
+    /// The options given that only an engine uses.
+    pub(crate) fn for_an_engine(&self) -> Vec<String> {
+        let set = (!self.engine_set.is_empty()).then(|| "--engine-set".to_owned());
+        let names = self.options.0.iter().map(|(option, _)| option.name);
+        let others = names.filter(|name| !["time", "hits"].contains(name));
+        set.into_iter()
+            .chain(others.map(|name| format!("--{name}")))
+            .collect()
     }
 
-    /// The limits that an exact method makes use of, too: time and hits.
+    /// The limits that an exact method uses as well: time and hits.
     pub(crate) fn limits(&self) -> (Option<Duration>, Option<u64>) {
-        (self.time, self.hits)
+        let mut spec = RunSpec::new("");
+        self.options.enter(&mut spec);
+        (spec.budget.time, spec.budget.hits)
+    }
+}
+
+/// The given options of a run: those of every search, or the others.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Options<const EVERY_SEARCH: bool>(Vec<(&'static RunOption, RunSpec)>);
+
+impl<const EVERY_SEARCH: bool> Options<EVERY_SEARCH> {
+    fn all() -> impl Iterator<Item = &'static RunOption> {
+        OPTIONS
+            .iter()
+            .filter(|option| option.every_search == EVERY_SEARCH)
+    }
+
+    /// Enters what is given.
+    pub(crate) fn enter(&self, spec: &mut RunSpec) {
+        for (option, given) in &self.0 {
+            option.copy(spec, given);
+        }
+    }
+}
+
+impl<const EVERY_SEARCH: bool> FromArgMatches for Options<EVERY_SEARCH> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = |option: &'static RunOption| {
+            let spec = matches.get_one::<RunSpec>(option.name)?;
+            Some((option, spec.clone()))
+        };
+        Ok(Self(Self::all().filter_map(given).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl<const EVERY_SEARCH: bool> Args for Options<EVERY_SEARCH> {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        Self::all().fold(command, |command, option| {
+            let parse = |text: &str| {
+                let mut spec = RunSpec::new("");
+                option.set(&mut spec, text).map(|()| spec)
+            };
+            command.arg(
+                Arg::new(option.name)
+                    .long(option.name)
+                    .value_name(option.value)
+                    .help(option.help)
+                    .allow_hyphen_values(true)
+                    .value_parser(parse),
+            )
+        })
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
     }
 }
 
@@ -223,32 +238,32 @@ impl SearchArguments {
 #[command(after_help = "\
 Examples:
   satisfice bench experiment-one-smoke --out results
-      The suite of this name, in the folder results: report.html and its figures, results.jsonl (a line a run), summary.json, and
-      ioh, which IOHanalyzer reads.
+      Run the suite of this name. The folder results gets report.html and its figures, results.jsonl (one line per run),
+      summary.json, and ioh, which IOHanalyzer reads.
   satisfice bench mine.toml --seeds 0..16 --engines portfolio,random
-      Two engines and 16 seeds in the place of those of the file.
+      Run two engines and 16 seeds instead of those of the file.
 
-A suite is such a file; a list of values is swept over:
+A suite is a file such as this; all values of a list are run:
   seeds = \"0..8\"
   [[part]]
   engines = [\"random\", { name = \"latest-hit-qpso\", particles = [10, 30] }]
   problems = [{ name = \"rastrigin\", dimension = [2, 3] }, \"queens\"]
-  evaluations = 100_000            # and / or time = \"100ms\", hits, slices, probes
-  at-evaluations = [1000, 10_000]  # and / or at-times = [\"10ms\"]: where hits are noted
-  against = \"random\"             # with whom the others are compared, seed by seed
+  evaluations = 100_000            # and / or time = \"100ms\", hits, slices, probes, islands
+  at-evaluations = [1000, 10_000]  # and / or at-times = [\"10ms\"]: where hits are counted
+  against = \"random\"             # the engine that the others are compared with, seed by seed
 
-Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command goes on where
-it was interrupted: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.")]
+Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command continues an
+interrupted sweep: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.")]
 pub(crate) struct BenchArguments {
-    /// Name of a suite, or a TOML file; a name that is none gets a list of them.
+    /// Name of a suite, or a TOML file; an unknown name prints a list of the suites.
     #[arg(value_name = "SUITE|FILE.toml", value_hint = ValueHint::FilePath)]
     pub(crate) suite: String,
 
-    /// Only these engines, separated by commas.
+    /// Run only these engines, separated by commas.
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
     pub(crate) engines: Vec<String>,
 
-    /// Seeds A to B - 1 in the place of those of the suite.
+    /// Use the seeds A to B - 1 instead of those of the suite.
     #[arg(long, value_name = "A..B", value_parser = satisfice_bench::sweep::seeds, allow_hyphen_values = true)]
     pub(crate) seeds: Option<std::ops::Range<u64>>,
 
@@ -256,20 +271,20 @@ pub(crate) struct BenchArguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
 
-    /// How many runs limited by evaluations go on at a time; 0 for as many as there are cores.
+    /// Number of runs limited by evaluations that run at a time; 0 for one per core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = quantity::threads, allow_hyphen_values = true)]
     pub(crate) jobs: usize,
 }
 
-/// Evaluate every solution of a report anew and check its counts; says what does not fit.
+/// Evaluate every solution of a report again, check its counts, and print what does not fit.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   satisfice run queens --json report.json && satisfice verify report.json
 
-Exit code 0: the report is true; 1: it is false; 2: it cannot be read.")]
+Exit code 0: the report is correct; 1: it is wrong; 2: it cannot be read.")]
 pub(crate) struct VerifyArguments {
-    /// A report that `run --json` or `collide --json` has written; `-` is stdin.
+    /// A report that `run --json` or `collide --json` wrote; `-` is stdin.
     #[arg(value_name = "REPORT.json", value_hint = ValueHint::FilePath)]
     pub(crate) report: PathBuf,
 }

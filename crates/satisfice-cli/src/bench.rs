@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use satisfice_bench::studies;
 use satisfice_bench::sweep::{self, Event, Plan, Suite};
+use satisfice_catalogue::Catalogue;
 use satisfice_catalogue::quantity::shown;
 
 use crate::arguments::BenchArguments;
 use crate::progress::{Counting, Runs};
 use crate::{interrupt, output};
 
-pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
+pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     let mut suite = Suite::open(&arguments.suite)?;
     if let Some(seeds) = &arguments.seeds {
         suite = suite.with_seeds(seeds);
@@ -23,13 +24,13 @@ pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("bench-{}", suite.name)));
-    let plan = Plan::new(suite)?;
+    let plan = Plan::new(suite, catalogue)?;
     let cancel = interrupt::listen()?;
 
     let mut runs = None;
     let mut watch = |event: &Event<'_>| match event {
         Event::Begun { runs: all, done } => {
-            let timed = sweep::timed(&plan).as_secs_f64();
+            let timed = plan.timed_seconds();
             let clock = if timed > 0.0 {
                 format!(", {} of them by the clock", shown::seconds(timed))
             } else {
@@ -45,8 +46,8 @@ pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
             .iter()
             .for_each(|runs| runs.say(&format!("counting all hits of {problem}"))),
         Event::Finished(row) => {
-            let (engine, problem, seed) = (&row.engine_label, &row.problem_label, row.key.seed);
-            let what = format!("{} hits by {engine} on {problem}, seed {seed}", row.hits);
+            let (engine, problem, seed) = (&row.engine_label, &row.problem_label, row.report.spec.seed);
+            let what = format!("{} hits by {engine} on {problem}, seed {seed}", row.report.hits);
             runs.iter_mut().for_each(|runs| runs.finished(&what));
         }
     };
@@ -80,10 +81,10 @@ pub(crate) fn bench(arguments: &BenchArguments) -> anyhow::Result<ExitCode> {
             finished.foreign
         );
     }
-    if finished.rows.len() < finished.runs {
-        let missing = finished.runs - finished.rows.len();
+    if finished.missing() > 0 {
         eprintln!(
-            "interrupted: {missing} of {} runs are missing; the same command goes on from here",
+            "interrupted: {} of {} runs are missing; the same command continues from here",
+            finished.missing(),
             finished.runs
         );
     }

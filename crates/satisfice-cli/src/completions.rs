@@ -1,22 +1,25 @@
-//! `satisfice completions`: what a shell needs to complete the command, names of problems and engines included.
+//! `satisfice completions`: a script that completes the command in a shell, including the names of problems and engines.
 
 use std::process::ExitCode;
 
 use clap::CommandFactory;
 use clap::builder::PossibleValuesParser;
 use satisfice::engine;
-use satisfice_catalogue::catalogue;
+use satisfice_catalogue::Catalogue;
 
 use crate::arguments::{CompletionsArguments, Satisfice};
 use crate::output;
 
-pub(crate) fn completions(arguments: &CompletionsArguments) -> anyhow::Result<ExitCode> {
+pub(crate) fn completions(
+    arguments: &CompletionsArguments,
+    catalogue: &Catalogue,
+) -> anyhow::Result<ExitCode> {
     let engines = || engine::all().iter().map(|entry| entry.name);
-    let problems = || catalogue::all().iter().map(|entry| entry.name);
+    let names: Vec<&'static str> = catalogue.problems().iter().map(|problem| problem.name).collect();
     let mut command = Satisfice::command()
         .mut_subcommand("run", |run| {
             run.mut_arg("problem", |arg| {
-                arg.value_parser(PossibleValuesParser::new(problems()))
+                arg.value_parser(PossibleValuesParser::new(names))
             })
             .mut_arg("engine", |arg| {
                 arg.value_parser(PossibleValuesParser::new(engines()))

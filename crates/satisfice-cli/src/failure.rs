@@ -1,4 +1,4 @@
-//! How errors are told: one line on stderr that says what is wrong and how to mend it, exit code 2.
+//! How errors are reported: one line on stderr that says what is wrong and how to fix it, exit code 2.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -11,7 +11,7 @@ use crate::arguments::Satisfice;
 /// Exit code of every error.
 const ERROR: u8 = 2;
 
-/// Tells what went wrong.
+/// Reports an error.
 pub(crate) fn report(error: &anyhow::Error) -> ExitCode {
     let mut said = String::new();
     for cause in error.chain().map(ToString::to_string) {
@@ -26,10 +26,10 @@ pub(crate) fn report(error: &anyhow::Error) -> ExitCode {
     tell(&said)
 }
 
-/// Tells what is wrong with the command line; help and version, which arrive here too, go to stdout.
+/// Reports a mistake in the command line; help and version, which arrive here as well, go to stdout.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        // A closed pipe is not our reader's mistake.
+        // A closed pipe is not an error of the reader.
         drop(error.print());
         return ExitCode::SUCCESS;
     }
@@ -74,7 +74,7 @@ fn one_line(error: &clap::Error) -> String {
 
 fn tell(message: &str) -> ExitCode {
     let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
-    // Where stderr is closed there is nobody to tell.
+    // Where stderr is closed, the message cannot be shown.
     drop(writeln!(std::io::stderr(), "error: {line}"));
     ExitCode::from(ERROR)
 }

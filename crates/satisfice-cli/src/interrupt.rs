@@ -1,12 +1,12 @@
-//! Ctrl-C: the first one ends the search and keeps what it found, the second ends the program.
+//! Ctrl-C: the first one ends the search and keeps its hits, the second one ends the program.
 
 use anyhow::Context;
 use satisfice::Cancel;
 
-/// What a shell reports for a program ended by Ctrl-C.
+/// The exit code that shells use for a program ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
-/// Listens from now on.
+/// Listens for Ctrl-C and SIGTERM.
 pub(crate) fn listen() -> anyhow::Result<Cancel> {
     let cancel = Cancel::new();
     let flag = cancel.clone();

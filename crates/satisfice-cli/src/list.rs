@@ -3,18 +3,20 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use satisfice_catalogue::json;
 use satisfice_catalogue::listing::{Item, Range, Row, listing};
+use satisfice_catalogue::{Catalogue, json};
+
+use satisfice_bench::table;
 
 use crate::arguments::ListArguments;
 use crate::output;
 
-pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<ExitCode> {
-    let listing = listing();
+pub(crate) fn list(arguments: &ListArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
+    let listing = listing(catalogue);
     if arguments.json {
         output::print(&json::to_vec(&listing)?)?;
     } else {
-        let mut text = table(
+        let mut text = items(
             "engine",
             "--engine NAME --engine-set PARAMETER=VALUE",
             &listing.engines,
@@ -22,7 +24,7 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<ExitCode> {
         text.push_str("\n  Every engine also takes:\n");
         text.push_str(&parameters(&listing.common_engine_parameters));
         text.push('\n');
-        text.push_str(&table(
+        text.push_str(&items(
             "problem",
             "run PROBLEM --set PARAMETER=VALUE",
             &listing.problems,
@@ -33,7 +35,7 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<ExitCode> {
 }
 
 /// The items one below the other, each with a table of its parameters.
-fn table(what: &str, usage: &str, items: &[Item]) -> String {
+fn items(what: &str, usage: &str, items: &[Item]) -> String {
     let mut text = format!("{} {what}s ({usage})\n", items.len());
     // Writing to a string cannot fail.
     for item in items {
@@ -46,26 +48,8 @@ fn table(what: &str, usage: &str, items: &[Item]) -> String {
 
 /// A table of parameters, a line each.
 fn parameters(rows: &[Row]) -> String {
-    let rows: Vec<[String; 4]> = rows.iter().map(columns).collect();
-    let width = |column: usize| {
-        rows.iter()
-            .map(|row| row[column].chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths = [width(0), width(1), width(2)];
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    for [name, default, range, summary] in &rows {
-        let _ = writeln!(
-            text,
-            "      {name:<a$}  {default:<b$}  {range:<c$}  {summary}",
-            a = widths[0],
-            b = widths[1],
-            c = widths[2]
-        );
-    }
-    text
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| columns(row).to_vec()).collect();
+    table::plain(&rows, 6, 4)
 }
 
 /// Name, default, range, summary.
@@ -83,7 +67,7 @@ fn columns(row: &Row) -> [String; 4] {
     [row.name.to_owned(), default, range, row.summary.to_owned()]
 }
 
-/// Bounds that are there only because there is no greater number.
+/// The greatest integer stands for no bound.
 fn greatest(max: i64) -> String {
     if max == i64::MAX {
         "2^63 - 1".to_owned()
@@ -92,7 +76,7 @@ fn greatest(max: i64) -> String {
     }
 }
 
-/// Great and small numbers by their power of ten.
+/// Large and small numbers with an exponent.
 fn real(value: f64) -> String {
     if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
         format!("{value:e}")
@@ -128,6 +112,6 @@ mod tests {
             reference: "none needed",
             parameters: Vec::new(),
         };
-        insta::assert_snapshot!(table("engine", "--engine NAME", &[swarm, plain]));
+        insta::assert_snapshot!(items("engine", "--engine NAME", &[swarm, plain]));
     }
 }

@@ -1,4 +1,4 @@
-//! Where results go: stdout, or files that are whole or not there.
+//! Where results go: stdout, or files that are complete or absent.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-/// Writes to stdout. A reader that has seen enough (`| head`) is no error.
+/// Writes to stdout. A reader that stops early (`| head`) is not an error.
 pub(crate) fn print(bytes: &[u8]) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -17,7 +17,7 @@ pub(crate) fn print(bytes: &[u8]) -> anyhow::Result<()> {
     }
 }
 
-/// A place for results that has been tried before the work begins, so that an hour's work is not lost to a typo.
+/// A destination for results, opened before the work begins, so that a typo does not cost the work.
 pub(crate) struct Output {
     path: PathBuf,
     to: To,
@@ -28,7 +28,7 @@ enum To {
     Stdout,
     /// A device or a pipe: written in place.
     InPlace(File),
-    /// A file: written beside its place, and moved there when it is whole.
+    /// A file: written beside its destination, and moved there when it is complete.
     Beside(PathBuf, File),
 }
 
@@ -49,7 +49,7 @@ impl Output {
                 }
                 _ => {
                     let Some(name) = path.file_name() else {
-                        bail!("{} is no name of a file: name one", path.display())
+                        bail!("{} is not a file name: name a file", path.display())
                     };
                     let mut partial = std::ffi::OsString::from(".");
                     partial.push(name);
@@ -91,13 +91,13 @@ impl Output {
 impl Drop for Output {
     fn drop(&mut self) {
         if let To::Beside(partial, _) = &self.to {
-            // Not there any more where all went well.
+            // It no longer exists where all went well.
             drop(fs::remove_file(partial));
         }
     }
 }
 
-/// Opens a place where one is named.
+/// Opens the destination, where one is given.
 pub(crate) fn open(path: Option<&PathBuf>) -> anyhow::Result<Option<Output>> {
     path.map(|path| Output::open(path)).transpose()
 }

@@ -1,25 +1,24 @@
-//! The chart of one record: |C| against evaluations and against time.
+//! The chart of one report: hits against evaluations and against time.
 
-use satisfice_catalogue::Record;
+use satisfice_catalogue::RunReport;
 use satisfice_draw::plot::{Chart, Curve, Panel};
 
-/// |C| against evaluations (logarithmic) and against running time, with the number of hits that there are where it is
-/// known.
+/// Hits against evaluations (logarithmic) and against running time, with the number of all hits where it is known.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a pixel is coarser than 53 bits")]
-pub(crate) fn chart(record: &Record) -> Chart {
-    let mark = record
+pub(crate) fn chart(report: &RunReport) -> Chart {
+    let mark = report
         .reference_hits
         .map(|reference| (reference as f64, format!("all {reference} hits")));
-    let recall = record
+    let recall = report
         .recall
         .map_or_else(String::new, |recall| format!(", recall {:.1} %", 100.0 * recall));
     let curve = |points: Vec<(f64, f64)>| Curve {
         points,
         ..Curve::default()
     };
-    let by_evaluations = record.trace.iter().map(|p| (p.evaluations as f64, p.hits as f64));
-    let by_time = record
+    let by_evaluations = report.trace.iter().map(|p| (p.evaluations as f64, p.hits as f64));
+    let by_time = report
         .trace
         .iter()
         .map(|p| (1e3 * p.elapsed_seconds, p.hits as f64));
@@ -34,7 +33,7 @@ pub(crate) fn chart(record: &Record) -> Chart {
     Chart {
         title: format!(
             "{} by {}, seed {}: {} hits{recall}",
-            record.problem, record.engine, record.seed, record.hits
+            report.spec.problem, report.spec.engine, report.spec.seed, report.hits
         ),
         panels: vec![
             panel("evaluations", true, by_evaluations.collect()),
@@ -49,18 +48,17 @@ pub(crate) fn chart(record: &Record) -> Chart {
 
 #[cfg(test)]
 mod tests {
-    use satisfice::Budget;
-    use satisfice_catalogue::{Request, catalogue};
+    use satisfice_catalogue::{RunControl, RunSpec, catalogue};
     use satisfice_draw::plot::{Format, draw};
 
     use super::*;
 
-    fn queens(evaluations: u64) -> Record {
+    fn queens(evaluations: u64) -> RunReport {
         let problem = catalogue::find("queens").unwrap().build([("n", "4")]).unwrap();
-        let request = Request::new("random", Budget::evaluations(evaluations));
-        let mut record = problem.run(&request, &mut |_| {}).unwrap();
-        record.set_reference(problem.reference_hits());
-        record
+        let spec = RunSpec::new("random").evaluations(evaluations);
+        let mut report = problem.run(&spec, RunControl::default()).unwrap();
+        report.set_reference(problem.reference_hits());
+        report
     }
 
     #[test]
@@ -80,11 +78,11 @@ mod tests {
 
     #[test]
     fn charts_with_little_or_nothing_in_them_are_drawn() {
-        let mut record = queens(1);
+        let mut report = queens(1);
         for points in [0, 1] {
-            record.trace.truncate(points);
+            report.trace.truncate(points);
             for format in [Format::Svg, Format::Png] {
-                assert!(draw(&chart(&record), format).unwrap().len() > 1000);
+                assert!(draw(&chart(&report), format).unwrap().len() > 1000);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! How far a search or an enumeration is, on stderr where that is a terminal.
+//! The progress of a search or an enumeration, on stderr if it is a terminal.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use satisfice_catalogue::Progress;
 
 const STEPS: u64 = 1000;
-/// How often a sweep is told of where there is no terminal.
+/// The time between progress lines of a sweep without a terminal.
 const TELL_EVERY: Duration = Duration::from_secs(5);
 
 /// A bar on a terminal, nothing elsewhere.
@@ -49,22 +49,22 @@ impl Bar {
 /// The runs of a sweep: a bar on a terminal, a line every few seconds elsewhere.
 pub(crate) struct Runs {
     bar: Option<ProgressBar>,
-    all: usize,
-    done: usize,
+    all: u64,
+    done: u64,
     told: Instant,
 }
 
 impl Runs {
-    /// So many runs, of which some are done.
-    pub(crate) fn new(all: usize, done: usize) -> Self {
+    /// For a number of runs, some of them done.
+    pub(crate) fn new(all: u64, done: u64) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::with_draw_target(Some(all as u64), ProgressDrawTarget::stderr());
+            let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::stderr());
             if let Ok(style) =
                 ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {eta} to go  {msg}")
             {
                 bar.set_style(style);
             }
-            bar.set_position(done as u64);
+            bar.set_position(done);
             bar.reset_eta();
             bar
         });
@@ -76,7 +76,7 @@ impl Runs {
         }
     }
 
-    /// Says what goes on.
+    /// Shows what happens now.
     pub(crate) fn say(&self, what: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(what.to_owned());
@@ -112,7 +112,7 @@ impl Drop for Bar {
     }
 }
 
-/// What goes on, of which nobody knows the end: a line on a terminal, nothing elsewhere.
+/// Work whose end is not known: a line on a terminal, nothing elsewhere.
 pub(crate) struct Counting {
     bar: Option<ProgressBar>,
     /// Milliseconds from the start to the number shown last.
@@ -120,7 +120,7 @@ pub(crate) struct Counting {
 }
 
 impl Counting {
-    /// So often the line is drawn anew.
+    /// The time between two drawings of the line.
     const EVERY: Duration = Duration::from_millis(100);
 
     pub(crate) fn new() -> Self {
@@ -141,14 +141,14 @@ impl Counting {
         }
     }
 
-    /// Says what goes on now.
+    /// Shows what happens now.
     pub(crate) fn say(&self, what: String) {
         if let Some(bar) = &self.bar {
             bar.set_message(what);
         }
     }
 
-    /// Says how many pairs there are so far; often called, seldom drawn.
+    /// Shows the number of pairs so far; called often, drawn rarely.
     pub(crate) fn show(&self, found: usize, start: Instant) {
         let Some(bar) = &self.bar else { return };
         let seconds = start.elapsed().as_secs_f64();
@@ -176,7 +176,7 @@ impl Drop for Counting {
 
 #[expect(
     clippy::disallowed_methods,
-    reason = "when to say something, nothing of a result"
+    reason = "decides when to print, not what a result is"
 )]
 fn now() -> Instant {
     Instant::now()

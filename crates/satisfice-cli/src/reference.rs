@@ -1,4 +1,4 @@
-//! The reference count: how many hits there are, counted when the search is over and outside its clock.
+//! The reference count: the number of all hits, counted when the search is over and outside its clock.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 use satisfice::Cancel;
 
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// Looks until the user is told why it takes so long.
+/// The number of looks after which the user is told why it takes so long.
 const PATIENCE: u32 = 50;
 
 /// Counts by `count`, which may take long; `None` once the user cancels.
@@ -22,7 +22,7 @@ pub(crate) fn wait_for(
     let counting = std::thread::Builder::new()
         .name("reference".to_owned())
         .spawn(move || {
-            // Nobody listens any more where the user has cancelled.
+            // Fails where the user cancelled meanwhile.
             let _ = sender.send(count());
         });
     if counting.is_err() {

@@ -3,82 +3,92 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use satisfice_catalogue::{Instance, Keeping, Progress, Record, catalogue, json};
-use satisfice_draw::plot;
+use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunReport, RunSpec, json};
+use satisfice_draw::plot::{self, Format};
 
 use crate::arguments::{DEFAULT_ENGINE, RunArguments};
+use crate::checkpoint::{self, Keeper};
 use crate::output::{self, Output};
+use crate::plot::chart;
 use crate::progress::Bar;
-use crate::{checkpoint, interrupt, reference, summary};
+use crate::{interrupt, reference, summary};
 
-pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
-    let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
-    let set = match &begun {
+pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
+    let known = catalogue.find(&arguments.problem)?;
+    let resume = arguments.resume.as_deref();
+    let resumed = resume
+        .map(|path| checkpoint::read(path, &arguments.problem))
+        .transpose()?;
+    let set = match &resumed {
         Some((_, saved)) if arguments.set.is_empty() => saved.problem_parameters.texts(),
         _ => arguments.set.clone(),
     };
     let settings = set.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-    let entry = catalogue::find(&arguments.problem)?;
-    if let Some((_, saved)) = &begun {
-        checkpoint::is_of(saved, &arguments.problem)?;
-    }
-    let problem: Arc<dyn Instance> = entry.build(settings)?.into();
+    let problem: Arc<dyn Instance> = known.build(settings)?.into();
+    let spec = spec(arguments, resumed.as_ref().map(|(_, saved)| saved))?;
+
     let cancel = interrupt::listen()?;
-    let request = match &begun {
-        Some((_, saved)) => checkpoint::request(saved, arguments, &cancel),
-        None => {
-            let engine = arguments.engine.as_deref().unwrap_or(DEFAULT_ENGINE);
-            let mut request = arguments.search.request(engine, &cancel)?;
-            request.slices = arguments.slices.unwrap_or(1);
-            request.islands = arguments.islands;
-            request
-        }
-    };
-    let mut keeper = arguments
-        .checkpoint
-        .as_deref()
-        .map(checkpoint::Keeper::new)
-        .transpose()?;
-    let mut report = output::open(arguments.json.as_ref())?;
+    let mut keeper = arguments.checkpoint.as_deref().map(Keeper::new).transpose()?;
+    let mut json_file = output::open(arguments.json.as_ref())?;
     let mut figure = match &arguments.plot {
-        Some(path) => Some((plot::Format::of(path)?, Output::open(path)?)),
+        Some(path) => Some((Format::of(path)?, Output::open(path)?)),
         None => None,
     };
 
     let bar = Bar::new();
-    let mut watch = |progress: &Progress| bar.show(progress, progress.slice, request.slices);
-    let mut record = if begun.is_none() && keeper.is_none() {
-        problem.run(&request, &mut watch)?
-    } else {
-        let mut save = keeper.as_mut().map(|keeper| |bytes: &[u8]| keeper.save(bytes));
-        let keeping = Keeping {
-            resume: begun.as_ref().map(|(bytes, _)| bytes.as_slice()),
-            save: save.as_mut().map(|save| save as &mut dyn FnMut(&[u8])),
-            every: checkpoint::EVERY,
-        };
-        problem.run_keeping(&request, &mut watch, keeping)?
+    let mut watch = |progress: &Progress| bar.show(progress, progress.slice, spec.budget.slices);
+    let mut save = keeper.as_mut().map(|keeper| |bytes: &[u8]| keeper.save(bytes));
+    let control = RunControl {
+        cancel: cancel.clone(),
+        watch: Some(&mut watch),
+        resume: resumed.as_ref().map(|(bytes, _)| bytes.as_slice()),
+        save: save.as_mut().map(|save| save as &mut dyn FnMut(&[u8])),
+        every: checkpoint::EVERY,
     };
+    let mut report = problem.run(&spec, control)?;
     drop(bar);
     let counted = Arc::clone(&problem);
-    record.set_reference(reference::wait_for(problem.name(), &cancel, move || {
+    report.set_reference(reference::wait_for(problem.name(), &cancel, move || {
         counted.reference_hits()
     }));
 
-    if let Some(report) = &mut report {
-        report.write(&json::to_vec(&record)?)?;
+    if let Some(file) = &mut json_file {
+        file.write(&json::to_vec(&report)?)?;
     }
     if let Some((format, figure)) = &mut figure {
-        figure.write(&plot::draw(&crate::plot::chart(&record), *format)?)?;
+        figure.write(&plot::draw(&chart(&report), *format)?)?;
     }
-    let shown = show(&record, arguments.json.as_deref())?;
-    keeper.map_or(Ok(()), checkpoint::Keeper::finish)?;
+    let shown = show(&report, arguments.json.as_deref())?;
+    keeper.map_or(Ok(()), Keeper::finish)?;
     Ok(shown)
 }
 
-/// The summary, unless stdout has the report itself.
-fn show(record: &Record, json: Option<&std::path::Path>) -> anyhow::Result<ExitCode> {
-    if json != Some(std::path::Path::new("-")) {
-        output::print(summary::summary(record).as_bytes())?;
+/// What to run: the arguments, and for a resumed run what its checkpoint says where they say nothing.
+fn spec(arguments: &RunArguments, saved: Option<&RunSpec>) -> anyhow::Result<RunSpec> {
+    let Some(saved) = saved else {
+        let engine = arguments.engine.as_deref().unwrap_or(DEFAULT_ENGINE);
+        let mut spec = arguments.search.spec(engine)?;
+        arguments.slices.enter(&mut spec);
+        return Ok(spec);
+    };
+    let mut spec = saved.clone();
+    if let Some(engine) = arguments
+        .engine
+        .as_ref()
+        .filter(|engine| **engine != saved.engine)
+    {
+        spec.engine.clone_from(engine);
+        spec.engine_parameters = satisfice_catalogue::Settings::default();
     }
-    Ok(summary::exit_code(record))
+    arguments.search.enter(&mut spec);
+    arguments.slices.enter(&mut spec);
+    Ok(spec)
+}
+
+/// The summary, unless stdout has the report itself.
+fn show(report: &RunReport, json: Option<&std::path::Path>) -> anyhow::Result<ExitCode> {
+    if json != Some(std::path::Path::new("-")) {
+        output::print(summary::summary(report).as_bytes())?;
+    }
+    Ok(summary::exit_code(report))
 }

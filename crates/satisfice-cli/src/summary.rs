@@ -1,38 +1,41 @@
-//! What a person reads after a run.
+//! The summary that a person reads after a run.
 
 use std::fmt::Write;
 use std::process::ExitCode;
 
 use satisfice::Completeness;
-use satisfice_catalogue::Record;
-use satisfice_catalogue::record::Solution;
+use satisfice_catalogue::RunReport;
+use satisfice_catalogue::report::Solution;
 
-/// So many hits are shown; all of them are in the JSON report.
+/// The number of hits shown; all of them are in the JSON report.
 const SHOWN: usize = 5;
 
-/// The summary of a record.
-pub(crate) fn summary(record: &Record) -> String {
-    summary_with(record, |solution| solution.solution.to_string())
+/// The summary of a report.
+pub(crate) fn summary(report: &RunReport) -> String {
+    summary_with(report, |solution| solution.solution.to_string())
 }
 
-/// The summary of a record whose solutions have a form of their own.
-pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) -> String {
-    let mut text = format!("{} by {}, seed {}\n", record.problem, record.engine, record.seed);
+/// The summary of a report, with a function that formats its solutions.
+pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&Solution) -> String) -> String {
+    let mut text = format!(
+        "{} by {}, seed {}\n",
+        report.spec.problem, report.spec.engine, report.spec.seed
+    );
     let mut line = |name: &str, value: String| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  {name:<13} {value}");
     };
-    let recall = match (record.reference_hits, record.recall) {
+    let recall = match (report.reference_hits, report.recall) {
         (Some(reference), Some(recall)) => format!(" of {reference} (recall {:.1} %)", 100.0 * recall),
         (Some(reference), None) => format!(" of {reference}"),
-        (None, _) => " (how many there are is not known)".to_owned(),
+        (None, _) => " (the number of all hits is not known)".to_owned(),
     };
-    line("hits", format!("{}{recall}", record.hits));
+    line("hits", format!("{}{recall}", report.hits));
     line(
         "completeness",
-        match record.completeness {
+        match report.completeness {
             Completeness::Proved => "proved: these are all".to_owned(),
-            Completeness::Unknown => match (record.unseen_estimate, record.unseen_interval) {
+            Completeness::Unknown => match (report.unseen_estimate, report.unseen_interval) {
                 (Some(unseen), Some((low, high))) => {
                     let high = high.map_or_else(|| "no known bound".to_owned(), |high| format!("{high:.0}"));
                     format!("unknown: {unseen:.0} hits not seen by estimate, {low:.0} to {high}")
@@ -41,7 +44,7 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
             },
         },
     );
-    let counts = &record.counts;
+    let counts = &report.counts;
     line(
         "evaluations",
         format!(
@@ -53,12 +56,12 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
         "time",
         format!(
             "{}{}, stopped by {}",
-            time(record.elapsed_seconds),
-            rate(counts.evaluations, record.elapsed_seconds),
-            format!("{:?}", record.stop_reason).to_lowercase()
+            time(report.elapsed_seconds),
+            rate(counts.evaluations, report.elapsed_seconds),
+            format!("{:?}", report.stop_reason).to_lowercase()
         ),
     );
-    for (index, slice) in record.slices.iter().enumerate() {
+    for (index, slice) in report.slices.iter().enumerate() {
         line(
             &format!("slice {}", index + 1),
             format!(
@@ -70,7 +73,7 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
             ),
         );
     }
-    for (index, found) in record.solutions.iter().take(SHOWN).enumerate() {
+    for (index, found) in report.solutions.iter().take(SHOWN).enumerate() {
         line(
             &format!("hit {}", index + 1),
             format!(
@@ -82,12 +85,12 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
             ),
         );
     }
-    if record.solutions.len() > SHOWN {
+    if report.solutions.len() > SHOWN {
         line(
             "",
             format!(
                 "and {} more; --json FILE lists them all",
-                record.solutions.len() - SHOWN
+                report.solutions.len() - SHOWN
             ),
         );
     }
@@ -95,8 +98,8 @@ pub(crate) fn summary_with(record: &Record, show: impl Fn(&Solution) -> String) 
 }
 
 /// 0 with a hit, 1 without.
-pub(crate) fn exit_code(record: &Record) -> ExitCode {
-    ExitCode::from(u8::from(record.hits == 0))
+pub(crate) fn exit_code(report: &RunReport) -> ExitCode {
+    ExitCode::from(u8::from(report.hits == 0))
 }
 
 /// Six digits of a number, small ones by their exponent.

@@ -1,19 +1,19 @@
-//! `satisfice verify`: whether a report is true.
+//! `satisfice verify`: whether a report is correct.
 
 use std::fmt::Write;
 use std::io::Read;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use satisfice_catalogue::{Mismatch, Record, catalogue};
+use satisfice_catalogue::{Catalogue, Mismatch, RunReport};
 
 use crate::arguments::VerifyArguments;
 use crate::{collide, output};
 
-/// So many mismatches are shown.
+/// The number of mismatches shown.
 const SHOWN: usize = 20;
 
-pub(crate) fn verify(arguments: &VerifyArguments) -> anyhow::Result<ExitCode> {
+pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     let path = arguments.report.display();
     let text = if arguments.report.as_os_str() == "-" {
         let mut text = Vec::new();
@@ -21,13 +21,13 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> anyhow::Result<ExitCode> {
     } else {
         std::fs::read(&arguments.report)
     }
-    .with_context(|| format!("cannot read {path}: name a report that `run --json` has written"))?;
-    let record: Record = serde_json::from_slice(&text)
-        .with_context(|| format!("{path} is no report that `run --json` or `collide --json` has written"))?;
+    .with_context(|| format!("cannot read {path}: name a report that `run --json` wrote"))?;
+    let report: RunReport = serde_json::from_slice(&text)
+        .with_context(|| format!("{path} is not a report that `run --json` or `collide --json` wrote"))?;
 
-    // A problem that cannot stand a forged solution may panic; that is caught, told as a mismatch, and not shouted about.
+    // A problem may panic on a forged solution. That is caught and reported as a mismatch, so the hook stays silent.
     std::panic::set_hook(Box::new(|_| {}));
-    let mismatches = mismatches(&record, &text);
+    let mismatches = mismatches(&report, &text, catalogue);
     drop(std::panic::take_hook());
     let mismatches = mismatches?;
 
@@ -36,7 +36,7 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> anyhow::Result<ExitCode> {
         let _ = writeln!(
             said,
             "{path} is true: {} hits of {} evaluated anew, each below the threshold and listed once; its counts and its trace agree",
-            record.hits, record.problem
+            report.hits, report.spec.problem
         );
     } else {
         let _ = writeln!(said, "{path} is false in {} places", mismatches.len());
@@ -51,14 +51,15 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(!mismatches.is_empty())))
 }
 
-fn mismatches(record: &Record, text: &[u8]) -> anyhow::Result<Vec<Mismatch>> {
-    if record.problem == collide::PROBLEM {
+fn mismatches(report: &RunReport, text: &[u8], catalogue: &Catalogue) -> anyhow::Result<Vec<Mismatch>> {
+    if report.spec.problem == collide::PROBLEM {
         return collide::verify(text);
     }
-    let texts = record.problem_parameters.texts();
+    let texts = report.spec.problem_parameters.texts();
     let settings = texts.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-    let problem = catalogue::find(&record.problem)
+    let problem = catalogue
+        .find(&report.spec.problem)
         .and_then(|entry| entry.build(settings))
         .context("the problem of the report cannot be built")?;
-    Ok(problem.verify(record, problem.reference_hits()))
+    Ok(problem.verify(report, problem.reference_hits()))
 }

@@ -211,13 +211,32 @@ fn mistakes_are_told_before_anything_runs() {
         ("5ms", "5", "time = 5 is not allowed: a time needs a unit"),
         ("\"timed\"", "\"counted\"", "two parts named `counted`"),
         ("[0.03, 0.06]", "[0.03, 0.030]", "is listed twice"),
-        ("[0.03, 0.06]", "[]", "delta of teapots is an empty list"),
+        (
+            "[0.03, 0.06]",
+            "[]",
+            "teapots: delta is an empty list: give a value",
+        ),
         (
             "problems = [\"islands\"]",
             "",
             "problems are missing: write problems =",
         ),
         ("title = ", "title = = ", "mine.toml, line 2: "),
+        (
+            "\"Two engines\"",
+            "5",
+            "mine.toml: title: invalid type: integer `5`, expected a string",
+        ),
+        (
+            "\"random\", {",
+            "7, {",
+            "part 1: engines, entry 1: invalid type: integer `7`, expected \"NAME\" or { name",
+        ),
+        (
+            "\"0..3\"",
+            "\"0..9223372036854775808\"",
+            "9,223,372,036,854,775,808 seeds of 4 engines, problems and budgets are more than 10,000,000 runs: give fewer",
+        ),
     ] {
         assert!(SUITE.contains(from), "{from}");
         fs::write(place.path().join("mine.toml"), SUITE.replacen(from, to, 1)).unwrap();
@@ -235,7 +254,29 @@ fn mistakes_are_told_before_anything_runs() {
     assert!(error_in(place.path(), "bench mine.toml --out file").contains("choose another one"));
     fs::create_dir(place.path().join("bad")).unwrap();
     fs::write(place.path().join("bad/results.jsonl"), "{}\n").unwrap();
-    assert!(error_in(place.path(), "bench mine.toml --out bad").contains("line 1 is no finished run"));
+    assert!(error_in(place.path(), "bench mine.toml --out bad").contains("line 1 is not a finished run"));
+}
+
+/// A list in the place of one budget runs all its values, each in a table of its own.
+#[test]
+fn all_values_of_a_list_are_run() {
+    let place = tempfile::tempdir().unwrap();
+    let suite = SUITE.replace("evaluations = 4000", "evaluations = [100, 4000]");
+    fs::write(place.path().join("mine.toml"), suite).unwrap();
+    let done = satisfice_in(place.path(), "bench mine.toml --out out --seeds 0..1");
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(done.stderr.contains("9 runs"), "{}", done.stderr);
+    for budget in ["100 evaluations", "4,000 evaluations"] {
+        let heading = format!("counted: teapots samples=300 delta=0.03, {budget}; all hits: ");
+        assert!(done.stdout.contains(&heading), "{}", done.stdout);
+    }
+    let rows = rows(&place.path().join("out"));
+    let spent = |evaluations: u64| {
+        rows.iter()
+            .filter(|row| row["evaluations"] == evaluations)
+            .count()
+    };
+    assert_eq!((spent(100), spent(4000)), (4, 4));
 }
 
 /// Ctrl-C keeps the runs that have ended, and the same command goes on.

@@ -75,15 +75,24 @@ fn a_checkpoint_of_another_run_is_refused() {
     let begun = "run queens --set n=6 --engine random --evaluations 200 --slices 2 --checkpoint run.json";
     assert_ne!(satisfice_in(folder.path(), begun).code, 2);
     for (arguments, says) in [
-        ("queens --seed 5", "seed is 0, not 5"),
-        ("queens --engine walk", "engine is random, not walk"),
-        ("queens --engine-set batch=3", "set of engine parameters is"),
-        ("queens --set n=7", "set of problem parameters is"),
+        ("queens --seed 5", "the checkpoint's seed is 0, not 5"),
+        (
+            "queens --engine walk",
+            "the checkpoint's engine is \"random\", not \"walk\"",
+        ),
+        (
+            "queens --engine-set batch=3",
+            "the checkpoint's engine_parameters.batch is",
+        ),
+        (
+            "queens --set n=7",
+            "the checkpoint's problem_parameters.n is 6, not 7",
+        ),
         (
             "queens --evaluations 300",
-            "number of evaluations is Some(200), not Some(300)",
+            "the checkpoint's budget.evaluations is 200, not 300",
         ),
-        ("queens --slices 3", "number of slices is 2, not 3"),
+        ("queens --slices 3", "the checkpoint's budget.slices is 2, not 3"),
         ("shell", "is of queens, not of shell"),
     ] {
         let line = error_in(folder.path(), &format!("run {arguments} --resume run.json"));
@@ -92,7 +101,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     fs::write(folder.path().join("other.json"), "{}").unwrap();
     for (file, says) in [
         ("none.json", "cannot read none.json"),
-        ("other.json", "other.json is no checkpoint"),
+        ("other.json", "other.json is not a checkpoint"),
     ] {
         let line = error_in(folder.path(), &format!("run queens --resume {file}"));
         assert!(line.contains(says), "{line}");

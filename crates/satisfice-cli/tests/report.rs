@@ -186,7 +186,7 @@ fn exact_methods_are_refused_where_there_are_no_vertices() {
     fs::write(place.path().join("mine.toml"), suite).unwrap();
     let line = common::error_in(place.path(), "bench mine.toml");
     assert!(
-        line.contains("`aabb` finds pairs of vertices, and `islands` has none: take an engine"),
+        line.contains("`aabb` finds pairs of vertices, and `islands` has none: choose an engine"),
         "{line}"
     );
 }

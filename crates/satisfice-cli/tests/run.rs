@@ -151,7 +151,7 @@ fn islands_find_the_same_on_any_number_of_threads() {
         report(&format!("{arguments} {more}"))
     };
     let one = run("");
-    assert_eq!(one["engine_parameters"]["islands"], "4");
+    assert_eq!(one["islands"], 4);
     assert_eq!(one["evaluations"], 30_000);
     assert!(one["hits"].as_u64().unwrap() > 3_000, "{}", one["hits"]);
     assert_eq!(without_times(one), without_times(run("--threads 2")));

@@ -12,7 +12,4 @@ pub enum Error {
     /// The chart cannot be encoded.
     #[error("cannot encode the chart: {0}")]
     Chart(String),
-    /// The picture of a scene cannot be drawn.
-    #[error("cannot draw the picture: {0}")]
-    Picture(String),
 }

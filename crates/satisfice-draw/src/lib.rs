@@ -1,7 +1,6 @@
-//! Draws results: [charts](plot) of curves, maps and boards, and [pictures](picture) of scenes, as SVG and PNG.
+//! Draws results as SVG and PNG: [charts](plot) of curves, maps and boards.
 
 mod error;
-pub mod picture;
 pub mod plot;
 
 pub use error::Error;

@@ -15,8 +15,8 @@ use crate::finding::Finding;
 use crate::plain_grid;
 use crate::statistics::{Estimate, median};
 use satisfice_catalogue::quantity::shown;
-use satisfice_draw::picture::{Picture, View, strip};
 use satisfice_draw::plot::{Chart, Curve, Panel};
+use satisfice_picture::{Picture, View, strip};
 
 /// Engines whose recall is followed from frame to frame.
 const ENGINES: [&str; 6] = [

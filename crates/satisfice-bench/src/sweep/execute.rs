@@ -1,34 +1,32 @@
 //! Runs what is missing of a plan: runs with an evaluation budget side by side, runs with a clock one at a time.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use satisfice::{Cancel, StopReason};
+use satisfice_catalogue::RunControl;
 
-use super::plan::{Plan, Planned};
-use super::results::{Known, Results};
+use super::plan::{Cell, Plan, Planned};
+use super::results::Results;
 use super::row::Row;
 use crate::error::Error;
-use satisfice_catalogue::Instance;
-use satisfice_catalogue::exact;
 
-/// How often a count that takes long looks whether it is still wanted.
+/// How often a long count checks whether it is still wanted.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// What happens in a sweep.
 #[derive(Debug)]
 pub enum Event<'a> {
-    /// It begins: so many runs, so many of them done earlier.
+    /// It begins.
     Begun {
-        /// All runs.
-        runs: usize,
-        /// Those that the folder has already.
-        done: usize,
+        /// The number of all runs.
+        runs: u64,
+        /// The number of those that the folder already has.
+        done: u64,
     },
     /// All hits of a problem are being counted, outside any clock.
     Counting(&'a str),
@@ -41,18 +39,29 @@ pub enum Event<'a> {
 pub struct Finished {
     /// The runs of the plan, in its order; those that are missing were cancelled.
     pub rows: Vec<Row>,
-    /// How many runs there should be.
-    pub runs: usize,
-    /// Rows of the file that are none of the plan's.
+    /// The number of all runs.
+    pub runs: u64,
+    /// The number of rows in the file that do not belong to the plan.
     pub foreign: usize,
 }
 
-/// Runs every run of `plan` that `folder/results.jsonl` has not, on `jobs` threads (0: as many as there are cores) where
-/// no clock limits a run; then those that a clock limits, one at a time while nothing else of the program runs. Reference
-/// counts come first. Once `cancel` is cancelled, runs that have not ended are dropped; those that have are kept.
+impl Finished {
+    /// The number of runs that are missing.
+    #[must_use]
+    pub fn missing(&self) -> u64 {
+        self.runs - self.rows.len() as u64
+    }
+}
+
+/// Runs every run of `plan` that `folder/results.jsonl` lacks, on `jobs` threads (0: one per core) where no clock limits a
+/// run; then those that a clock limits, one at a time while nothing else of the program runs. Reference counts come first.
+/// Once `cancel` is cancelled, runs that have not ended are dropped; those that have are kept.
+///
+/// Memory: O(finished runs).
 ///
 /// # Errors
-/// [`Error::File`] for a file that cannot be read or written; whatever [`Instance::run`] says.
+/// [`Error::File`] for a file that cannot be read or written; any error of
+/// [`Instance::run`](satisfice_catalogue::Instance::run).
 pub fn execute(
     plan: &Plan,
     folder: &Path,
@@ -60,69 +69,70 @@ pub fn execute(
     cancel: &Cancel,
     watch: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Finished, Error> {
-    let (mut results, old) = Results::open(folder)?;
-    let known = Known::of(&old);
-    let missing: Vec<&Planned> = plan.runs.iter().filter(|run| !known.contains(&run.key)).collect();
+    let (results, old) = Results::open(folder)?;
+    let mut known: HashMap<u64, Row> = HashMap::new();
+    let mut foreign = 0;
+    for row in old {
+        match plan.find(&row).map(|run| run.number()) {
+            Some(number) => drop(known.insert(number, row)),
+            None => foreign += 1,
+        }
+    }
     watch(&Event::Begun {
-        runs: plan.runs.len(),
-        done: plan.runs.len() - missing.len(),
+        runs: plan.len(),
+        done: known.len() as u64,
     });
-    let references = count(plan, &missing, cancel, watch)?;
-    let jobs = if jobs == 0 {
-        thread::available_parallelism().map_or(1, usize::from)
-    } else {
-        jobs
+    let references = count(plan, &known, cancel, watch)?;
+    let jobs = match jobs {
+        0 => thread::available_parallelism().map_or(1, usize::from),
+        jobs => jobs,
     };
-    let (timed, counted): (Vec<&Planned>, Vec<&Planned>) =
-        missing.into_iter().partition(|run| run.is_timed());
-    let mut new = Vec::new();
-    let side = Side {
+    let mut sweep = Sweep {
         plan,
-        references: &references,
+        references,
         cancel,
+        results,
+        known,
     };
-    side.run_all(&counted, jobs, &mut results, watch, &mut new)?;
-    side.run_all(&timed, 1, &mut results, watch, &mut new)?;
-    let mut by_key: BTreeMap<String, Row> = old
-        .into_iter()
-        .chain(new)
-        .map(|row| (row.key.text(), row))
-        .collect();
-    let rows: Vec<Row> = plan
-        .runs
-        .iter()
-        .filter_map(|run| by_key.remove(&run.key.text()))
-        .collect();
+    sweep.run_all(false, jobs, watch)?;
+    sweep.run_all(true, 1, watch)?;
+    let mut known = sweep.known;
+    let rows = plan.runs().filter_map(|run| known.remove(&run.number()));
     Ok(Finished {
-        rows,
-        runs: plan.runs.len(),
-        foreign: by_key.len(),
+        rows: rows.collect(),
+        runs: plan.len(),
+        foreign,
     })
 }
 
-/// How many hits each instance has that is still to be run; `None` for the others.
+/// The number of hits of each problem that is still to be run; `None` for the others.
 fn count(
     plan: &Plan,
-    missing: &[&Planned],
+    known: &HashMap<u64, Row>,
     cancel: &Cancel,
     watch: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Vec<Option<u64>>, Error> {
     let mut references = vec![None; plan.instances.len()];
+    let is_missing = |cell: &Cell| {
+        let mut runs = cell.seeds.clone().map(|seed| Planned { cell, seed });
+        runs.any(|run| !known.contains_key(&run.number()))
+    };
     for (place, instance) in plan.instances.iter().enumerate() {
-        let Some(run) = missing.iter().find(|run| run.instance == place) else {
+        let mut cells = plan.cells.iter().filter(|cell| cell.instance == place);
+        let Some(cell) = cells.find(|cell| is_missing(cell)) else {
             continue;
         };
-        watch(&Event::Counting(&run.problem_label));
+        watch(&Event::Counting(&cell.problem_label));
         let (sender, receiver) = mpsc::channel();
         let counted = Arc::clone(instance);
         let spawned = thread::Builder::new()
             .name("reference".to_owned())
             .spawn(move || {
-                // Nobody listens any more where the sweep was cancelled.
+                // Fails where the sweep was cancelled meanwhile.
                 let _ = sender.send(counted.reference_hits());
             });
         spawned.map_err(|error| Error::Suite {
-            place: run.problem_label.clone(),
+            place: cell.problem_label.clone(),
             what: format!("no thread to count its hits on: {error}"),
         })?;
         references[place] = loop {
@@ -136,77 +146,83 @@ fn count(
     Ok(references)
 }
 
-struct Side<'a> {
+struct Sweep<'a> {
     plan: &'a Plan,
-    references: &'a [Option<u64>],
+    references: Vec<Option<u64>>,
     cancel: &'a Cancel,
+    results: Results,
+    known: HashMap<u64, Row>,
 }
 
-impl Side<'_> {
-    fn run_all(
-        &self,
-        runs: &[&Planned],
-        jobs: usize,
-        results: &mut Results,
-        watch: &mut dyn FnMut(&Event<'_>),
-        rows: &mut Vec<Row>,
-    ) -> Result<(), Error> {
-        let next = AtomicUsize::new(0);
+impl Sweep<'_> {
+    /// Runs all that is missing and is, or is not, limited by a clock.
+    fn run_all(&mut self, timed: bool, jobs: usize, watch: &mut dyn FnMut(&Event<'_>)) -> Result<(), Error> {
+        let Self {
+            plan,
+            references,
+            cancel,
+            results,
+            known,
+        } = self;
+        let done: &HashMap<u64, Row> = known;
+        let missing = plan
+            .runs()
+            .filter(|run| run.cell.is_timed() == timed && !done.contains_key(&run.number()));
+        let missing = Mutex::new(missing.fuse());
         let failed: Mutex<Option<Error>> = Mutex::new(None);
-        let fail = |error: Error| {
-            failed
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner)
-                .get_or_insert(error);
-            // Whoever still runs may stop.
-            next.store(usize::MAX / 2, Ordering::Relaxed);
+        let lock = || failed.lock().unwrap_or_else(PoisonError::into_inner);
+        let next = || match (cancel.is_cancelled(), lock().is_some()) {
+            (false, false) => missing.lock().unwrap_or_else(PoisonError::into_inner).next(),
+            _ => None,
         };
-        let work = |sender: &mpsc::Sender<Row>| {
-            while let Some(run) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                if self.cancel.is_cancelled() {
-                    return;
-                }
-                match self.run(run, jobs == 1) {
-                    Ok(Some(row)) => drop(sender.send(row)),
+        let work = |sender: &mpsc::Sender<(u64, Row)>| {
+            while let Some(planned) = next() {
+                match run(plan, planned, references, cancel, jobs == 1) {
+                    Ok(Some(row)) => drop(sender.send((planned.number(), row))),
                     Ok(None) => return,
-                    Err(error) => return fail(error),
+                    Err(error) => {
+                        lock().get_or_insert(error);
+                        return;
+                    }
                 }
             }
         };
+        let mut new = Vec::new();
         thread::scope(|scope| {
             let (sender, receiver) = mpsc::channel();
-            for _ in 0..jobs.min(runs.len()) {
+            for _ in 0..jobs {
                 let (sender, work) = (sender.clone(), &work);
                 scope.spawn(move || work(&sender));
             }
             drop(sender);
-            for row in receiver {
+            for (number, row) in receiver {
                 if let Err(error) = results.append(&row) {
-                    fail(error);
+                    lock().get_or_insert(error);
                 }
                 watch(&Event::Finished(&row));
-                rows.push(row);
+                new.push((number, row));
             }
         });
-        failed
-            .into_inner()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .map_or(Ok(()), Err)
+        drop(missing);
+        let failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+        known.extend(new);
+        failed.map_or(Ok(()), Err)
     }
+}
 
-    /// A row, or nothing where the run was cancelled.
-    fn run(&self, run: &Planned, alone: bool) -> Result<Option<Row>, Error> {
-        let instance: &dyn Instance = &*self.plan.instances[run.instance];
-        let mut request = run.request.clone();
-        request.budget = request.budget.and_until(self.cancel);
-        let mut record = match exact::find(&request.engine) {
-            Some(_) => instance.exact(&request)?,
-            None => instance.run(&request, &mut |_| {})?,
-        };
-        if record.stop_reason == StopReason::Cancelled {
-            return Ok(None);
-        }
-        record.set_reference(self.references[run.instance]);
-        Ok(Some(Row::new(run, &record, alone)))
+/// The row of a run, or nothing where it was cancelled.
+fn run(
+    plan: &Plan,
+    planned: Planned<'_>,
+    references: &[Option<u64>],
+    cancel: &Cancel,
+    alone: bool,
+) -> Result<Option<Row>, Error> {
+    let instance = planned.cell.instance;
+    let mut report = plan.instances[instance].run(&planned.spec(), RunControl::until(cancel))?;
+    if report.stop_reason == StopReason::Cancelled {
+        return Ok(None);
     }
+    report.set_reference(references[instance]);
+    Ok(Some(Row::new(plan, planned, report, alone)))
 }

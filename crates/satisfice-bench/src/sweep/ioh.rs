@@ -33,12 +33,12 @@ pub fn export(folder: &Path, groups: &[Group], rows: &[Row]) -> Result<(), Error
                         let _ = writeln!(text, "{} {:.10}", moment.0.max(1), moment.2 as f64);
                     }
                 }
-                let reached = row.curve.iter().find(|moment| moment.2 == row.hits);
+                let reached = row.curve.iter().find(|moment| moment.2 == row.report.hits);
                 runs.push(json!({
-                    "instance": row.key.seed.saturating_add(1),
-                    "evals": row.counts.evaluations,
+                    "instance": row.report.spec.seed.saturating_add(1),
+                    "evals": row.report.counts.evaluations,
                     // the best is a set of hits, no point; readers want a list
-                    "best": {"evals": reached.map_or(0, |moment| moment.0), "y": row.hits as f64, "x": []},
+                    "best": {"evals": reached.map_or(0, |moment| moment.0), "y": row.report.hits as f64, "x": []},
                 }));
             }
             let header = json!({

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use satisfice_catalogue::record::{Record, Solution, recall};
+use satisfice_catalogue::RunReport;
+use satisfice_catalogue::report::{Solution, recall};
 
 /// Evaluations, seconds, |C|.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -14,8 +15,8 @@ pub const RECALLS: [f64; 3] = [0.5, 0.9, 0.99];
 /// At most so many hits enter a curve by themselves.
 const CURVE_HITS: usize = 200;
 
-/// Of one run. Where nothing is known of a reference count, what needs one is `None`; where the run shared the machine with
-/// others, so is what needs a clock.
+/// Metrics of one run. Without a reference count, those that need it are `None`; where the run shared the machine with
+/// others, so are those that need a clock.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// When the first hit came.
@@ -48,7 +49,7 @@ pub struct Cost {
 }
 
 impl Metrics {
-    /// From a record whose reference count is entered. Cost: O(hits).
+    /// From a report whose reference count is entered. Cost: O(hits).
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "shares")]
     #[expect(
@@ -56,14 +57,14 @@ impl Metrics {
         clippy::cast_sign_loss,
         reason = "a rank among the hits"
     )]
-    pub fn of(record: &Record, at_evaluations: &[u64], at_seconds: &[f64], alone: bool) -> Self {
-        let found = &record.solutions;
+    pub fn of(report: &RunReport, at_evaluations: &[u64], at_seconds: &[f64], alone: bool) -> Self {
+        let found = &report.solutions;
         let cost = |hit: &Solution| Cost {
             evaluations: hit.evaluation,
             seconds: alone.then_some(hit.seconds),
         };
         let rank = |share: f64| {
-            record
+            report
                 .reference_hits
                 .map(|all| (share * all as f64).ceil().max(1.0) as usize)
         };
@@ -73,17 +74,18 @@ impl Metrics {
         } else {
             Vec::new()
         };
-        let evaluations = record
+        let evaluations = report
             .counts
             .evaluations
-            .max(record.budget.evaluations.unwrap_or(0)) as f64;
-        let seconds = record
+            .max(report.spec.budget.evaluations.unwrap_or(0)) as f64;
+        let seconds = report
+            .spec
             .budget
-            .time_seconds
-            .unwrap_or(record.elapsed_seconds)
-            .max(record.elapsed_seconds);
+            .time
+            .map_or(0.0, |time| time.as_secs_f64())
+            .max(report.elapsed_seconds);
         let area = |cost: &dyn Fn(&Solution) -> f64, whole: f64| {
-            let all = record.reference_hits.filter(|&all| all > 0 && whole > 0.0)? as f64;
+            let all = report.reference_hits.filter(|&all| all > 0 && whole > 0.0)? as f64;
             Some(
                 found
                     .iter()
@@ -104,34 +106,34 @@ impl Metrics {
                 .collect(),
             r: at_seconds
                 .iter()
-                .map(|&hits| recall(hits, record.hits).unwrap_or(0.0))
+                .map(|&hits| recall(hits, report.hits).unwrap_or(0.0))
                 .collect(),
             at_seconds,
             area_evaluations: area(&|hit| hit.evaluation as f64, evaluations),
             area_seconds: alone.then(|| area(&|hit| hit.seconds, seconds)).flatten(),
-            duplicates: record.counts.duplicates as f64 / record.counts.evaluations.max(1) as f64,
-            precision: record.hits as f64 / record.counts.fitness_calls.max(1) as f64,
+            duplicates: report.counts.duplicates as f64 / report.counts.evaluations.max(1) as f64,
+            precision: report.hits as f64 / report.counts.fitness_calls.max(1) as f64,
         }
     }
 }
 
 /// The points of the trace, and hits at equal distances in number.
-pub(super) fn curve(record: &Record) -> Vec<Moment> {
-    let mut curve: Vec<Moment> = record
+pub(super) fn curve(report: &RunReport) -> Vec<Moment> {
+    let mut curve: Vec<Moment> = report
         .trace
         .iter()
         .map(|point| Moment(point.evaluations, point.elapsed_seconds, point.hits))
         .collect();
-    let found = &record.solutions;
+    let found = &report.solutions;
     let shown = found.len().min(CURVE_HITS);
     curve.extend((1..=shown).map(|k| {
         let rank = k * found.len() / shown;
         Moment(found[rank - 1].evaluation, found[rank - 1].seconds, rank as u64)
     }));
     curve.push(Moment(
-        record.counts.evaluations,
-        record.elapsed_seconds,
-        record.hits,
+        report.counts.evaluations,
+        report.elapsed_seconds,
+        report.hits,
     ));
     // Several hits may share an evaluation: the last of them counts. The order in time is that in evaluations.
     curve.sort_by_key(|moment| (moment.0, moment.2));
@@ -149,26 +151,24 @@ pub(super) fn curve(record: &Record) -> Vec<Moment> {
 
 #[cfg(test)]
 mod tests {
-    use satisfice::Budget;
-
     use super::*;
-    use satisfice_catalogue::{Request, catalogue};
+    use satisfice_catalogue::{RunControl, RunSpec, catalogue};
 
     /// Against the definitions, counted hit by hit in another way.
     #[test]
     fn metrics_are_what_they_are_called() {
         let problem = catalogue::find("islands").unwrap().build([]).unwrap();
-        let mut record = problem
+        let mut report = problem
             .run(
-                &Request::new("random", Budget::evaluations(20_000)).seed(3),
-                &mut |_| {},
+                &RunSpec::new("random").evaluations(20_000).seed(3),
+                RunControl::default(),
             )
             .unwrap();
-        let hits = record.hits;
+        let hits = report.hits;
         assert!(hits > 20, "{hits}");
-        record.set_reference(Some(2 * hits));
-        let metrics = Metrics::of(&record, &[100, 20_000], &[1e9], true);
-        let early = record
+        report.set_reference(Some(2 * hits));
+        let metrics = Metrics::of(&report, &[100, 20_000], &[1e9], true);
+        let early = report
             .solutions
             .iter()
             .filter(|hit| hit.evaluation <= 100)
@@ -178,19 +178,19 @@ mod tests {
             (metrics.at_seconds.as_slice(), metrics.r.as_slice()),
             ([hits].as_slice(), [1.0].as_slice())
         );
-        let last = record.solutions.last().unwrap();
+        let last = report.solutions.last().unwrap();
         assert_eq!(metrics.to_recall[0].unwrap().evaluations, last.evaluation);
         assert_eq!(metrics.to_recall[1], None);
         let mean = (1..=20_000_u64)
-            .map(|e| record.solutions.iter().filter(|hit| hit.evaluation <= e).count() as f64)
+            .map(|e| report.solutions.iter().filter(|hit| hit.evaluation <= e).count() as f64)
             .sum::<f64>()
             / (20_000.0 * 2.0 * hits as f64);
         approx::assert_abs_diff_eq!(metrics.area_evaluations.unwrap(), mean, epsilon = 1e-4);
-        assert!(Metrics::of(&record, &[], &[1e9], false).at_seconds.is_empty());
+        assert!(Metrics::of(&report, &[], &[1e9], false).at_seconds.is_empty());
 
-        let curve = curve(&record);
+        let curve = curve(&report);
         for Moment(evaluations, _, count) in &curve {
-            let exact = record
+            let exact = report
                 .solutions
                 .iter()
                 .filter(|hit| hit.evaluation <= *evaluations)

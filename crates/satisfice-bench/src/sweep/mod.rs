@@ -2,6 +2,7 @@
 //!
 //! ```
 //! use satisfice::Cancel;
+//! use satisfice_catalogue::Catalogue;
 //! use satisfice_bench::sweep::{Plan, Suite, execute, groups, table};
 //! let suite = Suite::parse("mine", r#"
 //!     seeds = "0..4"
@@ -10,7 +11,7 @@
 //!     problems = [{ name = "rastrigin", dimension = 2 }]
 //!     evaluations = 5000
 //! "#)?;
-//! let plan = Plan::new(suite)?; // here names and values are checked, all of them
+//! let plan = Plan::new(suite, &Catalogue::bundled())?; // here names and values are checked, all of them
 //! # let folder = tempfile::tempdir()?;
 //! # let folder = folder.path();
 //! let done = execute(&plan, folder, 2, &Cancel::new(), &mut |_| {})?; // a line in results.jsonl as each run ends
@@ -25,6 +26,7 @@
 mod execute;
 pub mod figures;
 mod files;
+mod grid;
 pub mod ioh;
 
 pub mod metrics;
@@ -37,9 +39,9 @@ mod suite;
 mod summary;
 
 pub use execute::{Event, Finished, execute};
-pub use plan::{Plan, Planned};
+pub use plan::{Cell, Plan, Planned};
 pub use publish::publish;
-pub use results::{Known, Results};
-pub use row::{Key, Row};
+pub use results::Results;
+pub use row::Row;
 pub use suite::{Choice, Part, Suite, names, seeds};
-pub use summary::{Group, Line, Reached, cells, groups, heading, rows_of, table, timed};
+pub use summary::{Group, Line, Reached, cells, groups, heading, rows_of, table};

@@ -54,7 +54,7 @@ pub fn publish(
             files::write(&place.join(format!("{name}.png")), png)?;
         }
     }
-    let page = report::page(plan, &shown, &found, command, plan.runs.len() - rows.len());
+    let page = report::page(plan, &shown, &found, command, plan.len() - rows.len() as u64);
     files::write(&folder.join("report.html"), page.as_bytes())?;
     Ok(groups)
 }

@@ -1,11 +1,10 @@
 //! `results.jsonl`: a line for every finished run, appended as it ends.
 
-use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::row::{Key, Row};
+use super::row::Row;
 use crate::error::Error;
 
 /// The file of a sweep.
@@ -16,11 +15,11 @@ pub struct Results {
 }
 
 impl Results {
-    /// Opens or creates the file of a folder, which is created as well; returns what is in it. A last line that a crash
-    /// has cut short is dropped.
+    /// Opens or creates the file of a folder, which is created as well; returns its rows. A last line that
+    /// a crash has cut short is dropped.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read or written, or a line is no run.
+    /// [`Error::File`] where it cannot be read or written, or a line is not a run.
     pub fn open(folder: &Path) -> Result<(Self, Vec<Row>), Error> {
         let path = folder.join("results.jsonl");
         let told = |what: String| Error::File {
@@ -40,7 +39,7 @@ impl Results {
             .map(|(number, line)| {
                 serde_json::from_str(line).map_err(|error| {
                     told(format!(
-                        "line {} is no finished run ({error}): remove it, or choose another folder",
+                        "line {} is not a finished run ({error}): remove it, or choose another folder",
                         number + 1
                     ))
                 })
@@ -65,25 +64,7 @@ impl Results {
         line.push(b'\n');
         self.file.write_all(&line).and_then(|()| self.file.sync_data()).map_err(|error| Error::File {
             path: self.path.clone(),
-            what: format!("cannot write to it: {error}; what is in it is kept: free some space and run the same again"),
+            what: format!("cannot write to it: {error}; its rows are kept: free some space and run the same command again"),
         })
-    }
-}
-
-/// The keys of rows, to be looked up.
-#[derive(Debug, Default)]
-pub struct Known(BTreeSet<String>);
-
-impl Known {
-    /// Of these rows.
-    #[must_use]
-    pub fn of(rows: &[Row]) -> Self {
-        Self(rows.iter().map(|row| row.key.text()).collect())
-    }
-
-    /// Whether a run is among them.
-    #[must_use]
-    pub fn contains(&self, key: &Key) -> bool {
-        self.0.contains(&key.text())
     }
 }

@@ -4,13 +4,17 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
 
-use satisfice::Error as SearchError;
+use indexmap::IndexMap;
+use satisfice_catalogue::options::{self, OPTIONS};
+use satisfice_catalogue::{RunSpec, quantity};
+use serde::Deserialize;
+use serde::de::{Error as _, MapAccess, Visitor, value::MapAccessDeserializer};
+use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
 use crate::error::Error;
-use satisfice_catalogue::quantity;
 
-/// A set of parts, each a grid of engines x problems x parameters x seeds under one budget.
+/// A set of parts, each a grid of engines x problems x parameters x budgets x seeds.
 ///
 /// ```toml
 /// title = "My comparison"
@@ -18,12 +22,12 @@ use satisfice_catalogue::quantity;
 ///
 /// [[part]]
 /// name = "small swarms"
-/// engines = ["random", { name = "latest-hit-qpso", particles = [10, 30] }]   # a list is swept over
+/// engines = ["random", { name = "latest-hit-qpso", particles = [10, 30] }]   # all values of a list are run
 /// problems = [{ name = "rastrigin", dimension = [2, 3] }, "queens"]
-/// evaluations = 100_000                           # and / or: time = "100ms", hits, slices, probes
-/// at-evaluations = [1000, 10_000]                 # where hits are noted; at-times = ["10ms"]
-/// against = "random"                              # with whom all others are compared seed by seed
-/// beside = { queens = "backtracking: all 92 in 2,057 nodes" }   # said beside the figures of a problem
+/// evaluations = 100_000                           # and / or: time = "100ms", hits, slices, probes, islands; lists as well
+/// at-evaluations = [1000, 10_000]                 # where hits are counted; at-times = ["10ms"]
+/// against = "random"                              # the engine that the others are compared with, seed by seed
+/// beside = { queens = "backtracking: all 92 in 2,057 nodes" }   # printed beside the figures of a problem
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite {
@@ -52,24 +56,16 @@ pub struct Part {
     pub problems: Vec<Choice>,
     /// The seeds.
     pub seeds: Range<u64>,
-    /// Wall time a slice.
-    pub time: Option<Duration>,
-    /// Evaluations a slice.
-    pub evaluations: Option<u64>,
-    /// Hits at which a run ends.
-    pub hits: Option<u64>,
-    /// Slices.
-    pub slices: u64,
-    /// Share of uniform probes.
-    pub probes: Option<f64>,
-    /// Evaluations at which hits are noted.
+    /// Options of a run with the values to try, by the names of [`OPTIONS`].
+    pub options: Vec<(String, Vec<String>)>,
+    /// Evaluations at which hits are counted.
     pub at_evaluations: Vec<u64>,
-    /// Times at which hits are noted.
+    /// Times at which hits are counted.
     pub at_times: Vec<Duration>,
-    /// The engine all others are compared with: a name or a label; the first one by default.
+    /// The engine that all others are compared with: a name or a label; the first one by default.
     pub against: Option<String>,
-    /// What is said beside a problem's figures, by the problem's label: its name and the parameters that the suite names.
-    pub beside: Vec<(String, String)>,
+    /// What is printed beside a problem's figures, by the problem's label: its name and the parameters that the suite sets.
+    pub beside: IndexMap<String, String>,
 }
 
 /// A name with parameters, each with the values to try.
@@ -92,8 +88,8 @@ impl Suite {
     /// A suite by its name, or from a file: what ends with `.toml` or has a folder in it is a file.
     ///
     /// # Errors
-    /// [`Error::Search`] for an unknown name, with the nearest; [`Error::File`] for a file that cannot be read;
-    /// [`Error::Suite`] for one that is no suite.
+    /// [`Error::Run`] for an unknown name, with the nearest; [`Error::File`] for a file that cannot be read;
+    /// [`Error::Suite`] for a file that is not a suite.
     pub fn open(name_or_file: &str) -> Result<Self, Error> {
         let path = Path::new(name_or_file);
         if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {
@@ -104,8 +100,8 @@ impl Suite {
             return Self::parse(name_or_file, &text);
         }
         let found = NAMED.iter().find(|(name, _)| *name == name_or_file);
-        let (name, text) =
-            found.ok_or_else(|| SearchError::unknown("suite (or file.toml)", name_or_file, names()))?;
+        let unknown = || satisfice::Error::unknown("suite (or file.toml)", name_or_file, names());
+        let (name, text) = found.ok_or_else(unknown)?;
         Self::parse(name, text)
     }
 
@@ -114,71 +110,37 @@ impl Suite {
     /// # Errors
     /// [`Error::Suite`], which says where and what.
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
-        let at = |place: String| {
-            move |what: String| Error::Suite {
-                place: place.clone(),
-                what,
-            }
-        };
         let table: Table = text.parse().map_err(|error: toml::de::Error| {
-            let begin = error.span().map_or(0, |span| span.start).min(text.len());
-            let line = text[..begin].matches('\n').count() + 1;
-            at(format!("{name}, line {line}"))(error.message().to_owned())
+            let start = error.span().map_or(0, |span| span.start).min(text.len());
+            let line = text[..start].matches('\n').count() + 1;
+            wrong(format!("{name}, line {line}"), error.message())
         })?;
-        let whole = at(name.to_owned());
-        let suite = Fields { table: &table };
-        suite
-            .know("key of a suite", &["title", "about", "seeds", "studies", "part"])
-            .map_err(&whole)?;
-        let seeds = suite
-            .text("seeds")
-            .and_then(|text| text.map(seeds).transpose())
-            .map_err(&whole)?;
-        let stem = Path::new(name)
-            .file_stem()
-            .map_or_else(|| name.into(), |stem| stem.to_string_lossy());
-        let title = suite.text("title").map_err(&whole)?.unwrap_or(&stem).to_owned();
-        let about = suite
-            .text("about")
-            .map_err(&whole)?
-            .unwrap_or_default()
-            .to_owned();
-        let studies = table
-            .get("studies")
-            .map(values)
-            .transpose()
-            .map_err(&whole)?
-            .unwrap_or_default();
-        let tables = match table.get("part") {
-            Some(Value::Array(tables)) if !tables.is_empty() => tables.as_slice(),
-            _ => {
-                return Err(whole(
-                    "there is no [[part]]: give at least one, with engines and problems".into(),
-                ));
-            }
-        };
+        let file: SuiteFile =
+            serde_path_to_error::deserialize(table).map_err(|error| located(name, &error))?;
         let mut parts: Vec<Part> = Vec::new();
-        for (index, value) in tables.iter().enumerate() {
-            let at = at(format!("{name}, part {}", index + 1));
-            let Value::Table(table) = value else {
-                return Err(at("a part is a table: write [[part]]".into()));
-            };
-            let part = part(&Fields { table }, index, seeds.clone()).map_err(&at)?;
+        for (index, part) in file.part.into_iter().enumerate() {
+            let part = part
+                .finish(index, file.seeds.as_ref())
+                .map_err(|what| wrong(format!("{name}, part {}", index + 1), what))?;
             if parts.iter().any(|known| known.name == part.name) {
-                return Err(at(format!(
-                    "there are two parts named `{}`: name them apart",
-                    part.name
-                )));
+                let what = format!("there are two parts named `{}`: name them apart", part.name);
+                return Err(wrong(format!("{name}, part {}", index + 1), what));
             }
             parts.push(part);
         }
+        if parts.is_empty() {
+            let what = "there is no [[part]]: give at least one, with engines and problems";
+            return Err(wrong(name.to_owned(), what));
+        }
+        let stem = Path::new(name).file_stem();
+        let stem = stem.map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
         Ok(Self {
-            name: stem.into_owned(),
-            title,
-            about,
+            title: file.title.unwrap_or_else(|| stem.clone()),
+            name: stem,
+            about: file.about,
             text: text.to_owned(),
             parts,
-            studies,
+            studies: file.studies,
         })
     }
 
@@ -189,7 +151,7 @@ impl Suite {
         self
     }
 
-    /// The same suite with these engines alone. Where a part names one, with its parameters there; else at their defaults.
+    /// The same suite with these engines alone: with the parameters that a part gives them, otherwise with their defaults.
     #[must_use]
     pub fn with_engines(mut self, names: &[String]) -> Self {
         for part in &mut self.parts {
@@ -228,176 +190,208 @@ pub fn seeds(text: &str) -> Result<Range<u64>, String> {
     Ok(range)
 }
 
-const KEYS: [&str; 13] = [
+/// The file as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SuiteFile {
+    title: Option<String>,
+    #[serde(default)]
+    about: String,
+    seeds: Option<Seeds>,
+    #[serde(default)]
+    studies: Vec<String>,
+    #[serde(default)]
+    part: Vec<PartFile>,
+}
+
+/// A part as it is written; what it does not name is an option of a run, or a mistake.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+struct PartFile {
+    name: Option<String>,
+    #[serde(default)]
+    engines: Vec<Choice>,
+    #[serde(default)]
+    problems: Vec<Choice>,
+    seeds: Option<Seeds>,
+    at_evaluations: Option<Value>,
+    at_times: Option<Value>,
+    against: Option<String>,
+    #[serde(default)]
+    beside: IndexMap<String, String>,
+    #[serde(flatten)]
+    options: Table,
+}
+
+/// The keys of a part that are not options.
+const KEYS: [&str; 8] = [
     "name",
     "engines",
     "problems",
     "seeds",
-    "time",
-    "evaluations",
-    "hits",
-    "slices",
-    "probes",
     "at-evaluations",
     "at-times",
     "against",
     "beside",
 ];
 
-fn part(fields: &Fields<'_>, index: usize, seeds_of_suite: Option<Range<u64>>) -> Result<Part, String> {
-    fields.know("key of a part", &KEYS)?;
-    let own_seeds = fields.text("seeds")?.map(seeds).transpose()?;
-    let count = |key: &str| {
-        fields
-            .quantities(key, quantity::count)
-            .map(|all| all.first().copied())
-    };
-    let part = Part {
-        name: fields
-            .text("name")?
-            .map_or_else(|| format!("part {}", index + 1), str::to_owned),
-        engines: fields.choices("engines")?,
-        problems: fields.choices("problems")?,
-        seeds: own_seeds
-            .or(seeds_of_suite)
-            .ok_or("seeds are missing: write for instance seeds = \"0..16\"")?,
-        time: fields.quantities("time", quantity::time)?.first().copied(),
-        evaluations: count("evaluations")?,
-        hits: count("hits")?,
-        slices: count("slices")?.unwrap_or(1),
-        probes: fields.quantities("probes", quantity::share)?.first().copied(),
-        at_evaluations: fields.quantities("at-evaluations", quantity::count)?,
-        at_times: fields.quantities("at-times", quantity::time)?,
-        against: fields.text("against")?.map(str::to_owned),
-        beside: fields.texts("beside")?,
-    };
-    if part.time.is_none() && part.evaluations.is_none() {
-        return Err("no budget: give evaluations = 100_000, time = \"100ms\", or both".to_owned());
+#[derive(Deserialize, Clone)]
+#[serde(try_from = "String")]
+struct Seeds(Range<u64>);
+
+impl TryFrom<String> for Seeds {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
+        seeds(&text).map(Self)
     }
-    Ok(part)
 }
 
-/// Reads a table, key by key.
-struct Fields<'a> {
-    table: &'a Table,
-}
-
-impl<'a> Fields<'a> {
-    fn know(&self, what: &str, known: &[&str]) -> Result<(), String> {
-        match self.table.keys().find(|key| !known.contains(&key.as_str())) {
-            Some(key) => Err(SearchError::unknown(what, key, known.iter().copied()).to_string()),
-            None => Ok(()),
-        }
-    }
-
-    fn text(&self, key: &str) -> Result<Option<&'a str>, String> {
-        match self.table.get(key) {
-            None => Ok(None),
-            Some(Value::String(text)) => Ok(Some(text)),
-            Some(other) => Err(format!("{key} = {other} is not allowed: a text in quotes")),
-        }
-    }
-
-    /// A table of texts.
-    fn texts(&self, key: &str) -> Result<Vec<(String, String)>, String> {
-        let hint =
-            |found: &Value| format!("{key} = {found} is not allowed: write {{ \"PROBLEM\" = \"TEXT\" }}");
-        match self.table.get(key) {
-            None => Ok(Vec::new()),
-            Some(Value::Table(table)) => table
+impl PartFile {
+    fn finish(self, index: usize, seeds: Option<&Seeds>) -> Result<Part, String> {
+        let mut options = Vec::new();
+        for (name, value) in &self.options {
+            // A suite has a range of seeds instead.
+            let known = OPTIONS
                 .iter()
-                .map(|(name, value)| match value {
-                    Value::String(text) => Ok((name.clone(), text.clone())),
-                    other => Err(hint(other)),
-                })
-                .collect(),
-            Some(other) => Err(hint(other)),
-        }
-    }
-
-    /// One quantity or a list of them.
-    fn quantities<T>(&self, key: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, String> {
-        let values = self.table.get(key).map(values).transpose()?.unwrap_or_default();
-        values
-            .iter()
-            .map(|text| parse(text).map_err(|what| format!("{key} = {text} is not allowed: {what}")))
-            .collect()
-    }
-
-    fn choices(&self, key: &str) -> Result<Vec<Choice>, String> {
-        let hint =
-            || format!("{key} are missing: write {key} = [\"NAME\", {{ name = \"NAME\", parameter = 1 }}]");
-        let Some(Value::Array(list)) = self.table.get(key) else {
-            return Err(hint());
-        };
-        if list.is_empty() {
-            return Err(hint());
-        }
-        list.iter()
-            .map(|value| choice(value).unwrap_or_else(|| Err(hint())))
-            .collect()
-    }
-}
-
-fn choice(value: &Value) -> Option<Result<Choice, String>> {
-    match value {
-        Value::String(name) => Some(Ok(Choice {
-            name: name.clone(),
-            settings: Vec::new(),
-        })),
-        Value::Table(table) => {
-            let Some(Value::String(name)) = table.get("name") else {
-                return None;
+                .map(|option| option.name)
+                .filter(|name| *name != "seed");
+            let Some(option) = options::find(name).filter(|option| option.name != "seed") else {
+                let known = KEYS.into_iter().chain(known);
+                return Err(satisfice::Error::unknown("key of a part", name, known).to_string());
             };
-            let settings = table.iter().filter(|(key, _)| *key != "name");
-            let settings = settings
-                .map(|(key, value)| match values(value)? {
-                    none if none.is_empty() => Err(format!("{key} of {name} is an empty list: give a value")),
-                    some => Ok((key.clone(), some)),
-                })
-                .collect::<Result<_, String>>();
-            Some(settings.map(|settings| Choice {
-                name: name.clone(),
-                settings,
-            }))
+            let values = values(name, value)?;
+            let try_set = |text: &str| option.set(&mut RunSpec::new(""), text);
+            quantities(name, &values, try_set)?;
+            options.push((name.clone(), values));
         }
-        _ => None,
+        let list =
+            |key: &str, value: Option<&Value>| value.map_or(Ok(Vec::new()), |value| values(key, value));
+        let evaluations = list("at-evaluations", self.at_evaluations.as_ref())?;
+        let times = list("at-times", self.at_times.as_ref())?;
+        let given = |name: &str| self.options.contains_key(name);
+        if !given("time") && !given("evaluations") {
+            return Err("no budget: give evaluations = 100_000, time = \"100ms\", or both".to_owned());
+        }
+        for (key, choices) in [("engines", &self.engines), ("problems", &self.problems)] {
+            if choices.is_empty() {
+                let hint = format!("write {key} = [\"NAME\", {{ name = \"NAME\", parameter = 1 }}]");
+                return Err(format!("{key} are missing: {hint}"));
+            }
+        }
+        let seeds = self.seeds.as_ref().or(seeds);
+        Ok(Part {
+            name: self.name.unwrap_or_else(|| format!("part {}", index + 1)),
+            engines: self.engines,
+            problems: self.problems,
+            seeds: seeds
+                .map(|seeds| seeds.0.clone())
+                .ok_or("seeds are missing: write for instance seeds = \"0..16\"")?,
+            options,
+            at_evaluations: quantities("at-evaluations", &evaluations, quantity::count)?,
+            at_times: quantities("at-times", &times, quantity::time)?,
+            against: self.against,
+            beside: self.beside,
+        })
     }
 }
 
-/// A value, or a list of values, as texts.
-fn values(value: &Value) -> Result<Vec<String>, String> {
-    let one = |value: &Value| match value {
+/// Parses every value of a key.
+fn quantities<T>(
+    key: &str,
+    texts: &[String],
+    mut parse: impl FnMut(&str) -> Result<T, String>,
+) -> Result<Vec<T>, String> {
+    let parsed = texts
+        .iter()
+        .map(|text| parse(text).map_err(|what| format!("{key} = {text} is not allowed: {what}")));
+    parsed.collect()
+}
+
+/// A value, or all values of a list, as texts.
+fn values(key: &str, value: &Value) -> Result<Vec<String>, String> {
+    let text = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(number) => Ok(number.to_string()),
         Value::Float(number) => Ok(number.to_string()),
         other => Err(format!(
-            "{other} is not allowed: a number, a text in quotes, or a list of those"
+            "{key} = {other} is not allowed: give a number, a text in quotes, or a list of those"
         )),
     };
     match value {
-        Value::Array(list) => list.iter().map(one).collect(),
-        value => one(value).map(|text| vec![text]),
+        Value::Array(list) if list.is_empty() => Err(format!("{key} is an empty list: give a value")),
+        Value::Array(list) => list.iter().map(text).collect(),
+        value => text(value).map(|text| vec![text]),
     }
 }
 
-impl Choice {
-    /// Every combination of its values: the settings, and a label that repeats what was written.
-    #[must_use]
-    pub fn grid(&self) -> Vec<(Vec<(String, String)>, String)> {
-        let mut grid = vec![(Vec::new(), self.name.clone())];
-        for (name, values) in &self.settings {
-            grid = grid
-                .iter()
-                .flat_map(|(settings, label)| {
-                    values.iter().map(move |value| {
-                        let mut settings: Vec<(String, String)> = settings.clone();
-                        settings.push((name.clone(), value.clone()));
-                        (settings, format!("{label} {name}={value}"))
-                    })
-                })
-                .collect();
+impl<'de> Deserialize<'de> for Choice {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        struct Named {
+            name: String,
+            #[serde(flatten)]
+            settings: Table,
         }
-        grid
+        struct NameOrTable;
+        impl<'de> Visitor<'de> for NameOrTable {
+            type Value = Choice;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"NAME\" or { name = \"NAME\", parameter = 1 }")
+            }
+            fn visit_str<E>(self, name: &str) -> Result<Choice, E> {
+                Ok(Choice {
+                    name: name.to_owned(),
+                    settings: Vec::new(),
+                })
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Choice, A::Error> {
+                let Named { name, settings } = Named::deserialize(MapAccessDeserializer::new(map))?;
+                let settings = settings.iter().map(|(key, value)| {
+                    let values = values(key, value).map_err(|what| format!("{name}: {what}"));
+                    Ok((key.clone(), values.map_err(A::Error::custom)?))
+                });
+                Ok(Choice {
+                    settings: settings.collect::<Result<_, A::Error>>()?,
+                    name,
+                })
+            }
+        }
+        deserializer.deserialize_any(NameOrTable)
     }
+}
+
+fn wrong(place: String, what: impl Into<String>) -> Error {
+    Error::Suite {
+        place,
+        what: what.into(),
+    }
+}
+
+/// The place of a mistake as a user counts: parts from 1, then the key.
+fn located(name: &str, error: &serde_path_to_error::Error<toml::de::Error>) -> Error {
+    let mut place = name.to_owned();
+    let mut keys = Vec::new();
+    for segment in error.path() {
+        match segment {
+            Segment::Map { key } if key == "part" && keys.is_empty() => {}
+            Segment::Seq { index } if keys.is_empty() => place.push_str(&format!(", part {}", index + 1)),
+            Segment::Map { key } => keys.push(key.clone()),
+            Segment::Seq { index } => keys.push(format!("entry {}", index + 1)),
+            Segment::Enum { .. } | Segment::Unknown => {}
+        }
+    }
+    let message = error.inner().message();
+    // serde names the unknown field first, then those that it knows.
+    if message.starts_with("unknown field") {
+        let mut names = message.split('`').skip(1).step_by(2);
+        let unknown = names.next().unwrap_or_default();
+        let error = satisfice::Error::unknown("key of a suite", unknown, names);
+        return wrong(place, error.to_string());
+    }
+    let key = if keys.is_empty() {
+        String::new()
+    } else {
+        format!("{}: ", keys.join(", "))
+    };
+    wrong(place, format!("{key}{message}"))
 }

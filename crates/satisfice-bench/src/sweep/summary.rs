@@ -1,7 +1,6 @@
-//! What the runs of a sweep amount to: a table for each problem of each part.
+//! A summary of the runs of a sweep: a table for each problem and budget of each part.
 
 use std::fmt::Write;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +8,8 @@ use super::metrics::{Cost, RECALLS};
 use super::plan::Plan;
 use super::row::Row;
 use crate::statistics::{Estimate, Paired};
+use crate::table;
+use satisfice_catalogue::RunSpec;
 use satisfice_catalogue::quantity::shown;
 
 /// One problem of one part under its budget.
@@ -91,20 +92,18 @@ pub struct Reached {
 #[must_use]
 pub fn groups(plan: &Plan, rows: &[Row]) -> Vec<Group> {
     let mut groups = Vec::new();
-    for part in &plan.suite.parts {
-        let of_part: Vec<&Row> = rows.iter().filter(|row| row.key.part == part.name).collect();
-        let planned = || plan.runs.iter().filter(|run| run.key.part == part.name);
-        for problem in unique(planned().map(|run| run.problem_label.as_str())) {
-            let of_group: Vec<&Row> = of_part
+    for (at, part) in plan.suite.parts.iter().enumerate() {
+        let cells = || plan.cells.iter().filter(move |cell| cell.part == at);
+        let keys = unique(cells().map(|cell| (cell.problem_label.as_str(), budget(&cell.spec))));
+        let engines = unique(cells().map(|cell| cell.engine_label.as_str()));
+        for (problem, budget) in &keys {
+            let of_group: Vec<&Row> = rows
                 .iter()
-                .copied()
-                .filter(|row| row.problem_label == problem)
+                .filter(|row| belongs(row, &part.name, problem, budget))
                 .collect();
-            let engines = unique(planned().map(|run| run.engine_label.as_str()));
-            let beside = part.beside.iter().find(|(label, _)| label == problem);
             groups.extend(
                 group(&of_group, &engines, part.against.as_deref()).map(|group| Group {
-                    beside: beside.map(|(_, text)| text.clone()),
+                    beside: part.beside.get(*problem).cloned(),
                     ..group
                 }),
             );
@@ -113,21 +112,24 @@ pub fn groups(plan: &Plan, rows: &[Row]) -> Vec<Group> {
     groups
 }
 
+fn belongs(row: &Row, part: &str, problem: &str, budget_in_words: &str) -> bool {
+    row.part == part && row.problem_label == problem && budget(&row.report.spec) == budget_in_words
+}
+
 /// Rows of a group, by engine.
 #[must_use]
 pub fn rows_of<'a>(rows: &'a [Row], group: &Group, engine: &str) -> Vec<&'a Row> {
     rows.iter()
-        .filter(|row| {
-            row.key.part == group.part && row.problem_label == group.problem && row.engine_label == engine
-        })
+        .filter(|row| row.engine_label == engine && belongs(row, &group.part, &group.problem, &group.budget))
         .collect()
 }
 
-fn unique<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+/// The values without repetitions, in order.
+pub(super) fn unique<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     let mut seen = Vec::new();
-    names.for_each(|name| {
-        if !seen.contains(&name) {
-            seen.push(name);
+    all.for_each(|one| {
+        if !seen.contains(&one) {
+            seen.push(one);
         }
     });
     seen
@@ -156,37 +158,43 @@ fn group(rows: &[&Row], engines: &[&str], against: Option<&str>) -> Option<Group
             .filter_map(|line| line.paired.as_mut())
             .collect::<Vec<_>>(),
     );
-    let key = &first.key;
+    let spec = &first.report.spec;
     Some(Group {
-        part: key.part.clone(),
+        part: first.part.clone(),
         problem: first.problem_label.clone(),
-        budget: budget(first),
-        timed: key.budget.time_seconds.is_some(),
-        reference_hits: first.reference_hits,
-        at_evaluations: key.at_evaluations.clone(),
-        at_seconds: key.at_seconds.clone(),
+        budget: budget(spec),
+        timed: spec.budget.time.is_some(),
+        reference_hits: first.report.reference_hits,
+        at_evaluations: first.at_evaluations.clone(),
+        at_seconds: first.at_seconds.clone(),
         against: (*against).to_owned(),
         beside: None,
         lines,
     })
 }
 
-fn budget(row: &Row) -> String {
-    let limits = &row.key.budget;
-    let mut said: Vec<String> = Vec::new();
-    said.extend(limits.time_seconds.map(shown::seconds));
-    said.extend(
+/// The budget and the other options of a run, in words.
+fn budget(spec: &RunSpec) -> String {
+    let limits = &spec.budget;
+    let mut words: Vec<String> = Vec::new();
+    words.extend(limits.time.map(|time| shown::seconds(time.as_secs_f64())));
+    words.extend(
         limits
             .evaluations
             .map(|count| format!("{} evaluations", shown::count(count))),
     );
-    said.extend(limits.hits.map(|hits| format!("{hits} hits")));
-    let slices = if limits.slices > 1 {
-        format!(", {} slices", limits.slices)
-    } else {
-        String::new()
-    };
-    said.join(" or ") + &slices
+    words.extend(limits.hits.map(|hits| format!("{hits} hits")));
+    let mut text = words.join(" or ");
+    if limits.slices > 1 {
+        text.push_str(&format!(", {} slices", limits.slices));
+    }
+    if let Some(share) = spec.probes {
+        text.push_str(&format!(", {share} probes"));
+    }
+    if spec.islands > 1 {
+        text.push_str(&format!(", {} islands", spec.islands));
+    }
+    text
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts below 2^53")]
@@ -223,10 +231,10 @@ fn line(rows: &[&Row], base: Option<&[&Row]>) -> Option<Line> {
     Some(Line {
         engine,
         runs: rows.len(),
-        hits: over(&|row| Some(row.hits as f64))?,
-        recall: over(&|row| row.recall),
-        evaluations: over(&|row| Some(row.counts.evaluations as f64))?,
-        seconds: over(&|row| row.alone.then_some(row.elapsed_seconds)),
+        hits: over(&|row| Some(row.report.hits as f64))?,
+        recall: over(&|row| row.report.recall),
+        evaluations: over(&|row| Some(row.report.counts.evaluations as f64))?,
+        seconds: over(&|row| row.alone.then_some(row.report.elapsed_seconds)),
         first_hit: reached(&|row| row.metrics.first_hit),
         to_recall: (0..RECALLS.len())
             .map(|at| reached(&|row| row.metrics.to_recall.get(at).copied().flatten()))
@@ -242,8 +250,10 @@ fn line(rows: &[&Row], base: Option<&[&Row]>) -> Option<Line> {
             let pairs: Vec<(f64, f64)> = rows
                 .iter()
                 .filter_map(|row| {
-                    let other = base.iter().find(|other| other.key.seed == row.key.seed)?;
-                    Some((row.hits as f64, other.hits as f64))
+                    let other = base
+                        .iter()
+                        .find(|other| other.report.spec.seed == row.report.spec.seed)?;
+                    Some((row.report.hits as f64, other.report.hits as f64))
                 })
                 .collect();
             Paired::of(&pairs)
@@ -258,11 +268,11 @@ pub fn table(groups: &[Group]) -> String {
     for group in groups {
         let all = group
             .reference_hits
-            .map_or_else(|| "not known".to_owned(), |all| all.to_string());
+            .map_or_else(|| "not known".to_owned(), shown::count);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{}: {}, {}; hits that there are: {all}",
+            "{}: {}, {}; all hits: {all}",
             group.part, group.problem, group.budget
         );
         if let Some(beside) = &group.beside {
@@ -270,21 +280,7 @@ pub fn table(groups: &[Group]) -> String {
         }
         let mut rows = vec![heading(group)];
         rows.extend(group.lines.iter().map(|line| cells(group, line)));
-        let widths: Vec<usize> = (0..rows[0].len())
-            .map(|column| {
-                rows.iter()
-                    .map(|row| row[column].chars().count())
-                    .max()
-                    .unwrap_or(0)
-            })
-            .collect();
-        for row in rows {
-            let mut line = format!("  {:<w$}", row[0], w = widths[0]);
-            for (cell, w) in row.iter().zip(&widths).skip(1) {
-                let _ = write!(line, "  {cell:>w$}");
-            }
-            let _ = writeln!(text, "{}", line.trim_end());
-        }
+        text.push_str(&table::plain(&rows, 2, 1));
         text.push('\n');
     }
     text
@@ -364,15 +360,4 @@ pub fn cells(group: &Group, line: &Line) -> Vec<String> {
         |paired| format!("{}:{}, p = {:.2}", paired.wins, paired.losses, paired.p_holm),
     ));
     cells
-}
-
-/// For how long a plan's timed runs last at most, together.
-#[must_use]
-pub fn timed(plan: &Plan) -> Duration {
-    plan.runs
-        .iter()
-        .filter_map(|run| {
-            Some(run.request.budget.time? * u32::try_from(run.request.slices).unwrap_or(u32::MAX))
-        })
-        .sum()
 }

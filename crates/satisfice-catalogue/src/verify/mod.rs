@@ -1,19 +1,19 @@
-//! Whether a record is true: its solutions are evaluated anew, its books are checked against each other.
+//! Whether a report is true: its solutions are evaluated anew, its books are checked against each other.
 
-mod books;
+mod accounting;
 mod solutions;
 
 use core::fmt;
 
-pub use books::books;
+pub use accounting::accounting;
 pub use solutions::{LISTED_BEFORE, solutions, solutions_by};
 
-use crate::record::{Record, recall};
+use crate::report::{RunReport, recall};
 
-/// Something in a record that does not fit.
+/// Something in a report that does not fit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mismatch {
-    /// Where in the record, e.g. `solutions[3].fitness`.
+    /// Where in the report, e.g. `solutions[3].fitness`.
     pub place: String,
     /// What stands there.
     pub found: String,
@@ -47,44 +47,44 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// Checks the counts of a record against the true number of hits, where that is known.
+/// Checks the counts of a report against the true number of hits, where that is known.
 #[must_use]
-pub fn reference(record: &Record, reference: Option<u64>) -> Vec<Mismatch> {
+pub fn reference(report: &RunReport, reference: Option<u64>) -> Vec<Mismatch> {
     let mut mismatches = Vec::new();
     // A run that was interrupted has not counted the reference.
-    if let (Some(found), Some(expected)) = (record.reference_hits, reference)
+    if let (Some(found), Some(expected)) = (report.reference_hits, reference)
         && found != expected
     {
         mismatches.push(Mismatch::new("reference_hits", found, expected));
     }
-    if record.reference_hits.is_some() && reference.is_none() {
+    if report.reference_hits.is_some() && reference.is_none() {
         mismatches.push(Mismatch::new(
             "reference_hits",
-            record.reference_hits.unwrap_or_default(),
+            report.reference_hits.unwrap_or_default(),
             "null: the number of hits of this problem is not known",
         ));
     }
-    let expected = record
+    let expected = report
         .reference_hits
-        .and_then(|reference| recall(record.hits, reference));
-    if record.recall != expected {
-        mismatches.push(Mismatch::new("recall", shown(record.recall), shown(expected)));
+        .and_then(|reference| recall(report.hits, reference));
+    if report.recall != expected {
+        mismatches.push(Mismatch::new("recall", shown(report.recall), shown(expected)));
     }
     if let Some(reference) = reference {
-        if record.hits > reference {
+        if report.hits > reference {
             mismatches.push(Mismatch::new(
                 "hits",
-                record.hits,
+                report.hits,
                 format!("at most the {reference} that there are"),
             ));
         }
-        if record.completeness == satisfice::Completeness::Proved && record.hits != reference {
+        if report.completeness == satisfice::Completeness::Proved && report.hits != reference {
             mismatches.push(Mismatch::new(
                 "completeness",
                 "Proved",
                 format!(
                     "Unknown: there are {reference} hits and {} are listed",
-                    record.hits
+                    report.hits
                 ),
             ));
         }

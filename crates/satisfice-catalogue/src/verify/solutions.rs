@@ -1,4 +1,4 @@
-//! Every solution of a record, decoded and evaluated by the problem itself.
+//! Every solution of a report, decoded and evaluated by the problem itself.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -6,7 +6,7 @@ use satisfice::{Archive, Real, SatisficingProblem};
 use serde::de::DeserializeOwned;
 
 use super::Mismatch;
-use crate::record::{Record, Solution};
+use crate::report::{RunReport, Solution};
 
 /// Two evaluations of one solution may differ by this much of delta, or of F where that is greater: mathematical
 /// functions are rounded differently on different platforms.
@@ -16,17 +16,17 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// Cost: one evaluation and one look-up a solution.
 #[must_use]
-pub fn solutions<P>(problem: &P, record: &Record) -> Vec<Mismatch>
+pub fn solutions<P>(problem: &P, report: &RunReport) -> Vec<Mismatch>
 where
     P: SatisficingProblem,
     P::Solution: DeserializeOwned,
 {
     let mut mismatches = Vec::new();
-    if record.scalar != P::Scalar::NAME {
-        mismatches.push(Mismatch::new("scalar", &record.scalar, P::Scalar::NAME));
+    if report.scalar != P::Scalar::NAME {
+        mismatches.push(Mismatch::new("scalar", &report.scalar, P::Scalar::NAME));
     }
     let mut seen = Archive::default();
-    mismatches.extend(solutions_by(record, problem.threshold().f64(), |listed| {
+    mismatches.extend(solutions_by(report, problem.threshold().f64(), |listed| {
         let solution: P::Solution =
             serde_json::from_value(listed.solution.clone()).map_err(|error| error.to_string())?;
         // A file may hold anything, and a problem need not stand what its own `decode` never gives.
@@ -46,25 +46,25 @@ where
     mismatches
 }
 
-/// What is expected of a solution that stands in a record for the second time.
+/// What is expected of a solution that stands in a report for the second time.
 pub const LISTED_BEFORE: &str = "a solution that is not listed before";
 
 /// The same where the evaluation is given: `evaluate` returns F, or what it had expected of a solution that is none or is
 /// listed twice.
 pub fn solutions_by(
-    record: &Record,
+    report: &RunReport,
     threshold: f64,
     mut evaluate: impl FnMut(&Solution) -> Result<f64, String>,
 ) -> Vec<Mismatch> {
     let mut mismatches = Vec::new();
-    if record.threshold != threshold.is_finite().then_some(threshold) {
+    if report.threshold != threshold.is_finite().then_some(threshold) {
         mismatches.push(Mismatch::new(
             "threshold",
-            super::shown(record.threshold),
+            super::shown(report.threshold),
             threshold,
         ));
     }
-    for (index, listed) in record.solutions.iter().enumerate() {
+    for (index, listed) in report.solutions.iter().enumerate() {
         let place = |part: &str| format!("solutions[{index}].{part}");
         let fitness = match evaluate(listed) {
             Ok(fitness) => fitness,

@@ -2,12 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use satisfice::{Cancel, Completeness, Counts, Method as Estimate, StopReason, TracePoint};
-use satisfice_catalogue::record::{Limits, Solution};
-use satisfice_catalogue::{Record, Settings};
+use satisfice::{Cancel, StopReason};
+use satisfice_catalogue::{RunReport, RunSpec};
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::{self, Contact, Frame, Scene, Skips};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::PROBLEM;
 use super::arguments::Find;
@@ -34,7 +33,7 @@ pub(super) struct Exact<'a> {
 
 /// What was found.
 pub(super) struct Found {
-    pub(super) record: Record,
+    pub(super) report: RunReport,
     pub(super) skips: Skips,
 }
 
@@ -70,20 +69,15 @@ impl Exact<'_> {
         counting.say(format!("measuring {} pairs", answer.contacts.len()));
         let mut solutions = Vec::with_capacity(answer.contacts.len());
         for &contact in &answer.contacts {
-            solutions.push(Solution {
-                solution: json!(Pair::from(contact)),
-                fitness: distance(&scene, contact, world.request.threshold)?,
-                // The pairs are there when all are decided.
-                evaluation: answer.contacts.len() as u64,
-                seconds: searched.as_secs_f64(),
-            });
+            let distance = distance(&scene, contact, world.request.threshold)?;
+            solutions.push((json!(Pair::from(contact)), distance));
         }
         let elapsed = start.elapsed();
         let late = self
             .time
             .map_or(Duration::ZERO, |time| searched.saturating_sub(time));
         Ok(Found {
-            record: self.record(world, &answer, solutions, elapsed, late),
+            report: self.report(world, &answer, solutions, (searched, elapsed), late),
             skips: answer.skips,
         })
     }
@@ -179,71 +173,39 @@ impl Exact<'_> {
         })
     }
 
-    fn record(
+    fn report(
         &self,
         world: &World,
         answer: &Answer,
-        solutions: Vec<Solution>,
-        elapsed: Duration,
+        solutions: Vec<(Value, f64)>,
+        (searched, elapsed): (Duration, Duration),
         late: Duration,
-    ) -> Record {
+    ) -> RunReport {
         let hits = solutions.len() as u64;
-        let seconds = elapsed.as_secs_f64();
         // Brute force measures what there is, the others what they find.
         let measured = if self.method == Method::BruteForce && answer.complete {
             world.size() - answer.skips.mesh_neighbours
         } else {
             hits
         };
-        let solutions = solutions.into_iter().map(|solution| Solution {
-            evaluation: measured,
-            ..solution
-        });
-        let mut record = Record {
-            problem: PROBLEM.to_owned(),
-            problem_parameters: world.settings(),
-            engine: self.name.to_owned(),
-            engine_parameters: Settings::default(),
-            scalar: "f64".to_owned(),
-            threshold: Some(world.request.threshold),
-            seed: 0,
-            budget: Limits {
-                time_seconds: self.time.map(|time| time.as_secs_f64()),
-                evaluations: None,
-                hits: self.hits,
-                slices: 1,
-            },
-            probe_share: 0.0,
-            counts: Counts {
-                evaluations: measured,
-                fitness_calls: measured,
-                ..Counts::default()
-            },
-            elapsed_seconds: seconds,
-            overshoot_seconds: late.as_secs_f64(),
-            stop_reason: answer.stop,
-            hits,
-            reference_hits: None,
-            recall: None,
-            completeness: match answer.complete {
-                true => Completeness::Proved,
-                false => Completeness::Unknown,
-            },
-            unseen_estimate: answer.complete.then_some(0.0),
-            unseen_interval: answer.complete.then_some((0.0, Some(0.0))),
-            unseen_confidence: answer.complete.then_some(1.0),
-            unseen_method: answer.complete.then_some(Estimate::Proved),
-            trace: vec![TracePoint {
-                evaluations: measured,
-                elapsed_seconds: seconds,
-                hits,
-            }],
-            slices: Vec::new(),
-            solutions: solutions.collect(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-        };
-        record.set_reference(answer.complete.then_some(hits));
-        record
+        let mut spec = RunSpec::new(self.name);
+        spec.problem = PROBLEM.to_owned();
+        spec.problem_parameters = world.settings();
+        spec.budget.time = self.time;
+        spec.budget.hits = self.hits;
+        let cost = (measured, searched.as_secs_f64());
+        let mut report = RunReport::at_once(spec, world.request.threshold, solutions, cost);
+        report.elapsed_seconds = elapsed.as_secs_f64();
+        if let Some(end) = report.trace.last_mut() {
+            end.elapsed_seconds = report.elapsed_seconds;
+        }
+        report.overshoot_seconds = late.as_secs_f64();
+        report.stop_reason = answer.stop;
+        if answer.complete {
+            report.set_proved();
+            report.set_reference(Some(hits));
+        }
+        report
     }
 }
 

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex};
 
 use anyhow::{Context, bail};
 use satisfice::engine;
-use satisfice_catalogue::{Mismatch, Record, json};
+use satisfice_catalogue::{Mismatch, RunReport, json};
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::{Completeness, Contact, Skips};
 use serde::Deserialize;
@@ -61,17 +61,15 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
             cancel: &cancel,
         }
         .find(&world)?;
-        (found.record, found.skips, Vec::new(), files)
+        (found.report, found.skips, Vec::new(), files)
     } else {
-        let mut request = arguments.search.request(&arguments.method, &cancel)?;
+        let mut spec = arguments.search.spec(&arguments.method)?;
         if arguments.prune {
-            request
-                .engine_settings
-                .push(("prune".to_owned(), "yes".to_owned()));
+            spec = spec.set("prune", "yes");
         }
         let files = Files::open(arguments)?;
         warn(&world);
-        let mut record = search::find(&world, &request)?;
+        let mut record = search::find(&world, &spec, &cancel)?;
         let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));
         let (counted, kept) = (Arc::clone(&world), Arc::clone(&reference));
         record.set_reference(reference::wait_for("the scene", &cancel, move || {
@@ -96,7 +94,7 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
     let method = &arguments.method;
     let useless = arguments.search.for_an_engine();
     if is_exact && (arguments.prune || !useless.is_empty()) {
-        let option = useless.first().copied().unwrap_or("--prune");
+        let option = useless.first().map_or("--prune", String::as_str);
         bail!("--method {method} makes no use of {option}: leave it out or choose an engine");
     }
     let (_, hits) = arguments.search.limits();
@@ -139,7 +137,7 @@ fn count(world: &World, kept: &Mutex<(Vec<Contact>, Skips)>) -> Option<u64> {
 }
 
 /// The pairs that a record lists.
-fn contacts(record: &Record) -> anyhow::Result<Vec<Contact>> {
+fn contacts(record: &RunReport) -> anyhow::Result<Vec<Contact>> {
     let solutions = record.solutions.iter();
     let pairs = solutions.map(|found| Pair::deserialize(&found.solution).map(Contact::from));
     Ok(pairs.collect::<Result<_, _>>()?)
@@ -186,13 +184,13 @@ impl Files {
         if self.summary {
             output::print(report.summary(world).as_bytes())?;
         }
-        Ok(summary::exit_code(&report.record))
+        Ok(summary::exit_code(&report.run))
     }
 }
 
 /// Reads the meshes of a report again and measures its pairs anew.
 pub(crate) fn verify(text: &[u8]) -> anyhow::Result<Vec<Mismatch>> {
     let report: Report = serde_json::from_slice(text).context("the report is none of `collide --json`")?;
-    let world = World::of_report(&report.record).context("the scene of the report cannot be built")?;
+    let world = World::of_report(&report.run).context("the scene of the report cannot be built")?;
     report.verify(&world)
 }

@@ -7,7 +7,7 @@ use anyhow::bail;
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::Contact;
-use satisfice_draw::picture::{Picture, Up, View};
+use satisfice_picture::{Picture, Up, View};
 
 use super::arguments::Axis;
 use super::scene::World;

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use satisfice::StopReason;
+use satisfice_catalogue::RunReport;
+use satisfice_catalogue::report::Solution;
 use satisfice_catalogue::verify::{self, LISTED_BEFORE, Mismatch};
-use satisfice_catalogue::{Record, record};
 use satisfice_collision::FeatureKind;
 use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Serialize};
@@ -18,7 +19,7 @@ use crate::summary;
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Report {
     #[serde(flatten)]
-    pub(super) record: Record,
+    pub(super) run: RunReport,
     /// The pairs found, in the order of the solutions.
     pairs: Vec<Found>,
     /// Bodies of which a pair is listed, `[a, b]` with `a <= b`.
@@ -63,7 +64,7 @@ impl Listed {
 }
 
 impl Found {
-    fn new(solution: &record::Solution, world: &World) -> Result<Self, serde_json::Error> {
+    fn new(solution: &Solution, world: &World) -> Result<Self, serde_json::Error> {
         let Pair { a, b } = Pair::deserialize(&solution.solution)?;
         let (kind_a, kind_b) = world.kinds();
         Ok(Self {
@@ -80,7 +81,7 @@ impl Found {
 }
 
 impl Report {
-    pub(super) fn new(record: Record, skips: &Skips, world: &World) -> anyhow::Result<Self> {
+    pub(super) fn new(record: RunReport, skips: &Skips, world: &World) -> anyhow::Result<Self> {
         let solutions = record.solutions.iter();
         let pairs = solutions
             .map(|solution| Found::new(solution, world))
@@ -92,7 +93,7 @@ impl Report {
                 .filter(|(_, count)| *count > 0)
                 .map(|(reason, count)| (reason.to_owned(), count))
                 .collect(),
-            record,
+            run: record,
             pairs,
         })
     }
@@ -122,14 +123,14 @@ impl Report {
                 .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
             format!("{} {feature}{ends} of body {body}", kind.name())
         };
-        let mut text = summary::summary_with(&self.record, |solution| match Found::new(solution, world) {
+        let mut text = summary::summary_with(&self.run, |solution| match Found::new(solution, world) {
             Ok(found) => format!("{} and {}", name(kind_a, &found.a), name(kind_b, &found.b)),
             Err(_) => solution.solution.to_string(),
         });
         let mut line = |name: &str, value: String| {
             let _ = writeln!(text, "  {name:<13} {value}");
         };
-        let was_stopped = matches!(self.record.stop_reason, StopReason::Cancelled | StopReason::Time);
+        let was_stopped = matches!(self.run.stop_reason, StopReason::Cancelled | StopReason::Time);
         let asked = match world.request.find {
             Find::All => None,
             Find::Touching if was_stopped => {
@@ -167,12 +168,12 @@ impl Report {
 
     /// What of the report is not true of the scene.
     pub(super) fn verify(&self, world: &World) -> anyhow::Result<Vec<Mismatch>> {
-        let mut mismatches = verify::books(&self.record);
+        let mut mismatches = verify::accounting(&self.run);
         let mut seen = BTreeSet::new();
         // Made here, so that what fails is told as an error.
         world.jobs()?;
         mismatches.extend(verify::solutions_by(
-            &self.record,
+            &self.run,
             world.request.threshold,
             |listed| {
                 let pair = Pair::deserialize(&listed.solution).map_err(|error| error.to_string())?;
@@ -186,7 +187,7 @@ impl Report {
                 world.fitness(&pair).map_err(|error| error.to_string())
             },
         ));
-        let solutions = self.record.solutions.iter();
+        let solutions = self.run.solutions.iter();
         let listed: Vec<_> = solutions
             .filter_map(|solution| Found::new(solution, world).ok())
             .collect();
@@ -206,9 +207,9 @@ impl Report {
         // Where deciding every pair takes too long, what the report says of the number of pairs stays as it is.
         let reference = match world.is_small() {
             true => Some(world.reference_hits()?),
-            false => self.record.reference_hits,
+            false => self.run.reference_hits,
         };
-        mismatches.extend(verify::reference(&self.record, reference));
+        mismatches.extend(verify::reference(&self.run, reference));
         Ok(mismatches)
     }
 }

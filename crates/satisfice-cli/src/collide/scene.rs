@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use satisfice::SatisficingProblem;
-use satisfice_catalogue::{Record, Settings};
+use satisfice_catalogue::{RunReport, Settings};
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
@@ -137,8 +137,8 @@ impl World {
     }
 
     /// The scene that a report tells of.
-    pub(super) fn of_report(record: &Record) -> anyhow::Result<Self> {
-        let parameters = &record.problem_parameters;
+    pub(super) fn of_report(record: &RunReport) -> anyhow::Result<Self> {
+        let parameters = &record.spec.problem_parameters;
         let parameter = |name| {
             parameters
                 .get(name)

@@ -3,9 +3,8 @@
 use std::time::Duration;
 
 use anyhow::bail;
-use satisfice::StopReason;
-use satisfice_catalogue::record::Limits;
-use satisfice_catalogue::{Record, Request, search};
+use satisfice::{Cancel, StopReason};
+use satisfice_catalogue::{Limits, Progress, RunControl, RunReport, RunSpec, run};
 use satisfice_collision::broad::Method;
 use serde_json::json;
 
@@ -15,7 +14,7 @@ use super::scene::World;
 use crate::progress::Bar;
 
 /// Searches each combination of bodies in turn. Time and evaluations are shared out evenly.
-pub(super) fn find(world: &World, request: &Request) -> anyhow::Result<Record> {
+pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Result<RunReport> {
     // What has no pairs at all shall take no time from the others.
     let all_jobs = world.jobs()?;
     let mut jobs: Vec<_> = all_jobs.iter().filter(|job| job.problem.has_pairs()).collect();
@@ -25,34 +24,37 @@ pub(super) fn find(world: &World, request: &Request) -> anyhow::Result<Record> {
     let parts = jobs.len() as u64;
     let scene = world.scene(Method::Auto);
     let bar = Bar::new();
-    let mut all: Option<Record> = None;
+    let mut all: Option<RunReport> = None;
     for (part, job) in (0..).zip(jobs) {
-        let mut share = request.clone();
-        share.budget.time = request
+        let mut share = spec.clone();
+        share.budget.time = spec
             .budget
             .time
             .map(|time| (time / u32::try_from(parts).unwrap_or(u32::MAX)).max(Duration::from_nanos(1)));
-        share.budget.evaluations = request
+        share.budget.evaluations = spec
             .budget
             .evaluations
             .map(|total| (total / parts + u64::from(part < total % parts)).max(1));
         let found = all.as_ref().map_or(0, |all| all.hits);
-        share.budget.hits = request.budget.hits.map(|wanted| wanted - found);
+        share.budget.hits = spec.budget.hits.map(|wanted| wanted - found);
 
-        let mut record = search(&job.problem, &share, &mut |progress| {
-            bar.show(progress, part, parts);
-        })?;
-        for found in &mut record.solutions {
+        let mut watch = |progress: &Progress| bar.show(progress, part, parts);
+        let control = RunControl {
+            watch: Some(&mut watch),
+            ..RunControl::until(cancel)
+        };
+        let mut report = run(&job.problem, share, control)?;
+        for found in &mut report.solutions {
             let pair = serde_json::from_value(found.solution.take())?;
             let pair = job.pair(pair);
             found.solution = json!(pair);
             // As the exact methods give it: to the last digit, where F has ten.
             found.fitness = distance(&scene, pair.into(), world.request.threshold)?;
         }
-        let stop = record.stop_reason;
+        let stop = report.stop_reason;
         match &mut all {
-            Some(all) => all.append(record),
-            None => all = Some(record),
+            Some(all) => all.append(report),
+            None => all = Some(report),
         }
         if matches!(stop, StopReason::Cancelled | StopReason::Hits) {
             break;
@@ -61,14 +63,15 @@ pub(super) fn find(world: &World, request: &Request) -> anyhow::Result<Record> {
     let Some(all) = all else {
         bail!("the scene has no pair of bodies")
     };
-    Ok(Record {
-        problem: PROBLEM.to_owned(),
-        problem_parameters: world.settings(),
-        budget: Limits {
-            time_seconds: request.budget.time.map(|time| time.as_secs_f64()),
-            evaluations: request.budget.evaluations.map(|total| total.max(parts)),
-            hits: request.budget.hits,
-            slices: 1,
+    Ok(RunReport {
+        spec: RunSpec {
+            problem: PROBLEM.to_owned(),
+            problem_parameters: world.settings(),
+            budget: Limits {
+                evaluations: spec.budget.evaluations.map(|total| total.max(parts)),
+                ..spec.budget
+            },
+            ..all.spec
         },
         ..all
     })

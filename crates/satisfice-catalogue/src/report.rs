@@ -1,31 +1,22 @@
-//! The record of a run: plain data, the `--json` contract of the command.
+//! What came out of a run: plain data, the JSON of `--json`, of sweeps and of `verify`.
 
 use satisfice::{Completeness, Counts, Method, StopReason, TracePoint, Unseen};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::settings::Settings;
+use crate::spec::RunSpec;
 
-/// What one run did and found: all that is needed to replay and to verify it. Everything but times is the same for the
-/// same request under an evaluation budget.
+/// What one run did and found: all that is needed to repeat and to verify it. Everything but times is the same for the
+/// same specification under a budget of evaluations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Record {
-    /// Name of the problem.
-    pub problem: String,
-    /// All its parameters.
-    pub problem_parameters: Settings,
-    /// Name of the engine.
-    pub engine: String,
-    /// All its parameters.
-    pub engine_parameters: Settings,
+pub struct RunReport {
+    /// What was run, with all parameters.
+    #[serde(flatten)]
+    pub spec: RunSpec,
     /// `f32` or `f64`.
     pub scalar: String,
     /// delta: a hit is F < delta. `null` where it is infinite.
     pub threshold: Option<f64>,
-    /// The seed.
-    pub seed: u64,
-    /// What it might spend.
-    pub budget: Limits,
     /// The share of the evaluations spent on uniform probes.
     pub probe_share: f64,
     /// What was counted, summed over the slices.
@@ -37,19 +28,19 @@ pub struct Record {
     pub overshoot_seconds: f64,
     /// Why the last slice ended.
     pub stop_reason: StopReason,
-    /// Distinct hits, of all slices together.
+    /// The number of distinct hits, of all slices together.
     pub hits: u64,
-    /// How many there are, where that is known.
+    /// The number of all hits of the problem, where it is known.
     pub reference_hits: Option<u64>,
     /// `hits / reference_hits`, where that is known and not 0 / 0.
     pub recall: Option<f64>,
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
-    /// Estimated number of hits not seen; 0 where completeness is proved, `null` where nothing was probed.
+    /// The estimated number of hits not seen; 0 where completeness is proved, `null` where nothing was probed.
     pub unseen_estimate: Option<f64>,
     /// Its interval; no upper end where nothing bounds it.
     pub unseen_interval: Option<(f64, Option<f64>)>,
-    /// The chance with which the interval holds the truth, at least.
+    /// The least probability with which the interval contains the true number.
     pub unseen_confidence: Option<f64>,
     /// How it was estimated.
     pub unseen_method: Option<Method>,
@@ -62,19 +53,6 @@ pub struct Record {
     pub solutions: Vec<Solution>,
     /// Version of the framework.
     pub version: String,
-}
-
-/// The budget of each slice, and how many slices.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
-    /// Seconds a slice.
-    pub time_seconds: Option<f64>,
-    /// Evaluations a slice.
-    pub evaluations: Option<u64>,
-    /// Distinct hits at which the run ends.
-    pub hits: Option<u64>,
-    /// Slices.
-    pub slices: u64,
 }
 
 /// One slice of several.
@@ -91,7 +69,7 @@ pub struct Slice {
     pub stop_reason: StopReason,
     /// |C|: the distinct hits of this slice.
     pub hits: u64,
-    /// How many of them no earlier slice had found.
+    /// The number of them that no earlier slice had found.
     pub new_hits: u64,
     /// Whether it proved that all hits are listed.
     pub completeness: Completeness,
@@ -110,11 +88,83 @@ pub struct Solution {
     pub seconds: f64,
 }
 
-impl Record {
-    /// Enters what is estimated to be missing from the last C, of which `found_elsewhere` hits are listed as well.
+impl RunReport {
+    /// The report of a run that has found nothing yet.
+    #[must_use]
+    pub fn new(spec: RunSpec) -> Self {
+        Self {
+            spec,
+            scalar: "f64".to_owned(),
+            threshold: None,
+            probe_share: 0.0,
+            counts: Counts::default(),
+            elapsed_seconds: 0.0,
+            overshoot_seconds: 0.0,
+            stop_reason: StopReason::Exhausted,
+            hits: 0,
+            reference_hits: None,
+            recall: None,
+            completeness: Completeness::Unknown,
+            unseen_estimate: None,
+            unseen_interval: None,
+            unseen_confidence: None,
+            unseen_method: None,
+            trace: Vec::new(),
+            slices: Vec::new(),
+            solutions: Vec::new(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+
+    /// The report of a method that has all its hits when it ends, after this many evaluations and seconds: every hit is
+    /// listed with them, and the trace is one point.
+    #[must_use]
+    pub fn at_once(
+        spec: RunSpec,
+        threshold: f64,
+        hits: impl IntoIterator<Item = (Value, f64)>,
+        (evaluations, seconds): (u64, f64),
+    ) -> Self {
+        let listed = hits.into_iter().map(|(solution, fitness)| Solution {
+            solution,
+            fitness,
+            evaluation: evaluations,
+            seconds,
+        });
+        let solutions: Vec<Solution> = listed.collect();
+        let hits = solutions.len() as u64;
+        Self {
+            threshold: Some(threshold),
+            counts: Counts {
+                evaluations,
+                fitness_calls: evaluations,
+                ..Counts::default()
+            },
+            elapsed_seconds: seconds,
+            hits,
+            trace: vec![TracePoint {
+                evaluations,
+                elapsed_seconds: seconds,
+                hits,
+            }],
+            solutions,
+            ..Self::new(spec)
+        }
+    }
+
+    /// Enters that all hits are listed.
+    pub fn set_proved(&mut self) {
+        self.completeness = Completeness::Proved;
+        self.unseen_estimate = Some(0.0);
+        self.unseen_interval = Some((0.0, Some(0.0)));
+        self.unseen_confidence = Some(1.0);
+        self.unseen_method = Some(Method::Proved);
+    }
+
+    /// Enters the number of hits estimated to be missing from the last archive, when `found_elsewhere` further hits are listed.
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     pub(crate) fn set_unseen(&mut self, unseen: Option<&Unseen>, found_elsewhere: u64) {
-        // How many there are in all stays the same: what is listed beyond C is no longer missing.
+        // The estimated total stays the same: hits listed beyond the archive are no longer missing.
         let less = |missing: f64| (missing - found_elsewhere as f64).max(0.0);
         self.unseen_estimate = unseen.map(|unseen| less(unseen.estimate));
         self.unseen_interval = unseen.map(|Unseen { interval: (a, b), .. }| (less(*a), b.map(less)));
@@ -122,15 +172,13 @@ impl Record {
         self.unseen_method = unseen.map(|unseen| unseen.method);
     }
 
-    /// Enters how many hits there are, and the recall that follows.
+    /// Enters the number of all hits, and the recall that follows.
     pub fn set_reference(&mut self, reference: Option<u64>) {
         self.reference_hits = reference;
         self.recall = reference.and_then(|reference| recall(self.hits, reference));
     }
-}
 
-impl Record {
-    /// Adds a run on another problem, whose solutions are all different ones, as if it had followed this one.
+    /// Adds the report of a run on another problem, whose solutions are all different, as if it had followed this one.
     pub fn append(&mut self, next: Self) {
         let (evaluations, seconds, hits) = (self.counts.evaluations, self.elapsed_seconds, self.hits);
         self.trace.extend(next.trace.into_iter().map(|point| TracePoint {
@@ -157,7 +205,7 @@ impl Record {
             .unseen_interval
             .zip(next.unseen_interval)
             .map(|((a, b), (c, d))| (a + c, b.zip(d).map(|(b, d)| b + d)));
-        // Both intervals hold the truth at once no less often than this.
+        // Both intervals contain the true number at once at least this often.
         self.unseen_confidence = self
             .unseen_confidence
             .zip(next.unseen_confidence)

@@ -1,7 +1,7 @@
 //! All roots of three systems of equations over contours of the sum of squares, checked against a complete list by
 //! interval branch and bound.
 //!
-//! `cargo run --release --example roots_contour`; writes to `out/roots_contour`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release -p satisfice-draw --example roots_contour`; writes to `out/roots_contour`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
 

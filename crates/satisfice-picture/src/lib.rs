@@ -1,7 +1,7 @@
 //! Pictures of a scene: shaded bodies, with the pairs that were found, and those that were not, marked.
 //!
 //! ```
-//! use satisfice_draw::picture::{Picture, View};
+//! use satisfice_picture::{Picture, View};
 //! use satisfice_collision::{Placement, generate};
 //! let ball = generate::icosphere(1.0, 2)?;
 //! let other = Placement::from_translation([1.9, 0.0, 0.0])?.place(&ball)?;
@@ -14,6 +14,7 @@
 //! ```
 
 mod camera;
+mod error;
 mod marks;
 mod raster;
 mod strip;
@@ -23,8 +24,8 @@ use std::collections::BTreeSet;
 use satisfice_collision::Mesh;
 pub use strip::strip;
 
-use crate::error::Error;
 use camera::Camera;
+pub use error::Error;
 use marks::Mark;
 use raster::Raster;
 

@@ -1,27 +1,27 @@
-//! The books of a record against each other: counts, orders, limits, trace.
+//! The accounting of a report: counts, orders, limits and trace against each other.
 
 use satisfice::{Completeness, StopReason};
 
 use super::Mismatch;
-use crate::record::Record;
+use crate::report::{RunReport, Slice};
 
 /// Checks everything that can be checked without the problem.
 #[must_use]
-pub fn books(record: &Record) -> Vec<Mismatch> {
+pub fn accounting(report: &RunReport) -> Vec<Mismatch> {
     let mut wrong = Vec::new();
-    counts(record, &mut wrong);
-    limits(record, &mut wrong);
-    order(record, &mut wrong);
-    trace(record, &mut wrong);
-    slices(record, &mut wrong);
+    counts(report, &mut wrong);
+    limits(report, &mut wrong);
+    order(report, &mut wrong);
+    trace(report, &mut wrong);
+    slices(report, &mut wrong);
     wrong
 }
 
-fn counts(record: &Record, wrong: &mut Vec<Mismatch>) {
-    let counts = &record.counts;
-    if record.hits != record.solutions.len() as u64 {
-        let expected = format!("{}, the number of solutions", record.solutions.len());
-        wrong.push(Mismatch::new("hits", record.hits, expected));
+fn counts(report: &RunReport, wrong: &mut Vec<Mismatch>) {
+    let counts = &report.counts;
+    if report.hits != report.solutions.len() as u64 {
+        let expected = format!("{}, the number of solutions", report.solutions.len());
+        wrong.push(Mismatch::new("hits", report.hits, expected));
     }
     if counts.fitness_calls > counts.evaluations {
         let expected = format!("at most {} evaluations", counts.evaluations);
@@ -33,21 +33,21 @@ fn counts(record: &Record, wrong: &mut Vec<Mismatch>) {
         );
         wrong.push(Mismatch::new("duplicates", counts.duplicates, expected));
     }
-    let all = [record.hits, counts.duplicates, counts.non_finite]
+    let all = [report.hits, counts.duplicates, counts.non_finite]
         .iter()
         .try_fold(0_u64, |sum, &n| sum.checked_add(n));
     if all.is_none_or(|all| all > counts.evaluations) {
         let found = format!(
             "{} hits, {} duplicates and {} non-finite",
-            record.hits, counts.duplicates, counts.non_finite
+            report.hits, counts.duplicates, counts.non_finite
         );
         let expected = format!("no more than the {} evaluations together", counts.evaluations);
         wrong.push(Mismatch::new("evaluations", found, expected));
     }
-    if record.completeness == Completeness::Proved
-        && (record.unseen_estimate != Some(0.0) || record.unseen_interval != Some((0.0, Some(0.0))))
+    if report.completeness == Completeness::Proved
+        && (report.unseen_estimate != Some(0.0) || report.unseen_interval != Some((0.0, Some(0.0))))
     {
-        let found = format!("{:?} in {:?}", record.unseen_estimate, record.unseen_interval);
+        let found = format!("{:?} in {:?}", report.unseen_estimate, report.unseen_interval);
         wrong.push(Mismatch::new(
             "unseen_estimate",
             found,
@@ -56,9 +56,9 @@ fn counts(record: &Record, wrong: &mut Vec<Mismatch>) {
     }
 }
 
-fn limits(record: &Record, wrong: &mut Vec<Mismatch>) {
-    let budget = &record.budget;
-    let evaluations = record.counts.evaluations;
+fn limits(report: &RunReport, wrong: &mut Vec<Mismatch>) {
+    let budget = &report.spec.budget;
+    let evaluations = report.counts.evaluations;
     if let Some(limit) = budget.evaluations.map(|n| n.saturating_mul(budget.slices)) {
         if evaluations > limit {
             wrong.push(Mismatch::new(
@@ -67,7 +67,7 @@ fn limits(record: &Record, wrong: &mut Vec<Mismatch>) {
                 format!("at most the budget of {limit}"),
             ));
         }
-        if record.stop_reason == StopReason::Evaluations && budget.slices == 1 && evaluations != limit {
+        if report.stop_reason == StopReason::Evaluations && budget.slices == 1 && evaluations != limit {
             wrong.push(Mismatch::new(
                 "evaluations",
                 evaluations,
@@ -77,17 +77,17 @@ fn limits(record: &Record, wrong: &mut Vec<Mismatch>) {
     }
     if let Some(limit) = budget.hits
         && budget.slices == 1
-        && record.hits > limit
+        && report.hits > limit
     {
         wrong.push(Mismatch::new(
             "hits",
-            record.hits,
+            report.hits,
             format!("at most the budget of {limit}"),
         ));
     }
     for (place, seconds) in [
-        ("elapsed_seconds", record.elapsed_seconds),
-        ("overshoot_seconds", record.overshoot_seconds),
+        ("elapsed_seconds", report.elapsed_seconds),
+        ("overshoot_seconds", report.overshoot_seconds),
     ] {
         // NaN is not there: JSON has none.
         if seconds < 0.0 {
@@ -101,46 +101,46 @@ fn later(seconds: f64, limit: f64) -> bool {
     seconds > limit * (1.0 + 2.0 * f64::from(f32::EPSILON))
 }
 
-fn order(record: &Record, wrong: &mut Vec<Mismatch>) {
+fn order(report: &RunReport, wrong: &mut Vec<Mismatch>) {
     // Several hits may come with one evaluation of an exact method.
     let (mut evaluation, mut seconds) = (1, 0.0);
-    for (index, solution) in record.solutions.iter().enumerate() {
-        if solution.evaluation < evaluation || solution.evaluation > record.counts.evaluations {
+    for (index, solution) in report.solutions.iter().enumerate() {
+        if solution.evaluation < evaluation || solution.evaluation > report.counts.evaluations {
             wrong.push(Mismatch::new(
                 format!("solutions[{index}].evaluation"),
                 solution.evaluation,
-                format!("more than {evaluation} and at most {}", record.counts.evaluations),
+                format!("more than {evaluation} and at most {}", report.counts.evaluations),
             ));
         }
-        if later(seconds, solution.seconds) || later(solution.seconds, record.elapsed_seconds) {
+        if later(seconds, solution.seconds) || later(solution.seconds, report.elapsed_seconds) {
             wrong.push(Mismatch::new(
                 format!("solutions[{index}].seconds"),
                 solution.seconds,
-                format!("from {seconds} to {}", record.elapsed_seconds),
+                format!("from {seconds} to {}", report.elapsed_seconds),
             ));
         }
         (evaluation, seconds) = (solution.evaluation, solution.seconds);
     }
 }
 
-fn trace(record: &Record, wrong: &mut Vec<Mismatch>) {
+fn trace(report: &RunReport, wrong: &mut Vec<Mismatch>) {
     let mut before = (0, 0.0);
-    for (index, point) in record.trace.iter().enumerate() {
-        if point.evaluations < before.0 || point.evaluations > record.counts.evaluations {
+    for (index, point) in report.trace.iter().enumerate() {
+        if point.evaluations < before.0 || point.evaluations > report.counts.evaluations {
             wrong.push(Mismatch::new(
                 format!("trace[{index}].evaluations"),
                 point.evaluations,
-                format!("from {} to {}", before.0, record.counts.evaluations),
+                format!("from {} to {}", before.0, report.counts.evaluations),
             ));
         }
-        if point.elapsed_seconds < before.1 || later(point.elapsed_seconds, record.elapsed_seconds) {
+        if point.elapsed_seconds < before.1 || later(point.elapsed_seconds, report.elapsed_seconds) {
             wrong.push(Mismatch::new(
                 format!("trace[{index}].elapsed_seconds"),
                 point.elapsed_seconds,
-                format!("from {} to {}", before.1, record.elapsed_seconds),
+                format!("from {} to {}", before.1, report.elapsed_seconds),
             ));
         }
-        let hits = record
+        let hits = report
             .solutions
             .partition_point(|s| s.evaluation <= point.evaluations) as u64;
         if point.hits != hits {
@@ -152,48 +152,48 @@ fn trace(record: &Record, wrong: &mut Vec<Mismatch>) {
         }
         before = (point.evaluations, point.elapsed_seconds);
     }
-    if record.counts.evaluations > 0 && before.0 != record.counts.evaluations {
+    if report.counts.evaluations > 0 && before.0 != report.counts.evaluations {
         wrong.push(Mismatch::new(
             "trace",
             format!("an end at evaluation {}", before.0),
-            format!("one at {}", record.counts.evaluations),
+            format!("one at {}", report.counts.evaluations),
         ));
     }
 }
 
-fn slices(record: &Record, wrong: &mut Vec<Mismatch>) {
-    if record.slices.is_empty() {
+fn slices(report: &RunReport, wrong: &mut Vec<Mismatch>) {
+    if report.slices.is_empty() {
         return;
     }
-    let count = record.slices.len() as u64;
-    if count > record.budget.slices {
+    let count = report.slices.len() as u64;
+    if count > report.spec.budget.slices {
         wrong.push(Mismatch::new(
             "slices",
             count,
-            format!("at most {}", record.budget.slices),
+            format!("at most {}", report.spec.budget.slices),
         ));
     }
-    let sum = |part: fn(&crate::record::Slice) -> u64| {
-        record
+    let sum = |part: fn(&Slice) -> u64| {
+        report
             .slices
             .iter()
             .fold(0_u64, |sum, slice| sum.saturating_add(part(slice)))
     };
     for (place, found, expected) in [
-        ("hits", record.hits, sum(|slice| slice.new_hits)),
+        ("hits", report.hits, sum(|slice| slice.new_hits)),
         (
             "evaluations",
-            record.counts.evaluations,
+            report.counts.evaluations,
             sum(|slice| slice.counts.evaluations),
         ),
         (
             "fitness_calls",
-            record.counts.fitness_calls,
+            report.counts.fitness_calls,
             sum(|slice| slice.counts.fitness_calls),
         ),
         (
             "duplicates",
-            record.counts.duplicates,
+            report.counts.duplicates,
             sum(|slice| slice.counts.duplicates),
         ),
     ] {

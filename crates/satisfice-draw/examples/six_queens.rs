@@ -1,6 +1,6 @@
 //! All ways to put six queens on a board so that none attacks another, drawn as boards.
 //!
-//! `cargo run --release --example six_queens`; writes to `out/six_queens`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release -p satisfice-draw --example six_queens`; writes to `out/six_queens`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
 

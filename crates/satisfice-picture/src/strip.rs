@@ -53,7 +53,7 @@ pub fn strip(pictures: &[Vec<u8>], columns: usize) -> Result<Vec<u8>, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::{Picture, View};
+    use crate::{Picture, View};
 
     #[test]
     fn pictures_stand_side_by_side() {

@@ -1,6 +1,6 @@
 //! Inputs that drive a system out of its specification: the traces that violate it, plotted.
 //!
-//! `cargo run --release --example falsifying_traces`; writes to `out/falsifying_traces`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release -p satisfice-draw --example falsifying_traces`; writes to `out/falsifying_traces`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
 

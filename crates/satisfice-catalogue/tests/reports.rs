@@ -3,9 +3,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use satisfice::catalogue::{Catalogued, Parameter, Params};
-use satisfice::{Axis, Budget, Cancel, Error, SatisficingProblem, Space};
-use satisfice_catalogue::catalogue::{Entry, entry};
-use satisfice_catalogue::{Record, Request, catalogue};
+use satisfice::{Axis, Cancel, Error, SatisficingProblem, Space};
+use satisfice_catalogue::{ProblemSpec, RunControl, RunReport, RunSpec, catalogue};
 
 /// Lattice points below a diagonal: `x + y < sum` in `[0, width)^2`.
 struct Corner {
@@ -61,38 +60,43 @@ impl Catalogued for Corner {
     }
 }
 
-const CORNER: Entry = entry::<Corner>();
+const CORNER: ProblemSpec = ProblemSpec::of::<Corner>();
 
-fn run(request: &Request) -> Record {
-    CORNER.build([]).unwrap().run(request, &mut |_| {}).unwrap()
+fn run(spec: &RunSpec) -> RunReport {
+    CORNER
+        .build([])
+        .unwrap()
+        .run(spec, RunControl::default())
+        .unwrap()
 }
 
 /// Everything but times.
-fn timeless(mut record: Record) -> Record {
-    (record.elapsed_seconds, record.overshoot_seconds) = (0.0, 0.0);
-    record
+fn timeless(mut report: RunReport) -> RunReport {
+    (report.elapsed_seconds, report.overshoot_seconds) = (0.0, 0.0);
+    report
         .trace
         .iter_mut()
         .for_each(|point| point.elapsed_seconds = 0.0);
-    record
+    report
         .solutions
         .iter_mut()
         .for_each(|solution| solution.seconds = 0.0);
-    for slice in &mut record.slices {
+    for slice in &mut report.slices {
         (slice.elapsed_seconds, slice.overshoot_seconds) = (0.0, 0.0);
     }
-    record
+    report
 }
 
 #[test]
 fn a_record_has_the_keys_of_the_contract() {
     let instance = CORNER.build([("width", "30")]).unwrap();
-    let request = Request::new("random", Budget::evaluations(20_000))
+    let spec = RunSpec::new("random")
+        .evaluations(20_000)
         .seed(3)
         .set("batch", "7");
-    let mut record = instance.run(&request, &mut |_| {}).unwrap();
-    record.set_reference(instance.reference_hits());
-    let json = serde_json::to_value(&record).unwrap();
+    let mut report = instance.run(&spec, RunControl::default()).unwrap();
+    report.set_reference(instance.reference_hits());
+    let json = serde_json::to_value(&report).unwrap();
     for key in [
         "problem",
         "problem_parameters",
@@ -136,89 +140,91 @@ fn a_record_has_the_keys_of_the_contract() {
     );
     assert_eq!(json["recall"], 1.0);
     assert_eq!(json["evaluations"], 20_000);
-    let back: Record = serde_json::from_str(&serde_json::to_string(&record).unwrap()).unwrap();
-    assert!(back == record, "a record is read as it was written");
+    let back: RunReport = serde_json::from_str(&serde_json::to_string(&report).unwrap()).unwrap();
+    assert!(back == report, "a report is read as it was written");
     assert_eq!(instance.verify(&back, instance.reference_hits()), []);
 }
 
 #[test]
 fn the_same_request_gives_the_same_record_on_any_number_of_threads() {
-    let request = Request::new("latest-hit-qpso", Budget::evaluations(5000)).seed(9);
-    let one = timeless(run(&request));
+    let spec = RunSpec::new("latest-hit-qpso").evaluations(5000).seed(9);
+    let one = timeless(run(&spec));
     for threads in [1, 2, 3] {
-        let mut request = request.clone();
-        request.threads = threads;
-        assert!(timeless(run(&request)) == one, "{threads} threads");
+        let mut spec = spec.clone();
+        spec.threads = threads;
+        assert!(timeless(run(&spec)) == one, "{threads} threads");
     }
-    assert!(timeless(run(&request.seed(10))) != one, "another seed");
+    assert!(timeless(run(&spec.seed(10))) != one, "another seed");
 }
 
 #[test]
 fn slices_are_united() {
-    let mut request = Request::new("random", Budget::evaluations(300)).seed(1);
-    request.slices = 4;
+    let mut spec = RunSpec::new("random").evaluations(300).seed(1);
+    spec.budget.slices = 4;
     let instance = CORNER.build([]).unwrap();
-    let record = instance.run(&request, &mut |_| {}).unwrap();
-    assert_eq!(record.slices.len(), 4);
-    assert_eq!(record.counts.evaluations, 1200);
+    let report = instance.run(&spec, RunControl::default()).unwrap();
+    assert_eq!(report.slices.len(), 4);
+    assert_eq!(report.counts.evaluations, 1200);
     assert_eq!(
-        record.hits,
-        record.slices.iter().map(|slice| slice.new_hits).sum::<u64>()
+        report.hits,
+        report.slices.iter().map(|slice| slice.new_hits).sum::<u64>()
     );
-    assert!(record.hits > record.slices[0].hits);
-    assert_eq!(instance.verify(&record, Some(15)), []);
+    assert!(report.hits > report.slices[0].hits);
+    assert_eq!(instance.verify(&report, Some(15)), []);
 }
 
 #[test]
 fn a_run_ends_with_enough_hits_and_when_cancelled() {
-    let mut request = Request::new("random", Budget::hits(3));
-    request.slices = 5;
-    let record = run(&request);
-    assert_eq!((record.hits, record.slices.len()), (3, 1));
+    let mut spec = RunSpec::new("random").hits(3);
+    spec.budget.slices = 5;
+    let report = run(&spec);
+    assert_eq!((report.hits, report.slices.len()), (3, 1));
 
     let cancel = Cancel::new();
     cancel.cancel();
-    request.budget = Budget::until(&cancel);
-    let record = run(&request);
-    assert_eq!((record.hits, record.slices.len()), (0, 1));
+    let problem = CORNER.build([]).unwrap();
+    let report = problem.run(&spec, RunControl::until(&cancel)).unwrap();
+    assert_eq!((report.hits, report.slices.len()), (0, 1));
 }
 
 #[test]
 fn what_is_misspelt_or_out_of_range_is_named() {
-    let budget = || Budget::evaluations(10);
-    let error = |result: Result<Record, satisfice_catalogue::Error>| result.unwrap_err().to_string();
+    let error = |result: Result<RunReport, satisfice_catalogue::Error>| result.unwrap_err().to_string();
     let instance = CORNER.build([]).unwrap();
-    let text = error(instance.run(&Request::new("randon", budget()), &mut |_| {}));
+    let text = error(instance.run(&RunSpec::new("randon").evaluations(10), RunControl::default()));
     assert!(text.contains("did you mean `random`?"), "{text}");
-    let text = error(instance.run(&Request::new("random", budget()).set("bach", "3"), &mut |_| {}));
+    let text = error(instance.run(
+        &RunSpec::new("random").evaluations(10).set("bach", "3"),
+        RunControl::default(),
+    ));
     assert!(
         text.contains("unknown parameter of `random` `bach`, did you mean `batch`?"),
         "{text}"
     );
-    let text = error(instance.run(&Request::new("random", Budget::evaluations(0)), &mut |_| {}));
+    let text = error(instance.run(&RunSpec::new("random").evaluations(0), RunControl::default()));
     assert!(text.contains("the number of evaluations is zero"), "{text}");
     let text = CORNER.build([("widht", "3")]).err().unwrap().to_string();
     assert!(text.contains("did you mean `width`?"), "{text}");
     let text = CORNER.build([("sum", "41")]).err().unwrap().to_string();
     assert_eq!(text, "sum = 41 is not allowed: at most the width");
-    let mut request = Request::new("random", budget());
-    request.slices = 0;
+    let mut spec = RunSpec::new("random").evaluations(10);
+    spec.budget.slices = 0;
     assert_eq!(
-        error(instance.run(&request, &mut |_| {})),
+        error(instance.run(&spec, RunControl::default())),
         "0 slices leave nothing to run: give at least 1"
     );
 }
 
-/// Every false record is found out, at the place that was changed.
+/// Every false report is found out, at the place that was changed.
 #[test]
 fn a_false_record_is_found_out() {
     let instance = CORNER.build([]).unwrap();
-    let request = Request::new("random", Budget::evaluations(20_000)).seed(2);
-    let mut record = instance.run(&request, &mut |_| {}).unwrap();
-    record.set_reference(Some(15));
-    assert_eq!(instance.verify(&record, Some(15)), []);
-    let last = record.solutions.len() - 1;
-    type Change = fn(&mut Record);
+    let spec = RunSpec::new("random").evaluations(20_000).seed(2);
+    let mut report = instance.run(&spec, RunControl::default()).unwrap();
+    report.set_reference(Some(15));
+    assert_eq!(instance.verify(&report, Some(15)), []);
+    let last = report.solutions.len() - 1;
+    type Change = fn(&mut RunReport);
     let changes: [(&str, Change); 16] = [
         ("solutions[0].solution", |r| {
             r.solutions[0].solution = serde_json::json!([30, 1]);
@@ -246,12 +252,12 @@ fn a_false_record_is_found_out() {
         ("threshold", |r| r.threshold = Some(6.0)),
     ];
     for (place, change) in changes {
-        let mut false_one = record.clone();
+        let mut false_one = report.clone();
         change(&mut false_one);
         let found = instance.verify(&false_one, Some(15));
         assert!(found.iter().any(|m| m.place == place), "{place}: {found:?}");
     }
-    let mut proved = record.clone();
+    let mut proved = report.clone();
     proved.solutions.truncate(last);
     proved.hits -= 1;
     proved.completeness = satisfice::Completeness::Proved;
@@ -277,11 +283,11 @@ fn every_problem_of_the_catalogue_runs_and_verifies() {
     for entry in catalogue::all() {
         let instance = entry.build([]).unwrap();
         assert_eq!(instance.name(), entry.name);
-        let request = Request::new("latest-hit-qpso", Budget::evaluations(3000)).seed(1);
-        let record = instance.run(&request, &mut |_| {}).unwrap();
-        let again: Record = serde_json::from_str(&serde_json::to_string(&record).unwrap()).unwrap();
+        let spec = RunSpec::new("latest-hit-qpso").evaluations(3000).seed(1);
+        let report = instance.run(&spec, RunControl::default()).unwrap();
+        let again: RunReport = serde_json::from_str(&serde_json::to_string(&report).unwrap()).unwrap();
         assert_eq!(instance.verify(&again, None), [], "{}", entry.name);
-        let texts = again.problem_parameters.texts();
+        let texts = again.spec.problem_parameters.texts();
         let settings = texts.iter().map(|(name, text)| (name.as_str(), text.as_str()));
         let rebuilt = entry.build(settings).unwrap();
         assert_eq!(rebuilt.parameters(), instance.parameters(), "{}", entry.name);

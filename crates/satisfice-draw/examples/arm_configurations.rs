@@ -1,6 +1,6 @@
 //! Postures that bring an arm's hand to its goal, drawn: all postures of a planar arm of three links, and many of an arm with seven joints.
 //!
-//! `cargo run --release --example arm_configurations`; writes to `out/arm_configurations`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release -p satisfice-draw --example arm_configurations`; writes to `out/arm_configurations`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! All Sallen-Key low-pass filters from standard parts inside a design window: a plot of the feasible designs and a table.
 //!
-//! `cargo run --release --example design_window`; writes to `out/design_window`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release -p satisfice-draw --example design_window`; writes to `out/design_window`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
 use std::f64::consts::TAU;
