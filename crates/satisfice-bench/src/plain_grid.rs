@@ -1,5 +1,5 @@
-//! The baseline: a plain uniform grid as one writes it in an afternoon, in `f32`. Points clipped to the overlap of the inflated
-//! boxes, cells as wide as the radius (wider if there would be more than four a point), one counting sort, structure of arrays,
+//! The baseline: a plain uniform grid without special cases, in `f32`. Points are clipped to the overlap of the inflated
+//! boxes, cells are as wide as the radius (wider if there would be more than four per point), one counting sort, structure of arrays,
 //! 27 cells as nine contiguous rows, half the stencil inside one body. Independent of the crate it is compared with.
 
 #![expect(

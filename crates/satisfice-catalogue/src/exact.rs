@@ -17,7 +17,7 @@ use crate::spec::RunSpec;
 /// A method that finds all hits of a problem of vertex pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Method {
-    /// Its name, where an engine's would stand.
+    /// Its name, used like the name of an engine.
     pub name: &'static str,
     /// One line.
     pub summary: &'static str,
@@ -81,7 +81,7 @@ pub(crate) fn run(pairs: &VertexPairs, spec: RunSpec) -> Result<RunReport, Error
     report(pairs, spec, &found, (evaluations, seconds))
 }
 
-/// The chosen vertices of the two bodies, laid out for the methods before the clock starts.
+/// The chosen vertices of the two bodies, prepared for the methods before the clock starts.
 struct Scene<'a> {
     problem: &'a VertexPairs,
     numbers: [Vec<u32>; 2],
@@ -102,7 +102,7 @@ impl<'a> Scene<'a> {
         let vertex = |axis: usize, place: f64| {
             let mut values = [axes[0].upper(), axes[1].upper()];
             if one_body {
-                // Decoded in ascending order: a place with itself is no pair, but names its vertex twice.
+                // Pairs are decoded in ascending order: a place paired with itself is not a pair, but names its vertex twice.
                 values = [place; 2];
             } else {
                 values[axis] = place;
@@ -151,7 +151,7 @@ impl<'a> Scene<'a> {
         Ok((found, seconds))
     }
 
-    /// Places to solutions; within one body without the pairs that are excluded.
+    /// The solutions at these places; within one body without the excluded pairs.
     fn solutions(&self, places: &[Pair]) -> Vec<(u32, u32)> {
         let pairs = places
             .iter()

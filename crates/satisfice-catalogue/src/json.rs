@@ -1,17 +1,17 @@
-//! How records are written: a key a line, an element of a list a line, deeper things on that line.
+//! The layout of JSON files: one key per line, one element of a list per line, deeper values on that line.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::ser::{Formatter, Serializer};
 
-/// Things at most this deep begin on a line of their own.
+/// Values at most this deep begin on a line of their own.
 const LINES: usize = 2;
 
 /// Writes a value as JSON that a person can read and `grep` can search, with a line end.
 ///
 /// # Errors
-/// Where a value is not representable, for instance a map whose keys are no text.
+/// A value that JSON cannot represent, such as a map whose keys are not text.
 pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     let mut text = Vec::new();
     value.serialize(&mut Serializer::with_formatter(&mut text, Lines::default()))?;

@@ -1,4 +1,4 @@
-//! Engines and problems with their parameters, as data: what `list --json` prints.
+//! Engines and problems with their parameters, as data: the output of `list --json`.
 
 use satisfice::catalogue::ParamKind;
 use satisfice::catalogue::Parameter;

@@ -1,8 +1,8 @@
-//! On what something was measured: what a reader needs to judge its times.
+//! Facts about this machine: what a reader needs to judge times measured on it.
 
 use std::fs;
 
-/// Facts as `(what, value)`; what the system does not tell is left out.
+/// Facts as `(name, value)`; what the system does not provide is left out.
 #[must_use]
 pub fn machine() -> Vec<(String, String)> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();

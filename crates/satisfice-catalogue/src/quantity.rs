@@ -15,16 +15,16 @@ const UNITS: [(&str, f64); 9] = [
     ("d", 86400.0),
 ];
 
-/// More threads than that are a slip of the keyboard.
+/// The greatest number of threads: more is a typing error.
 const MOST_THREADS: usize = 1024;
 
-/// Wider rings than that are a slip of the keyboard, too.
+/// The greatest width of a ring in edges: more is a typing error.
 const MOST_EDGES: usize = 1000;
 
 /// A time: a positive number with a unit, `100ms`, `1.5s`, `3min`.
 ///
 /// # Errors
-/// A text that is no time, with what would be one.
+/// A message with an example, for any other text.
 pub fn time(text: &str) -> Result<Duration, String> {
     let text = text.trim();
     let end = text
@@ -150,9 +150,9 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Quantities as people read them.
+/// Quantities as text for people.
 pub mod shown {
-    /// A count with its thousands apart: `1,000,000`.
+    /// A count with separated thousands: `1,000,000`.
     #[must_use]
     pub fn count(count: u64) -> String {
         let digits = count.to_string();
@@ -166,7 +166,7 @@ pub mod shown {
         text
     }
 
-    /// A number that may be no whole one: rounded from 100 on, three digits below.
+    /// A number that need not be whole: rounded from 100 on, with three digits below.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -186,7 +186,7 @@ pub mod shown {
         }
     }
 
-    /// A time in a unit that suits it, with three digits.
+    /// A time in a suitable unit, with three digits.
     #[must_use]
     pub fn seconds(seconds: f64) -> String {
         let (value, unit) = match seconds {

@@ -160,8 +160,8 @@ impl<T> Observer<T> for Watcher<'_, '_> {
     }
 }
 
-/// The hits of all slices, each at the evaluation and time that found it first, counted from the beginning of the first
-/// slice; the trace of that union; what each slice did.
+/// The hits of all slices, each at the evaluation and time that found it first, counted from the start of the first slice;
+/// the trace of that union; and each slice by itself.
 fn unite<T: Identity + Clone>(reports: &[Report<T>]) -> (Archive<T>, Vec<TracePoint>, Vec<Slice>) {
     let (mut all, mut trace, mut slices) = (Archive::default(), Vec::new(), Vec::new());
     let (mut evaluations, mut seconds) = (0, 0.0);

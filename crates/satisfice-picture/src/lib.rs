@@ -1,4 +1,4 @@
-//! Pictures of a scene: shaded bodies, with the pairs that were found, and those that were not, marked.
+//! Pictures of a scene: shaded bodies with marked pairs, those that were found and those that were not.
 //!
 //! ```
 //! use satisfice_picture::{Picture, View};
@@ -58,7 +58,7 @@ pub enum Up {
 }
 
 impl Up {
-    /// Where a direction of a world in which z points upwards lies in one in which this axis does.
+    /// Maps a direction from a world in which z points upwards to one in which this axis does.
     fn turn(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         match self {
             Self::X => [z, x, y],
@@ -68,7 +68,7 @@ impl Up {
     }
 }
 
-/// From where a scene is seen. Parallel projection.
+/// The direction from which a scene is seen, in parallel projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// Direction of the eye about the axis that points upwards, in degrees from the axis that is x where that is z.
@@ -90,14 +90,14 @@ impl Default for View {
     }
 }
 
-/// A picture in the making.
+/// A picture of bodies and marked pairs.
 #[derive(Debug, Clone)]
 pub struct Picture<'a> {
     width: u32,
     height: u32,
     view: View,
     bodies: Vec<&'a Mesh>,
-    /// Of each body, which triangles are highlighted.
+    /// The highlighted triangles of each body.
     highlights: Vec<BTreeSet<u32>>,
     marks: Vec<Mark>,
 }
@@ -122,14 +122,14 @@ impl<'a> Picture<'a> {
         self.highlights.push(BTreeSet::new());
     }
 
-    /// Draws a triangle of a body, both by number from 0, in orange; without effect where there is none such.
+    /// Draws a triangle of a body, both by number from 0, in orange. An unknown body or triangle has no effect.
     pub fn highlight(&mut self, body: usize, triangle: u32) {
         if let Some(highlights) = self.highlights.get_mut(body) {
             highlights.insert(triangle);
         }
     }
 
-    /// Marks a pair of points: in vermilion where it was `found`, in black where it was not. What a body hides is fainter.
+    /// Marks a pair of points: in vermilion where it was `found`, in black otherwise. Marks behind a body are fainter.
     /// Points that are not finite are left out.
     pub fn pair(&mut self, a: [f64; 3], b: [f64; 3], found: bool) {
         if a.iter().chain(&b).all(|c| c.is_finite()) {
@@ -186,7 +186,7 @@ impl<'a> Picture<'a> {
                 .flat_map(|mesh| mesh.vertices().iter().copied())
         };
         let framed: Vec<_> = vertices().chain(marks()).collect();
-        // Relative to the largest coordinate nothing overflows.
+        // Coordinates relative to the largest one cannot overflow.
         let unit = vertices()
             .chain(marks())
             .flatten()

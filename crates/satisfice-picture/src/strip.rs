@@ -7,7 +7,7 @@ use crate::error::Error;
 /// Pictures of one size as PNG, `columns` of them in a row, as one PNG.
 ///
 /// # Errors
-/// [`Error::Picture`] without pictures or columns, for one that is no PNG, or for a strip that is too large.
+/// [`Error::Picture`] without pictures or columns, for bytes that are not PNG, or for a strip that is too large.
 pub fn strip(pictures: &[Vec<u8>], columns: usize) -> Result<Vec<u8>, Error> {
     let bad = |what: String| Error::Picture(what);
     let maps = pictures

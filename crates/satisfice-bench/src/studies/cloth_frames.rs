@@ -1,5 +1,5 @@
-//! Experiment II over many frames: what detection costs beside a plain grid and the simulation step, whether it misses
-//! anything, whether the cloth passes through itself, and what the last frame's hits are worth to an engine.
+//! Experiment II over many frames: the cost of detection compared with a plain grid and the simulation step, whether it misses
+//! contacts, whether the cloth passes through itself, and how much the last frame's hits help an engine.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -18,7 +18,7 @@ use satisfice_catalogue::quantity::shown;
 use satisfice_draw::plot::{Chart, Curve, Panel};
 use satisfice_picture::{Picture, View, strip};
 
-/// Engines whose recall is followed from frame to frame.
+/// Engines whose recall is measured from frame to frame.
 const ENGINES: [&str; 6] = [
     "latest-hit-qpso",
     "niching-pso-dbscan",
@@ -27,13 +27,13 @@ const ENGINES: [&str; 6] = [
     "descent-flood",
     "portfolio",
 ];
-/// Evaluations a frame that they get.
+/// Their evaluations per frame.
 const BUDGETS: [u64; 2] = [20_000, 100_000];
 
 struct Size {
     columns: u32,
     frames: usize,
-    /// Frames between two looks at crossings and brute force.
+    /// Frames between two checks of crossings and brute force.
     every: usize,
     /// The frames, at the end, on which engines are tried.
     searched: usize,
@@ -83,7 +83,7 @@ struct Measured {
     sphere: usize,
 }
 
-/// What was looked at every so many frames.
+/// The results of the checks at intervals of several frames.
 struct Sampled {
     frame: usize,
     missed: usize,
@@ -150,7 +150,7 @@ fn study(
             let (detected, seconds) = timed(|| cloth.detect());
             detected.map_err(told)?;
             times[0].push(seconds);
-            // The baseline gets its single precision for nothing, and need not leave out what an edge joins.
+            // The baseline converts to single precision outside the clock, and does not exclude vertices joined by an edge.
             let points = single(cloth.points());
             #[expect(
                 clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! Studies: what a grid of engines and problems cannot say, such as a scene that moves. A suite names them.
+//! Studies: measurements that a grid of engines and problems cannot express, such as a moving scene. A suite names them.
 
 mod cloth_frames;
 
@@ -7,7 +7,7 @@ use satisfice::Cancel;
 use crate::error::Error;
 use crate::finding::Finding;
 
-/// What runs a study.
+/// The function that runs a study.
 pub type Run = fn(u64, &Cancel, &mut dyn FnMut(&str)) -> Result<Option<Finding>, Error>;
 
 /// A study.
@@ -15,7 +15,7 @@ pub type Run = fn(u64, &Cancel, &mut dyn FnMut(&str)) -> Result<Option<Finding>,
 pub struct Study {
     /// Its name.
     pub name: &'static str,
-    /// Runs it; `None` once it is cancelled. It is told how many seeds to use, and tells how far it is.
+    /// Runs it; `None` once it is cancelled. Its arguments are the number of seeds, the cancellation, and a function that shows progress.
     pub run: Run,
 }
 
@@ -34,7 +34,7 @@ pub static STUDIES: &[Study] = &[
 /// The study with this name.
 ///
 /// # Errors
-/// [`Error::Search`] with the nearest name.
+/// [`Error::Run`] with the nearest name.
 pub fn find(name: &str) -> Result<&'static Study, Error> {
     let unknown = || satisfice::Error::unknown("study", name, STUDIES.iter().map(|study| study.name));
     STUDIES

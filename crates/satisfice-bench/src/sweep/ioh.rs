@@ -11,7 +11,7 @@ use super::row::Row;
 use super::summary::{Group, rows_of};
 use crate::error::Error;
 
-/// Writes a folder an engine with a `.json` and a `.dat` file a problem. The functions are the groups, numbered from 1; the
+/// Writes one folder per engine with a `.json` and a `.dat` file per problem. The functions are the groups, numbered from 1; the
 /// dimension is given as 1, since problems of one number of axes are not alike; the instance is the seed plus 1.
 ///
 /// # Errors
@@ -37,7 +37,7 @@ pub fn export(folder: &Path, groups: &[Group], rows: &[Row]) -> Result<(), Error
                 runs.push(json!({
                     "instance": row.report.spec.seed.saturating_add(1),
                     "evals": row.report.counts.evaluations,
-                    // the best is a set of hits, no point; readers want a list
+                    // the best is a set of hits, not a point; readers expect a list
                     "best": {"evals": reached.map_or(0, |moment| moment.0), "y": row.report.hits as f64, "x": []},
                 }));
             }

@@ -1,45 +1,45 @@
-//! What is asked of one run: hits at fixed evaluations and times, the way to a recall, the area under the curve, waste.
+//! Metrics of one run: hits at fixed evaluations and times, the cost of a recall, the area under the curve, duplicates.
 
 use serde::{Deserialize, Serialize};
 
 use satisfice_catalogue::RunReport;
 use satisfice_catalogue::report::{Solution, recall};
 
-/// Evaluations, seconds, |C|.
+/// Evaluations, seconds and hits at a moment of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Moment(pub u64, pub f64, pub u64);
 
-/// The recalls whose cost is told.
+/// The recalls whose cost is reported.
 pub const RECALLS: [f64; 3] = [0.5, 0.9, 0.99];
 
-/// At most so many hits enter a curve by themselves.
+/// The greatest number of hits that are points of a curve.
 const CURVE_HITS: usize = 200;
 
 /// Metrics of one run. Without a reference count, those that need it are `None`; where the run shared the machine with
 /// others, so are those that need a clock.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
-    /// When the first hit came.
+    /// The cost of the first hit.
     pub first_hit: Option<Cost>,
-    /// What it cost to reach each of [`RECALLS`], `None` where it was not reached.
+    /// The cost of each of [`RECALLS`], `None` where it was not reached.
     pub to_recall: Vec<Option<Cost>>,
-    /// |C| at the key's `at_evaluations`.
+    /// Hits at the row's `at_evaluations`.
     pub at_evaluations: Vec<u64>,
-    /// |C| at the key's `at_seconds`.
+    /// Hits at the row's `at_seconds`.
     pub at_seconds: Vec<u64>,
-    /// The paper's r(t) = |C(t)| / |C(end)| at the key's `at_seconds`; rewards whoever stops finding.
+    /// The paper's r(t) = |C(t)| / |C(end)| at the row's `at_seconds`; it rewards engines that stop finding.
     pub r: Vec<f64>,
     /// Mean recall over the evaluations of the budget: the area under the curve, from 0 to 1.
     pub area_evaluations: Option<f64>,
     /// Mean recall over the time of the budget, from 0 to 1.
     pub area_seconds: Option<f64>,
-    /// Share of the evaluations whose solution was in C already.
+    /// The share of the evaluations whose solution was in the archive already.
     pub duplicates: f64,
-    /// Distinct hits a call of the fitness.
+    /// Distinct hits per call of the fitness.
     pub precision: f64,
 }
 
-/// What something cost.
+/// The cost of reaching something.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// Evaluations.
@@ -49,7 +49,7 @@ pub struct Cost {
 }
 
 impl Metrics {
-    /// From a report whose reference count is entered. Cost: O(hits).
+    /// Metrics of a report with its reference count. Cost: O(hits).
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "shares")]
     #[expect(
@@ -117,7 +117,7 @@ impl Metrics {
     }
 }
 
-/// The points of the trace, and hits at equal distances in number.
+/// The points of the trace, and hits at equal distances in their number.
 pub(super) fn curve(report: &RunReport) -> Vec<Moment> {
     let mut curve: Vec<Moment> = report
         .trace

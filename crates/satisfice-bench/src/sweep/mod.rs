@@ -20,7 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Timings are not disturbed**: runs that a clock limits come last and one at a time, while this program does nothing else;
+//! **Timings are not disturbed**: runs limited by a clock come last and one at a time, while this program does nothing else;
 //! runs limited by evaluations share the cores, and their times are not reported. Reference counts are made before any run.
 
 mod execute;

@@ -1,4 +1,4 @@
-//! What a finished sweep leaves in its folder beside `results.jsonl`.
+//! Writes the files of a finished sweep, apart from `results.jsonl`.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use crate::finding::Figure;
 use crate::finding::Finding;
 use satisfice_draw::plot::{Format, draw};
 
-/// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, and `report.html`, which holds all of
-/// it with the findings of studies and says that `command` made it; returns the groups of the summary.
+/// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, and `report.html`, which contains all of
+/// it, the findings of studies and the `command` that made it; returns the groups of the summary.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be written, [`Error::Chart`] where a figure cannot be encoded.
+/// [`Error::File`] where a file cannot be written, [`Error::Draw`] where a figure cannot be encoded.
 pub fn publish(
     folder: &Path,
     plan: &Plan,

@@ -1,4 +1,4 @@
-//! `results.jsonl`: a line for every finished run, appended as it ends.
+//! `results.jsonl`: one line per finished run, appended as it ends.
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};

@@ -17,31 +17,31 @@ use satisfice_catalogue::quantity::shown;
 pub struct Group {
     /// The part of the suite.
     pub part: String,
-    /// The problem with the parameters that the suite names.
+    /// The problem with the parameters that the suite sets.
     pub problem: String,
     /// The budget in words.
     pub budget: String,
     /// Whether a clock limits it.
     pub timed: bool,
-    /// How many hits there are, where that is known.
+    /// The number of all hits, where it is known.
     pub reference_hits: Option<u64>,
-    /// Evaluations at which hits are noted.
+    /// Evaluations at which hits are counted.
     pub at_evaluations: Vec<u64>,
-    /// Times in seconds at which hits are noted.
+    /// Times in seconds at which hits are counted.
     pub at_seconds: Vec<f64>,
     /// Label of the engine that the others are compared with.
     pub against: String,
-    /// What the suite says beside the figures.
+    /// What the suite prints beside the figures.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub beside: Option<String>,
-    /// A line an engine, in the order of the suite.
+    /// One line per engine, in the order of the suite.
     pub lines: Vec<Line>,
 }
 
 /// One engine of a group, over its seeds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// The engine with the parameters that the suite names.
+    /// The engine with the parameters that the suite sets.
     pub engine: String,
     /// Runs that have ended.
     pub runs: usize,
@@ -53,13 +53,13 @@ pub struct Line {
     pub evaluations: Estimate,
     /// Seconds, where nothing ran beside it.
     pub seconds: Option<Estimate>,
-    /// What the first hit cost.
+    /// The cost of the first hit.
     pub first_hit: Reached,
-    /// What each of [`RECALLS`] cost.
+    /// The cost of each of [`RECALLS`].
     pub to_recall: Vec<Reached>,
-    /// |C| at the group's evaluations.
+    /// Hits at the group's evaluations.
     pub at_evaluations: Vec<Estimate>,
-    /// |C| at the group's times.
+    /// Hits at the group's times.
     pub at_seconds: Vec<Estimate>,
     /// The paper's r(t) at the group's times.
     pub r: Vec<Estimate>,
@@ -67,18 +67,18 @@ pub struct Line {
     pub area_evaluations: Option<Estimate>,
     /// Mean recall over the budget's time.
     pub area_seconds: Option<Estimate>,
-    /// Share of the evaluations that were repetitions.
+    /// The share of the evaluations that were repetitions.
     pub duplicates: Estimate,
-    /// Distinct hits a fitness call.
+    /// Distinct hits per fitness call.
     pub precision: Estimate,
     /// Hits seed by seed against the engine the group is compared with; `None` for itself.
     pub paired: Option<Paired>,
 }
 
-/// What something cost, over the runs; infinite in runs that never got there.
+/// The cost of reaching something, over the runs; infinite in runs that did not reach it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Reached {
-    /// Runs that got there.
+    /// The number of runs that reached it.
     pub runs: usize,
     /// Evaluations.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -211,7 +211,7 @@ fn line(rows: &[&Row], base: Option<&[&Row]>) -> Option<Line> {
                 .iter()
                 .map(|cost| cost.as_ref().map_or(Some(f64::INFINITY), value))
                 .collect();
-            // JSON knows no infinity: more than half of the runs never got there.
+            // JSON has no infinity: more than half of the runs did not reach it.
             Estimate::of(&all?).filter(|estimate| estimate.median.is_finite())
         };
         Reached {
@@ -314,7 +314,7 @@ pub fn heading(group: &Group) -> Vec<String> {
     cells
 }
 
-/// What stands in the columns of [`heading`] for one engine.
+/// The cells of one engine in the columns of [`heading`].
 #[must_use]
 pub fn cells(group: &Group, line: &Line) -> Vec<String> {
     let mut cells = vec![line.engine.clone(), line.runs.to_string()];

@@ -89,9 +89,9 @@ fn limits(report: &RunReport, wrong: &mut Vec<Mismatch>) {
         ("elapsed_seconds", report.elapsed_seconds),
         ("overshoot_seconds", report.overshoot_seconds),
     ] {
-        // NaN is not there: JSON has none.
+        // JSON has no NaN.
         if seconds < 0.0 {
-            wrong.push(Mismatch::new(place, seconds, "no negative time"));
+            wrong.push(Mismatch::new(place, seconds, "a time that is not negative"));
         }
     }
 }
@@ -102,7 +102,7 @@ fn later(seconds: f64, limit: f64) -> bool {
 }
 
 fn order(report: &RunReport, wrong: &mut Vec<Mismatch>) {
-    // Several hits may come with one evaluation of an exact method.
+    // An exact method lists several hits at one evaluation.
     let (mut evaluation, mut seconds) = (1, 0.0);
     for (index, solution) in report.solutions.iter().enumerate() {
         if solution.evaluation < evaluation || solution.evaluation > report.counts.evaluations {

@@ -1,4 +1,4 @@
-//! Whether a report is true: its solutions are evaluated anew, its books are checked against each other.
+//! Whether a report is correct: its solutions are evaluated again, and its accounting is checked.
 
 mod accounting;
 mod solutions;
@@ -10,19 +10,19 @@ pub use solutions::{LISTED_BEFORE, solutions, solutions_by};
 
 use crate::report::{RunReport, recall};
 
-/// Something in a report that does not fit.
+/// A value in a report that does not fit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mismatch {
     /// Where in the report, e.g. `solutions[3].fitness`.
     pub place: String,
-    /// What stands there.
+    /// The value in the report.
     pub found: String,
-    /// What should.
+    /// The value expected.
     pub expected: String,
 }
 
 impl Mismatch {
-    /// At `place`, `found` stands instead of `expected`.
+    /// A mismatch at `place`: `found` instead of `expected`.
     #[must_use]
     #[expect(
         clippy::needless_pass_by_value,
@@ -47,11 +47,11 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// Checks the counts of a report against the true number of hits, where that is known.
+/// Checks the counts of a report against the number of all hits, where that is known.
 #[must_use]
 pub fn reference(report: &RunReport, reference: Option<u64>) -> Vec<Mismatch> {
     let mut mismatches = Vec::new();
-    // A run that was interrupted has not counted the reference.
+    // An interrupted run has not counted the reference.
     if let (Some(found), Some(expected)) = (report.reference_hits, reference)
         && found != expected
     {
@@ -75,7 +75,7 @@ pub fn reference(report: &RunReport, reference: Option<u64>) -> Vec<Mismatch> {
             mismatches.push(Mismatch::new(
                 "hits",
                 report.hits,
-                format!("at most the {reference} that there are"),
+                format!("at most all {reference}"),
             ));
         }
         if report.completeness == satisfice::Completeness::Proved && report.hits != reference {

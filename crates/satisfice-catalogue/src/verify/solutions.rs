@@ -1,4 +1,4 @@
-//! Every solution of a report, decoded and evaluated by the problem itself.
+//! Every solution of a report, decoded and evaluated again by the problem.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -12,9 +12,9 @@ use crate::report::{RunReport, Solution};
 /// functions are rounded differently on different platforms.
 const ROUNDING: f64 = 1e-9;
 
-/// Checks that every solution is one of the problem, is a hit, has the fitness that is given, and is listed once.
+/// Checks that every solution belongs to the problem, is a hit, has the fitness listed, and is listed once.
 ///
-/// Cost: one evaluation and one look-up a solution.
+/// Cost: one evaluation and one look-up per solution.
 #[must_use]
 pub fn solutions<P>(problem: &P, report: &RunReport) -> Vec<Mismatch>
 where
@@ -29,7 +29,7 @@ where
     mismatches.extend(solutions_by(report, problem.threshold().f64(), |listed| {
         let solution: P::Solution =
             serde_json::from_value(listed.solution.clone()).map_err(|error| error.to_string())?;
-        // A file may hold anything, and a problem need not stand what its own `decode` never gives.
+        // A file may contain anything, and a problem may panic on solutions that its own `decode` never returns.
         let evaluated = catch_unwind(AssertUnwindSafe(|| {
             is_inside(problem, &solution).then(|| problem.fitness(&solution).f64())
         }));
@@ -46,10 +46,10 @@ where
     mismatches
 }
 
-/// What is expected of a solution that stands in a report for the second time.
+/// What is expected instead of a solution that a report lists for the second time.
 pub const LISTED_BEFORE: &str = "a solution that is not listed before";
 
-/// The same where the evaluation is given: `evaluate` returns F, or what it had expected of a solution that is none or is
+/// The same with a given evaluation: `evaluate` returns F, or what it expected instead of a solution that is not one or is
 /// listed twice.
 pub fn solutions_by(
     report: &RunReport,
@@ -86,7 +86,7 @@ pub fn solutions_by(
         } else {
             fitness.abs()
         };
-        // Written so that NaN does not pass.
+        // Written so that NaN fails.
         let agrees = (fitness - listed.fitness).abs() <= ROUNDING * scale;
         if !agrees {
             mismatches.push(Mismatch::new(place("fitness"), listed.fitness, fitness));
@@ -95,7 +95,7 @@ pub fn solutions_by(
     mismatches
 }
 
-/// Whether a solution is within the bounds, where the problem can say at which values it is.
+/// Whether a solution is within the bounds, where the problem can encode it.
 fn is_inside<P: SatisficingProblem>(problem: &P, solution: &P::Solution) -> bool {
     let axes = problem.space().axes();
     let mut values = vec![P::Scalar::default(); axes.len()];

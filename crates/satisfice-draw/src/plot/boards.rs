@@ -12,7 +12,7 @@ pub struct Boards {
 /// A square board.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Board {
-    /// What stands below it.
+    /// The text below it.
     pub caption: String,
     /// The row of each column's queen, from 0 at the bottom; the board is as wide as this is long.
     pub rows: Vec<u32>,

@@ -1,4 +1,4 @@
-//! How a chart becomes a picture: with its folder, the only place that knows the plotting library.
+//! Draws charts. Only this file and its folder know the plotting library.
 
 mod boards;
 mod map;
@@ -20,21 +20,21 @@ use satisfice::Identity;
 use super::{Chart, Format, Panel};
 use crate::error::Error;
 
-/// Size of a panel in units; a PNG has two pixels a unit.
+/// Size of a panel in units; a PNG has two pixels per unit.
 const PANEL: (f64, f64) = (480.0, 360.0);
 
-/// Width of a panel that is alone.
+/// Width of the only panel of a chart.
 const ALONE: f64 = 640.0;
 
 /// Height of a legend without lines, and of a line, in the same units.
 const LEGEND: (f64, f64) = (56.0, 18.5);
 
-/// Okabe and Ito's colours, told apart by the colour-blind, without their yellow, which is faint on white
+/// Okabe and Ito's colours, which colour-blind readers can distinguish, without their yellow, which is faint on white
 /// (<https://jfly.uni-koeln.de/color/>).
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
-/// Told apart in black and white; 7 colours and 4 styles make 28 different curves.
+/// Line styles that remain distinct in black and white; 7 colours and 4 styles make 28 different curves.
 const STYLES: [LineStyle; 4] = [
     LineStyle::Solid,
     LineStyle::Dashed,
@@ -61,10 +61,10 @@ pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
             .panels
             .iter()
             .all(|panel| labels(panel) == labels(&chart.panels[0]));
-    // Every curve has its line in the legend.
+    // Every curve has a line in the legend.
     let entries = chart.panels.iter().map(|panel| panel.curves.len()).max();
     let height = PANEL.1.max(LEGEND.0 + LEGEND.1 * entries.unwrap_or(0) as f64);
-    // Alone, a panel shares its width with its legend.
+    // The only panel shares its width with its legend.
     let width = if chart.panels.len() == 1 { ALONE } else { PANEL.0 };
     let figure = Figure::new(1, chart.panels.len().max(1))
         .with_title(chart.title.clone())
@@ -87,7 +87,7 @@ fn encode(scene: &Scene, format: Format) -> Result<Vec<u8>, Error> {
     }
 }
 
-/// The library gives a size alone; with a view box a page can show the picture in another one, whole.
+/// The library gives only a size; with a view box a page can scale the whole picture.
 fn scalable(svg: String) -> String {
     let head = svg.split_once('>').map_or("", |(head, _)| head);
     let field = |name: &str| head.split_once(name)?.1.split_once('"').map(|(value, _)| value);
@@ -100,7 +100,7 @@ fn scalable(svg: String) -> String {
     }
 }
 
-/// So small that a title fits, at 0.62 of its size a letter.
+/// A size at which a title fits, with letters as wide as 0.62 of it.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -111,8 +111,8 @@ fn title_size(title: &str, width: f64) -> u32 {
     (width / (0.62 * letters)).clamp(7.0, 16.0) as u32
 }
 
-/// The library numbers clip paths over all pictures of a process. Numbered within the picture, under a name made from its
-/// contents, they make the same picture the same bytes, and several pictures fit on one page.
+/// The library numbers clip paths over all pictures of a process. This numbers them within the picture, under a name made from
+/// its contents: the same picture has the same bytes, and several pictures can share one page.
 fn own_ids(svg: &str) -> String {
     const PREFIX: &str = "kuva-clip-";
     let mut pieces = svg.split(PREFIX);
@@ -191,7 +191,7 @@ fn panel(panel: &Panel) -> (Vec<Plot>, Layout) {
         plots.push(Plot::Line(line));
     }
     if plots.is_empty() {
-        // Nothing to show is shown as empty axes.
+        // Without points the axes are empty.
         plots.push(Plot::Line(LinePlot::new().with_data([(1.0, 1.0)])));
         (least, greatest) = ((1.0, 1.0), (10.0, 1.0));
     }

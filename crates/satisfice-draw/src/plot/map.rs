@@ -5,7 +5,7 @@
 pub struct Maps {
     /// What they show.
     pub title: String,
-    /// Width and height of a panel in units, legend included; a PNG has two pixels a unit.
+    /// Width and height of a panel in units, legend included; a PNG has two pixels per unit.
     pub size: (f64, f64),
     /// The panels, left to right.
     pub panels: Vec<Map>,
@@ -20,11 +20,11 @@ pub struct Map {
     pub x_label: String,
     /// Label of the vertical axis, with its unit.
     pub y_label: String,
-    /// Least and greatest x that are shown.
+    /// Least and greatest x shown.
     pub x_range: (f64, f64),
-    /// Least and greatest y that are shown.
+    /// Least and greatest y shown.
     pub y_range: (f64, f64),
-    /// Whether both axes are logarithmic; what is not above 0 is left out then.
+    /// Whether both axes are logarithmic; points that are not above 0 are then left out.
     pub logarithmic: bool,
     /// Whether a unit of x is as long as a unit of y; not of logarithmic axes.
     pub to_scale: bool,
@@ -34,7 +34,7 @@ pub struct Map {
     pub notes: Vec<(f64, f64, String)>,
 }
 
-/// What is drawn in one manner. Points that are not finite are left out.
+/// Points, lines or contours in one style. Points that are not finite are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
     /// Its line in the legend, or the name of the colour bar of contours.
@@ -82,7 +82,7 @@ pub enum Marker {
     Cross,
 }
 
-/// Okabe and Ito's colours, told apart by the colour-blind (<https://jfly.uni-koeln.de/color/>), and greys.
+/// Okabe and Ito's colours, which colour-blind readers can distinguish (<https://jfly.uni-koeln.de/color/>), and greys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     /// Black.

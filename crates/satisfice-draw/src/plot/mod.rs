@@ -28,9 +28,9 @@ pub struct Panel {
     pub x_label: String,
     /// Label of the vertical axis, with its unit.
     pub y_label: String,
-    /// Whether the horizontal axis is logarithmic; points with x <= 0 are left out then.
+    /// Whether the horizontal axis is logarithmic; points with x <= 0 are then left out.
     pub log_x: bool,
-    /// Whether the vertical axis is logarithmic; points with y <= 0 are left out then.
+    /// Whether the vertical axis is logarithmic; points with y <= 0 are then left out.
     pub log_y: bool,
     /// The curves.
     pub curves: Vec<Curve>,
@@ -41,7 +41,7 @@ pub struct Panel {
 /// One curve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curve {
-    /// Its name in the legend; none where it is the only one.
+    /// Its name in the legend; `None` for the only curve.
     pub label: Option<String>,
     /// Its points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
@@ -58,12 +58,12 @@ pub struct Curve {
 pub enum Format {
     /// Scalable vector graphics.
     Svg,
-    /// Portable network graphics, two pixels a unit.
+    /// Portable network graphics, two pixels per unit.
     Png,
 }
 
 impl Format {
-    /// By the extension of a path.
+    /// The format of a path, by its extension.
     ///
     /// # Errors
     /// [`Error::ChartFormat`] for any other than `svg` and `png`.

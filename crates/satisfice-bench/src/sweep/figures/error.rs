@@ -6,7 +6,7 @@ use crate::sweep::row::Row;
 use crate::sweep::summary::Group;
 use satisfice_draw::plot::{Chart, Curve, Panel};
 
-/// Error is 1 - recall; nothing missing is drawn at half a hit.
+/// Error is 1 - recall; a complete answer is drawn at half a missing hit.
 #[expect(clippy::cast_precision_loss, reason = "a pixel is coarser than 53 bits")]
 pub(super) fn error(group: &Group, all: &[Runs<'_>]) -> Option<Figure> {
     let reference = group.reference_hits.filter(|&count| count > 0)?;
@@ -46,14 +46,14 @@ pub(super) fn error(group: &Group, all: &[Runs<'_>]) -> Option<Figure> {
     })
 }
 
-/// The points of all curves that no other has a smaller y for at no greater x, where y falls.
+/// The points of all curves at which no point with the same or a smaller x has a smaller y.
 fn front(curves: &[Curve]) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = curves
         .iter()
         .flat_map(|curve| curve.points.iter().copied())
         .collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    // What has next to nothing is no choice.
+    // A recall below 5 % is left out.
     let mut least = 0.95;
     points.retain(|&(_, y)| {
         let better = y < least;

@@ -12,9 +12,9 @@ use crate::finding::Figure;
 use crate::statistics::median;
 use satisfice_draw::plot::Curve;
 
-/// Points of a curve.
+/// The number of points of a curve.
 const POINTS: usize = 64;
-/// With more curves than this bands hide each other.
+/// The greatest number of curves with bands: more bands hide each other.
 const BANDS: usize = 8;
 
 /// What the horizontal axis counts.
@@ -91,7 +91,7 @@ impl By {
         }
     }
 
-    /// In the unit of the axis.
+    /// A value in the unit of the axis.
     fn shown(self, x: f64) -> f64 {
         if self == Self::Seconds { 1e3 * x } else { x }
     }
@@ -105,7 +105,7 @@ impl By {
         .to_owned()
     }
 
-    /// |C| of a run at x.
+    /// Hits of a run at x.
     fn hits(self, row: &Row, x: f64) -> u64 {
         match self {
             Self::Evaluations => row.hits_by_evaluation(x),
@@ -113,7 +113,7 @@ impl By {
         }
     }
 
-    /// From the first thing that happens to the end, at equal ratios.
+    /// Values from the first event to the end, at equal ratios.
     fn grid(self, all: &[Runs<'_>]) -> Vec<f64> {
         let ends = |row: &&Row| {
             let first = row.curve.iter().map(|moment| self.of(moment)).find(|&x| x > 0.0);
@@ -131,7 +131,7 @@ impl By {
             .iter()
             .fold(0.0_f64, |greatest, (_, last)| greatest.max(*last));
         let ratio = last / first;
-        #[expect(clippy::cast_precision_loss, reason = "some dozens")]
+        #[expect(clippy::cast_precision_loss, reason = "a few dozen")]
         (0..POINTS)
             .map(|k| first * ratio.powf(k as f64 / (POINTS - 1) as f64))
             .filter(|x| x.is_finite())

@@ -1,4 +1,4 @@
-//! How boards become a picture.
+//! Draws boards.
 
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
@@ -7,7 +7,7 @@ use super::{encode, title_size};
 use crate::error::Error;
 use crate::plot::{Board, Boards, Format};
 
-/// Edge of a board, space around it and height of the title, in units; a PNG has two pixels a unit.
+/// Edge of a board, space around it and height of the title, in units; a PNG has two pixels per unit.
 const EDGE: f64 = 216.0;
 const GAP: f64 = 34.0;
 const TITLE: f64 = 44.0;

@@ -1,4 +1,4 @@
-//! How maps become a picture.
+//! Draws maps.
 
 use kuva::plot::scatter::MarkerShape;
 use kuva::plot::{ColorMap, ContourPlot, LinePlot, LineStyle, ScatterPlot};
@@ -43,7 +43,7 @@ pub fn draw_maps(maps: &Maps, format: Format) -> Result<Vec<u8>, Error> {
 fn panel(map: &Map) -> (Vec<Plot>, Layout) {
     let mut plots: Vec<Plot> = map.layers.iter().flat_map(|layer| draw(map, layer)).collect();
     if plots.is_empty() {
-        // Nothing to show is shown as empty axes.
+        // Without points the axes are empty.
         plots.push(Plot::Line(
             LinePlot::new().with_data([(map.x_range.0, map.y_range.0)]),
         ));
@@ -155,7 +155,7 @@ mod tests {
         for words in ["a title", "x (m)", "a &amp; b", "a note", "#0072b2"] {
             assert!(some.contains(words), "{words} is not in the picture");
         }
-        // What has no place on logarithmic axes is left out; the rest stays as it was.
+        // Points that logarithmic axes cannot show are left out; the others stay.
         let odd = [
             (f64::NAN, 1.0),
             (2.0, 3.0),
