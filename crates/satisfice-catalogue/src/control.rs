@@ -16,6 +16,9 @@ pub struct Progress {
     pub share: f64,
 }
 
+/// Takes the bytes of a checkpoint.
+pub type Save<'a> = dyn FnMut(&[u8]) + 'a;
+
 /// Cancellation, progress and checkpoints of a run. By default it cannot be cancelled, is not watched, starts from its
 /// beginning and is not saved.
 ///
@@ -38,7 +41,7 @@ pub struct RunControl<'a> {
     pub resume: Option<&'a [u8]>,
     /// Takes checkpoints: one at the start of each slice, then one in about [`every`](Self::every), one when the run is
     /// cancelled, and one at the end.
-    pub save: Option<&'a mut dyn FnMut(&[u8])>,
+    pub save: Option<&'a mut Save<'a>>,
     /// The time between checkpoints.
     pub every: Duration,
 }

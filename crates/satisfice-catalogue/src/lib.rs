@@ -31,7 +31,7 @@ mod spec;
 pub mod verify;
 
 pub use catalogue::{Catalogue, ProblemSpec};
-pub use control::{Progress, RunControl};
+pub use control::{Progress, RunControl, Save};
 pub use error::Error;
 pub use instance::Instance;
 pub use machine::machine;

@@ -1,6 +1,6 @@
 //! Runs what is missing of a plan: runs with an evaluation budget side by side, runs with a clock one at a time.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -70,7 +70,7 @@ pub fn execute(
     watch: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Finished, Error> {
     let (results, old) = Results::open(folder)?;
-    let mut known: HashMap<u64, Row> = HashMap::new();
+    let mut known: BTreeMap<u64, Row> = BTreeMap::new();
     let mut foreign = 0;
     for row in old {
         match plan.find(&row).map(|run| run.number()) {
@@ -108,7 +108,7 @@ pub fn execute(
 /// The number of hits of each problem that is still to be run; `None` for the others.
 fn count(
     plan: &Plan,
-    known: &HashMap<u64, Row>,
+    known: &BTreeMap<u64, Row>,
     cancel: &Cancel,
     watch: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Vec<Option<u64>>, Error> {
@@ -151,7 +151,7 @@ struct Sweep<'a> {
     references: Vec<Option<u64>>,
     cancel: &'a Cancel,
     results: Results,
-    known: HashMap<u64, Row>,
+    known: BTreeMap<u64, Row>,
 }
 
 impl Sweep<'_> {
@@ -164,7 +164,7 @@ impl Sweep<'_> {
             results,
             known,
         } = self;
-        let done: &HashMap<u64, Row> = known;
+        let done: &BTreeMap<u64, Row> = known;
         let missing = plan
             .runs()
             .filter(|run| run.cell.is_timed() == timed && !done.contains_key(&run.number()));

@@ -1,6 +1,6 @@
 //! What a suite amounts to, looked up and checked as a whole before anything runs. Runs are made as they are needed.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
@@ -27,7 +27,7 @@ pub struct Plan {
     pub instances: Vec<Arc<dyn Instance>>,
     /// The runs but for their seeds, in the order of the suite.
     pub cells: Vec<Cell>,
-    places: HashMap<String, usize>,
+    places: BTreeMap<String, usize>,
     len: u64,
 }
 
@@ -105,7 +105,7 @@ impl Plan {
             suite,
             instances: Vec::new(),
             cells: Vec::new(),
-            places: HashMap::new(),
+            places: BTreeMap::new(),
             len: 0,
         };
         for study in &plan.suite.studies {
