@@ -2,7 +2,7 @@
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::{FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::{PairKind, Threshold};
-use satisfice_collision::scene::{Body, Completeness, Scene};
+use satisfice_collision::scene::{Body, BodyId, Completeness, World};
 use satisfice_collision::{Mesh, Placement};
 
 use crate::scenes;
@@ -11,7 +11,7 @@ use crate::table::{Report, deadline, time};
 /// The frame under the budget. The contacts of the one before are known, and two more tell how the bodies move.
 const LAST: usize = 3;
 
-type Step = Box<dyn Fn(&mut Scene, usize)>;
+type Step = Box<dyn Fn(&mut World, usize)>;
 
 /// A scene and what moves it to frame `t`.
 struct Film {
@@ -75,7 +75,7 @@ fn films(full: bool) -> Vec<Film> {
         ("teapots turning back", triangles, turning),
     ] {
         let bodies = vec![Body::fixed(pot.clone()), Body::rigid(pot.clone())];
-        let step = move |scene: &mut Scene, t: usize| scene.place(1, course(t)).expect("a rigid body");
+        let step = move |scene: &mut World, t: usize| scene.place(BodyId::nth(1), course(t)).expect("a rigid body");
         films.push(Film {
             name,
             kind,
@@ -93,8 +93,8 @@ fn films(full: bool) -> Vec<Film> {
         &frames[LAST],
         Threshold::new(0.1).expect("positive"),
     );
-    let step = move |scene: &mut Scene, t: usize| {
-        scene.deform(0, frames[t].vertices()).expect("finite points");
+    let step = move |scene: &mut World, t: usize| {
+        scene.deform(BodyId::nth(0), frames[t].vertices()).expect("finite points");
     };
     let (name, kind) = ("slow folded sheet", PairKind::VertexVertex);
     films.push(Film {
@@ -114,8 +114,8 @@ fn films(full: bool) -> Vec<Film> {
             let bodies = vec![Body::deforming(first.clone())];
             let exact = of_a_cloth(&first, &second, Threshold::new(delta).expect("positive"));
             let frames = [first.vertices().to_vec(), second.vertices().to_vec()];
-            let step = move |scene: &mut Scene, t: usize| {
-                scene.deform(0, &frames[t / LAST]).expect("finite points");
+            let step = move |scene: &mut World, t: usize| {
+                scene.deform(BodyId::nth(0), &frames[t / LAST]).expect("finite points");
             };
             let (name, kind) = ("cloth-ball 92 to 93", PairKind::VertexVertex);
             films.push(Film {
@@ -145,9 +145,9 @@ pub(crate) fn run(report: &mut Report) {
     for film in films(report.full) {
         let threshold = Threshold::new(film.delta).expect("a positive threshold");
         let scene = |bodies: Vec<Body>| {
-            let mut scene = Scene::new(film.kind, threshold);
+            let mut scene = World::new(film.kind, threshold);
             bodies.into_iter().for_each(|body| {
-                scene.add(body);
+                scene.add(body).expect("a finite mesh");
             });
             scene
         };
@@ -155,7 +155,7 @@ pub(crate) fn run(report: &mut Report) {
         let mut answers: Vec<_> = (0..=LAST)
             .map(|t| {
                 (film.step)(&mut exact, t);
-                exact.contacts().expect("finite points")
+                exact.frame().expect("finite points")
             })
             .collect();
         let (answer, before) = (answers.remove(LAST), answers.remove(LAST - 1));
@@ -175,7 +175,7 @@ pub(crate) fn run(report: &mut Report) {
             .map(|_| {
                 for t in 0..LAST {
                     (film.step)(&mut exact, t);
-                    let known = exact.contacts().expect("finite points").contacts;
+                    let known = exact.frame().expect("finite points").contacts;
                     assert!(t < LAST - 1 || known == before.contacts);
                 }
                 exact.measure_contacts();

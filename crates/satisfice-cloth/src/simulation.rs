@@ -1,7 +1,7 @@
 //! The simulation: particles, springs, gravity, and contacts that the collision crate detects.
 
 use satisfice_collision::distance::{PairKind, Point, Threshold};
-use satisfice_collision::scene::{Body, Frame, Scene};
+use satisfice_collision::scene::{Body, BodyId, World};
 use satisfice_collision::{Error, Mesh, generate};
 
 use crate::springs::{Spring, relax, springs};
@@ -129,7 +129,9 @@ pub struct Simulation {
     points: Vec<Point>,
     before: Vec<Point>,
     velocities: Vec<Point>,
-    scene: Scene,
+    world: World,
+    /// The cloth in it.
+    body: BodyId,
     detected: Contacts,
 }
 
@@ -170,9 +172,9 @@ impl Simulation {
             .collect();
         let cloth = flat.with_vertices(placed)?;
         let sphere = sphere(settings)?;
-        let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(settings.delta())?);
-        scene.add(Body::deforming(cloth.clone()).beyond_ring(1));
-        scene.add(Body::fixed(sphere.clone()));
+        let mut world = World::new(PairKind::VertexVertex, Threshold::new(settings.delta())?);
+        let body = world.add(Body::deforming(cloth.clone()).beyond_ring(1))?;
+        world.add(Body::fixed(sphere.clone()))?;
         let points = cloth.vertices().to_vec();
         Ok(Self {
             settings: *settings,
@@ -182,7 +184,8 @@ impl Simulation {
             points,
             cloth,
             sphere,
-            scene,
+            world,
+            body,
             detected: Contacts::default(),
         })
     }
@@ -249,13 +252,13 @@ impl Simulation {
     /// # Errors
     /// [`Error::NonFiniteVertex`] if the simulation had blown up, which its integrator excludes.
     pub fn detect(&mut self) -> Result<(), Error> {
-        self.scene.deform(0, &self.points)?;
-        let Frame { contacts, .. } = self.scene.contacts()?;
+        self.world.deform(self.body, &self.points)?;
+        let contacts = self.world.frame()?.contacts;
         self.detected.within.clear();
         self.detected.sphere.clear();
         for contact in contacts {
             let pair = (contact.a, contact.b);
-            if contact.body_b == 0 {
+            if contact.body_b == self.body {
                 self.detected.within.push(pair);
             } else {
                 self.detected.sphere.push(pair);
@@ -342,14 +345,17 @@ impl Simulation {
     /// As [`Simulation::mesh`].
     pub fn crossings(&self) -> Result<Crossings, Error> {
         // A thousand-millionth of a spacing: nearer than that is touching.
-        let mut scene = Scene::new(
+        let mut world = World::new(
             PairKind::TriangleTriangle,
             Threshold::new(1e-9 * self.settings.spacing())?,
         );
-        scene.add(Body::deforming(self.mesh()?));
+        world.add(Body::deforming(self.mesh()?))?;
         let square = |p: &Point| p.iter().map(|c| c * c).sum::<f64>();
         Ok(Crossings {
-            triangles: scene.contacts()?.contacts.len(),
+            triangles: {
+                world.update()?;
+                world.contacts().count()
+            },
             inside: self
                 .points
                 .iter()

@@ -6,7 +6,7 @@ use allocation_counter::measure;
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::{FeatureTree, PointGrid, TreeJoin};
 use satisfice_collision::distance::{PairKind, Threshold};
-use satisfice_collision::scene::{Body, Scene};
+use satisfice_collision::scene::{Body, World};
 use satisfice_collision::{Mesh, Placement, generate};
 
 /// All is done on the thread that is counted: to be called before anything else, since whoever asks first for the pool of all
@@ -85,9 +85,9 @@ fn trees_allocate_nothing() {
     assert_eq!(within, [0; 40]);
 }
 
-/// What a scene answers is the caller's: some lists a frame, however long they are.
+/// What a world answers is the caller's: some lists a frame, however long they are.
 #[test]
-fn scenes_allocate_their_answers_only() {
+fn worlds_allocate_their_answers_only() {
     on_one_thread();
     let (pot, places) = teapots();
     let frames = places.map(|place| place.place(&pot).unwrap());
@@ -96,19 +96,19 @@ fn scenes_allocate_their_answers_only() {
         (PairKind::VertexVertex, false),
         (PairKind::TriangleTriangle, true),
     ] {
-        let mut scene = Scene::new(kind, threshold());
-        scene.add(Body::fixed(pot.clone()));
+        let mut world = World::new(kind, threshold());
+        world.add(Body::fixed(pot.clone())).unwrap();
         let body = match is_rigid {
             true => Body::rigid(pot.clone()),
             false => Body::deforming(pot.clone()),
         };
-        let body = scene.add(body);
+        let body = world.add(body).unwrap();
         let counts = allocations(|n| {
             match is_rigid {
-                true => scene.place(body, places[n]).unwrap(),
-                false => scene.deform(body, frames[n].vertices()).unwrap(),
+                true => world.place(body, places[n]).unwrap(),
+                false => world.deform(body, frames[n].vertices()).unwrap(),
             }
-            assert!(scene.contacts().unwrap().contacts.len() > 1000);
+            assert!(world.frame().unwrap().contacts.len() > 1000);
         });
         // now and then a list of neighbours is made anew
         let more = counts.iter().filter(|&&count| count > 12).count();

@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 use satisfice::{Cancel, StopReason};
 use satisfice_catalogue::{RunReport, RunSpec};
 use satisfice_collision::broad::Method;
-use satisfice_collision::scene::{self, Contact, Frame, Scene, Skips};
+use satisfice_collision::scene::{self, Contact, Frame, Skips};
 use serde_json::{Value, json};
 
 use super::PROBLEM;
 use super::arguments::Find;
-use super::scene::{Pair, World};
+use super::scene::World;
 use crate::progress::Counting;
 
 /// The exact methods by their names.
@@ -49,28 +49,28 @@ impl Exact<'_> {
     /// Finds on as many threads as are wanted.
     pub(super) fn find(&self, world: &World) -> anyhow::Result<Found> {
         if self.threads == 1 {
-            return self.find_in(world, world.scene(self.method));
+            return self.find_in(world, world.scene(self.method)?);
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build()?;
-        pool.install(|| self.find_in(world, world.scene(self.method).parallel()))
+        pool.install(|| self.find_in(world, world.scene(self.method)?.parallel()))
     }
 
     #[expect(
         clippy::disallowed_methods,
         reason = "a scene is told when to stop; it does not ask the time itself"
     )]
-    fn find_in(&self, world: &World, mut scene: Scene) -> anyhow::Result<Found> {
+    fn find_in(&self, world: &World, mut scene: scene::World) -> anyhow::Result<Found> {
         let start = Instant::now();
         let counting = Counting::new();
         let answer = self.answer(world, &mut scene, start, &counting)?;
         let searched = start.elapsed();
         counting.say(format!("measuring {} pairs", answer.contacts.len()));
         let mut solutions = Vec::with_capacity(answer.contacts.len());
-        for &contact in &answer.contacts {
+        for (&contact, pair) in answer.contacts.iter().zip(world.pairs(&answer.contacts)) {
             let distance = distance(&scene, contact, world.request.threshold)?;
-            solutions.push((json!(Pair::from(contact)), distance));
+            solutions.push((json!(pair), distance));
         }
         let elapsed = start.elapsed();
         let late = self
@@ -85,7 +85,7 @@ impl Exact<'_> {
     fn answer(
         &self,
         world: &World,
-        scene: &mut Scene,
+        scene: &mut scene::World,
         start: Instant,
         counting: &Counting,
     ) -> anyhow::Result<Answer> {
@@ -131,7 +131,7 @@ impl Exact<'_> {
                 self.pass(scene, start, counting)?
             }
             Find::All => {
-                let frame = scene.contacts_until(&stop)?;
+                let frame = scene.frame_until(&stop)?;
                 Answer {
                     skips: frame.skips,
                     ..answer(frame.contacts, None, frame.completeness)
@@ -141,7 +141,7 @@ impl Exact<'_> {
     }
 
     /// Piece by piece, so that a limit and Ctrl-C keep what was found.
-    fn pass(&self, scene: &mut Scene, start: Instant, counting: &Counting) -> anyhow::Result<Answer> {
+    fn pass(&self, scene: &mut scene::World, start: Instant, counting: &Counting) -> anyhow::Result<Answer> {
         let wanted = self
             .hits
             .map_or(usize::MAX, |hits| usize::try_from(hits).unwrap_or(usize::MAX));
@@ -162,7 +162,7 @@ impl Exact<'_> {
             mut contacts,
             completeness,
             skips,
-        } = pass.into_frame();
+        } = scene.frame_of(&pass);
         let complete = completeness == scene::Completeness::Proved && contacts.len() <= wanted;
         contacts.truncate(wanted);
         Ok(Answer {
@@ -210,6 +210,6 @@ impl Exact<'_> {
 }
 
 /// The distance of a contact: within one unit in the last place, and below the threshold, which it is decided to be.
-pub(super) fn distance(scene: &Scene, contact: Contact, threshold: f64) -> anyhow::Result<f64> {
+pub(super) fn distance(scene: &scene::World, contact: Contact, threshold: f64) -> anyhow::Result<f64> {
     Ok(scene.proximity(contact)?.distance.min(threshold.next_down()))
 }

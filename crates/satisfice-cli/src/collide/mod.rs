@@ -82,7 +82,7 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         (record, skips, all, files)
     };
     if let Some(file) = &mut files.picture {
-        let contacts = contacts(&record)?;
+        let contacts = world.contacts(&pairs(&record)?);
         let missed = picture::missed(&reference, &contacts);
         file.write(&picture::draw(&world, arguments.up, &contacts, &missed)?)?;
     }
@@ -122,13 +122,13 @@ fn warn(world: &World) {
 
 /// Counts the pairs by an exact method; keeps them, and what was skipped.
 fn count(world: &World, kept: &Mutex<(Vec<Contact>, Skips)>) -> Option<u64> {
-    let mut scene = world.scene(Method::Auto);
+    let mut scene = world.scene(Method::Auto).ok()?;
     let mut pass = scene.pass();
     let done = scene.advance(&mut pass, &mut |found| found > MOST_COUNTED).ok()?;
     if done != Completeness::Proved {
         return None;
     }
-    let frame = pass.into_frame();
+    let frame = scene.frame_of(&pass);
     let count = frame.contacts.len() as u64;
     if let Ok(mut kept) = kept.lock() {
         *kept = (frame.contacts, frame.skips);
@@ -137,9 +137,9 @@ fn count(world: &World, kept: &Mutex<(Vec<Contact>, Skips)>) -> Option<u64> {
 }
 
 /// The pairs that a record lists.
-fn contacts(record: &RunReport) -> anyhow::Result<Vec<Contact>> {
+fn pairs(record: &RunReport) -> anyhow::Result<Vec<Pair>> {
     let solutions = record.solutions.iter();
-    let pairs = solutions.map(|found| Pair::deserialize(&found.solution).map(Contact::from));
+    let pairs = solutions.map(|found| Pair::deserialize(&found.solution));
     Ok(pairs.collect::<Result<_, _>>()?)
 }
 

@@ -10,7 +10,7 @@ use satisfice_collision::scene::Contact;
 use satisfice_picture::{Picture, Up, View};
 
 use super::arguments::Axis;
-use super::scene::World;
+use super::scene::{Feature, Pair, World};
 
 const WIDTH: u32 = 1400;
 const HEIGHT: u32 = 1000;
@@ -58,17 +58,14 @@ pub(super) fn draw(
     let mut picture = Picture::new(WIDTH, HEIGHT, view);
     world.bodies.iter().for_each(|mesh| picture.body(mesh));
     let (kind_a, kind_b) = world.kinds();
-    for contact in found {
-        for (kind, body, feature) in [
-            (kind_a, contact.body_a, contact.a),
-            (kind_b, contact.body_b, contact.b),
-        ] {
+    for Pair { a, b } in world.pairs(found) {
+        for (kind, Feature { body, feature }) in [(kind_a, a), (kind_b, b)] {
             if kind == FeatureKind::Triangle {
                 picture.highlight(body, feature);
             }
         }
     }
-    let scene = world.scene(Method::Auto);
+    let scene = world.scene(Method::Auto)?;
     for (contacts, was_found) in [(found, true), (missed, false)] {
         for contact in contacts.iter().step_by(contacts.len().div_ceil(MARKS).max(1)) {
             let nearest = scene.proximity(*contact)?;

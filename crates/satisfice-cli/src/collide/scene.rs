@@ -10,7 +10,7 @@ use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::problem::FeaturePairs;
-use satisfice_collision::scene::{Body, Contact, Scene};
+use satisfice_collision::scene::{self, Body, BodyId, Contact};
 use satisfice_collision::{Mesh, io};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -36,32 +36,6 @@ pub(super) struct Pair {
     pub(super) b: Feature,
 }
 
-impl From<Contact> for Pair {
-    fn from(contact: Contact) -> Self {
-        Self {
-            a: Feature {
-                body: contact.body_a,
-                feature: contact.a,
-            },
-            b: Feature {
-                body: contact.body_b,
-                feature: contact.b,
-            },
-        }
-    }
-}
-
-impl From<Pair> for Contact {
-    fn from(Pair { a, b }: Pair) -> Self {
-        Self {
-            body_a: a.body,
-            body_b: b.body,
-            a: a.feature,
-            b: b.feature,
-        }
-    }
-}
-
 /// The pairs of two bodies, or of one with itself, as a problem for an engine.
 #[derive(Debug)]
 pub(super) struct Job {
@@ -72,13 +46,17 @@ pub(super) struct Job {
 impl Job {
     /// The pair of features that a solution of this job is.
     pub(super) fn pair(&self, (a, b): (u32, u32)) -> Pair {
-        Contact {
-            body_a: self.bodies[0],
-            body_b: self.bodies[1],
-            a,
-            b,
+        let [body_a, body_b] = self.bodies;
+        Pair {
+            a: Feature {
+                body: body_a,
+                feature: a,
+            },
+            b: Feature {
+                body: body_b,
+                feature: b,
+            },
         }
-        .into()
     }
 }
 
@@ -215,17 +193,63 @@ impl World {
         bodies.filter_map(move |(body, mesh)| (kind.count(mesh) == 0).then_some(body))
     }
 
+    /// The meshes that have a feature of a pair. They are the bodies of the scene, in this order.
+    fn present(&self) -> Vec<usize> {
+        let (kind_a, kind_b) = self.kinds();
+        let has = |&body: &usize| {
+            [kind_a, kind_b]
+                .iter()
+                .any(|&kind| kind.count(&self.bodies[body]) > 0)
+        };
+        (0..self.bodies.len()).filter(has).collect()
+    }
+
     /// The scene for the exact methods.
-    pub(super) fn scene(&self, method: Method) -> Scene {
-        let mut scene = Scene::new(self.request.kind, self.threshold).with_method(method);
-        for mesh in &self.bodies {
+    pub(super) fn scene(&self, method: Method) -> anyhow::Result<scene::World> {
+        let mut scene = scene::World::new(self.request.kind, self.threshold).with_method(method);
+        for body in self.present() {
+            let mesh = self.bodies[body].clone();
             scene.add(if self.request.within {
-                Body::deforming(mesh.clone()).beyond_ring(self.ring_width())
+                Body::deforming(mesh).beyond_ring(self.ring_width())
             } else {
-                Body::fixed(mesh.clone())
-            });
+                Body::fixed(mesh)
+            })?;
         }
-        scene
+        Ok(scene)
+    }
+
+    /// Contacts of the scene as pairs of features of meshes.
+    pub(super) fn pairs(&self, contacts: &[Contact]) -> Vec<Pair> {
+        let present = self.present();
+        let feature = |body: BodyId, feature| Feature {
+            body: present[body.index()],
+            feature,
+        };
+        let contacts = contacts.iter();
+        let pair = |contact: &Contact| Pair {
+            a: feature(contact.body_a, contact.a),
+            b: feature(contact.body_b, contact.b),
+        };
+        contacts.map(pair).collect()
+    }
+
+    /// Pairs of features of meshes as contacts of the scene; a mesh that is not there is a body that the scene refuses.
+    pub(super) fn contacts(&self, pairs: &[Pair]) -> Vec<Contact> {
+        let present = self.present();
+        let body = |mesh: usize| {
+            let place = present
+                .binary_search(&mesh)
+                .ok()
+                .and_then(|at| u32::try_from(at).ok());
+            BodyId::nth(place.unwrap_or(u32::MAX))
+        };
+        let contact = |pair: &Pair| Contact {
+            body_a: body(pair.a.body),
+            body_b: body(pair.b.body),
+            a: pair.a.feature,
+            b: pair.b.feature,
+        };
+        pairs.iter().map(contact).collect()
     }
 
     /// A problem for every combination of bodies, made when it is first asked for.
@@ -278,7 +302,7 @@ impl World {
 
     /// How many pairs there are, by brute force.
     pub(super) fn reference_hits(&self) -> anyhow::Result<u64> {
-        Ok(self.scene(Method::BruteForce).contacts()?.contacts.len() as u64)
+        Ok(self.scene(Method::BruteForce)?.frame()?.contacts.len() as u64)
     }
 
     /// Whether this is a pair of features of this scene, the first one first.

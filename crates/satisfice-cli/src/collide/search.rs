@@ -22,7 +22,7 @@ pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Re
         jobs = all_jobs.iter().collect();
     }
     let parts = jobs.len() as u64;
-    let scene = world.scene(Method::Auto);
+    let scene = world.scene(Method::Auto)?;
     let bar = Bar::new();
     let mut all: Option<RunReport> = None;
     for (part, job) in (0..).zip(jobs) {
@@ -49,7 +49,9 @@ pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Re
             let pair = job.pair(pair);
             found.solution = json!(pair);
             // As the exact methods give it: to the last digit, where F has ten.
-            found.fitness = distance(&scene, pair.into(), world.request.threshold)?;
+            for contact in world.contacts(&[pair]) {
+                found.fitness = distance(&scene, contact, world.request.threshold)?;
+            }
         }
         let stop = report.stop_reason;
         match &mut all {

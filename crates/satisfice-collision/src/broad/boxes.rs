@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::lanes::{Eight, Lanes, Work, dispatch};
 
 /// A box of `f32` coordinates; empty if a lower side lies above its upper one.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Box32 {
     pub(crate) min: [f32; 3],
     pub(crate) max: [f32; 3],
@@ -27,6 +27,21 @@ impl Box32 {
             min: std::array::from_fn(|k| lesser(point[k], bounds.min[k])),
             max: std::array::from_fn(|k| greater(point[k], bounds.max[k])),
         })
+    }
+
+    /// The least box around both.
+    #[inline]
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self {
+            min: std::array::from_fn(|k| lesser(other.min[k], self.min[k])),
+            max: std::array::from_fn(|k| greater(other.max[k], self.max[k])),
+        }
+    }
+
+    /// The sum of the sides.
+    #[inline]
+    pub(crate) fn girth(&self) -> f32 {
+        (0..3).map(|k| self.max[k] - self.min[k]).sum()
     }
 }
 
@@ -77,16 +92,8 @@ pub(crate) enum Moved {
 impl BoxTree {
     /// Orders items with these boxes, which a refit then puts into the tree. Cost: O(n log n).
     pub(crate) fn order(boxes: &[Box32], are_points: bool, threads: usize) -> Self {
-        let mut items: Vec<Item> = (0_u32..)
-            .zip(boxes)
-            .map(|(id, b)| Item {
-                centre: std::array::from_fn(|k| b.min[k] + b.max[k]),
-                id,
-            })
-            .collect();
-        split(&mut items, threads > 1);
         let mut tree = Self {
-            order: items.iter().map(|item| item.id).collect(),
+            order: order_by_median(boxes, threads > 1),
             ..Self::default()
         };
         let mut groups = boxes.len().div_ceil(8);
@@ -335,6 +342,19 @@ struct Item {
     /// Twice the centre of the box.
     centre: [f32; 3],
     id: u32,
+}
+
+/// The numbers of some boxes in an order in which every aligned run of 8, 64, 512, … is compact. Cost: O(n log n).
+pub(crate) fn order_by_median(boxes: &[Box32], parallel: bool) -> Vec<u32> {
+    let mut items: Vec<Item> = (0_u32..)
+        .zip(boxes)
+        .map(|(id, b)| Item {
+            centre: std::array::from_fn(|k| b.min[k] + b.max[k]),
+            id,
+        })
+        .collect();
+    split(&mut items, parallel);
+    items.iter().map(|item| item.id).collect()
 }
 
 /// Orders items so that every aligned run of 8, 64, 512, … is compact: halves by the median along the longest axis of the

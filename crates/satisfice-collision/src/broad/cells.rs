@@ -67,33 +67,6 @@ impl Cells {
         (self.cell(2, q[2]) * self.count[1] + self.cell(1, q[1])) * self.count[0] + self.cell(0, q[0])
     }
 
-    /// Visits the serial numbers of all cells that hold a point within `reach` of `q`, and of few others.
-    pub(crate) fn visit_near(&self, q: &[f32; 3], reach: f32, mut visit: impl FnMut(usize)) {
-        // A coordinate is filed up to 2^-8 of a cell beside the cell that it is in, and so may be the middle of a cell.
-        const BESIDE: f32 = 0.02;
-        let edge = 1.0 / self.inverse;
-        let range = |k: usize| self.cell(k, q[k] - reach)..self.cell(k, q[k] + reach) + 1;
-        // How far q is from a cell along an axis; the outermost cells have no end.
-        let gap = |k: usize, cell: usize| {
-            let middle = self.lower[k] + cell as f32 * edge;
-            let gap = (q[k] - middle).abs() - (0.5 + BESIDE) * edge;
-            let outermost = cell == 0 || cell + 1 == self.count[k];
-            if outermost || gap < 0.0 { 0.0 } else { gap }
-        };
-        let square = reach * reach;
-        for z in range(2) {
-            let across = gap(2, z) * gap(2, z);
-            for y in range(1) {
-                let across = across + gap(1, y) * gap(1, y);
-                for x in range(0) {
-                    if across + gap(0, x) * gap(0, x) <= square {
-                        visit((z * self.count[1] + y) * self.count[0] + x);
-                    }
-                }
-            }
-        }
-    }
-
     /// Cells in one layer of equal z.
     pub(crate) fn layer(&self) -> usize {
         self.count[0] * self.count[1]

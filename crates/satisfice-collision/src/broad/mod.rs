@@ -6,7 +6,6 @@ mod clip;
 mod couple;
 mod exact;
 mod features;
-mod fixed;
 mod frame;
 mod groups;
 mod join;
@@ -21,24 +20,21 @@ mod sorting;
 mod traverse;
 mod trees;
 mod watch;
-mod witnesses;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use boxes::Moved;
+pub(crate) use boxes::{Box32, Moved, order_by_median};
 pub(crate) use clip::{Runs, inflate, intersection};
 pub(crate) use couple::Couple;
 pub use couple::Keep;
 pub use features::{FeatureTree, Refit};
-pub(crate) use fixed::{FixedGrid, Found};
+pub(crate) use frame::{exponent, power_of_two};
 pub use pair::Pair;
 pub use points::{PointGrid, PointWork};
-pub(crate) use sorting::Sorter;
 pub(crate) use traverse::Visit;
 pub use trees::{TreeJoin, TreeWork};
 pub(crate) use watch::Watch;
-pub(crate) use witnesses::Witnesses;
 
 /// How pairs are enumerated. No method changes an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

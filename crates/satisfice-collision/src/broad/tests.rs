@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{FeatureTree, FixedGrid, Found, Pair, PointGrid, TreeJoin};
+use super::{FeatureTree, Pair, PointGrid, TreeJoin};
 use crate::distance::{Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex};
 use crate::{Error, FeatureKind, Mesh, Placement, generate};
 
@@ -157,35 +157,6 @@ fn points_with_thousands_of_partners_have_all_of_them() {
             assert_eq!(grid.between(&b, &a, threshold).unwrap().len(), expected.len());
         }
     }
-}
-
-#[test]
-fn a_kept_grid_agrees_with_brute_force() {
-    let (mut found, mut looked_up) = (Found::default(), 0);
-    for (name, a, b, deltas) in scenes() {
-        for delta in deltas {
-            let threshold = Threshold::new(delta).unwrap();
-            let Some(grid) = FixedGrid::new(&b, threshold).unwrap() else {
-                assert!(b.is_empty(), "{name}");
-                continue;
-            };
-            grid.look_up(&a, &b, &mut found);
-            let mut pairs = found.pairs.clone();
-            looked_up += pairs.len();
-            pairs.sort_unstable();
-            assert!(
-                pairs == brute(&a, &b, delta, false),
-                "{name}, {delta}: {} pairs",
-                pairs.len()
-            );
-            let with_partner = a.len() as u64 - found.clipped - found.lonely;
-            assert!(
-                pairs.chunk_by(|p, q| p.a == q.a).count() as u64 <= with_partner,
-                "{name}"
-            );
-        }
-    }
-    assert!(looked_up > 100_000, "{looked_up} pairs");
 }
 
 #[test]

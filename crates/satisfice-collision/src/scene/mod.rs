@@ -1,267 +1,246 @@
-//! Scenes: bodies that move from frame to frame, and which of their features are within a threshold. Exact, and lazy: what
-//! cannot have changed or cannot matter is skipped, and every skip is counted.
+//! Worlds: bodies that move from frame to frame, and which of their features are within a threshold. Exact, and lazy: the cost
+//! of a frame depends on what moved in it, not on how many bodies there are.
 //!
 //! ```
 //! use satisfice_collision::distance::{PairKind, Threshold};
-//! use satisfice_collision::scene::{Body, Scene};
+//! use satisfice_collision::scene::{Body, World};
 //! use satisfice_collision::{Placement, generate};
-//! let mut scene = Scene::new(PairKind::TriangleTriangle, Threshold::new(0.01)?);
-//! let table = scene.add(Body::fixed(generate::torus(1.0, 0.3, 24, 12)?));
-//! let ball = scene.add(Body::rigid(generate::icosphere(0.5, 2)?));
-//! scene.place(ball, Placement::from_translation([0.0, 0.0, 0.4])?)?;
-//! let frame = scene.contacts()?;
-//! assert!(frame.contacts.iter().all(|contact| (contact.body_a, contact.body_b) == (table, ball)));
-//! scene.place(ball, Placement::from_translation([0.0, 0.0, 5.0])?)?;
-//! let frame = scene.contacts()?;
-//! assert!(frame.contacts.is_empty() && frame.skips.boxes_apart == 1);
+//! let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.01)?);
+//! let table = world.add(Body::fixed(generate::torus(1.0, 0.3, 24, 12)?))?;
+//! let ball = world.add(Body::rigid(generate::icosphere(0.5, 2)?))?;
+//! world.place(ball, Placement::from_translation([0.0, 0.0, 0.4])?)?;
+//! world.update()?;
+//! assert!(world.contacts().count() > 0);
+//! assert!(world.contacts().all(|contact| contact.bodies() == (table, ball)));
+//! world.place(ball, Placement::from_translation([0.0, 0.0, 5.0])?)?;
+//! let update = world.update()?;
+//! assert!(world.contacts().count() == 0 && update.skips.boxes_apart == 1);
+//! assert!(world.changes().all(|change| change.kind == satisfice_collision::scene::ChangeKind::Ended));
 //! # Ok::<(), satisfice_collision::Error>(())
 //! ```
 
 mod body;
-mod forecast;
-mod kept;
-mod link;
-mod measured;
-mod near;
+mod body_tree;
+mod changes;
+mod contact;
+mod deforming;
+mod filter;
+mod membership;
+mod narrow;
+mod pairs;
 mod pass;
+mod plan;
 mod query;
+mod settle;
+mod shared_mesh;
 mod skips;
+mod slack;
 mod state;
+mod update;
+mod verlet;
 
 #[cfg(test)]
 mod tests;
 
-pub use body::{Body, Motion};
+pub use body::{Body, BodyId, Motion};
+pub use changes::{BodyChange, Change, ChangeKind};
+pub use contact::{Completeness, Contact, Frame, Update};
 pub use pass::Pass;
+pub use shared_mesh::SharedMesh;
 pub use skips::Skips;
 
-use std::collections::BTreeSet;
-
-use crate::broad::{Found, Method, PointGrid, Sorter, TreeJoin, Watch};
-use crate::distance::{PairKind, Point, Proximity, Threshold};
-use crate::{Error, Placement};
-use link::Link;
+use crate::broad::{Method, Pair};
+use crate::distance::{self, PairKind, Proximity, Threshold};
+use crate::{Aabb, Error, FeatureKind, Placement};
+use body_tree::BodyTree;
+use changes::Log;
+use membership::Membership;
+use narrow::Workspace;
+use pairs::{Pairs, Record};
+use settle::Pending;
 use state::State;
 
-/// Two features within the threshold. Ordered by bodies, then by features.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Contact {
-    /// Body of the first feature. For pairs of equal features the lower number.
-    pub body_a: usize,
-    /// Body of the second feature.
-    pub body_b: usize,
-    /// The first feature: a vertex, edge or triangle by its number in its mesh.
-    pub a: u32,
-    /// The second feature. Inside one body, for pairs of equal features, the higher number.
-    pub b: u32,
-}
-
-impl Contact {
-    /// The numbers of the two bodies, the lower one first.
-    #[must_use]
-    pub fn bodies(&self) -> (usize, usize) {
-        (self.body_a.min(self.body_b), self.body_a.max(self.body_b))
-    }
-}
-
-/// How complete an answer is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Completeness {
-    /// Every pair was decided or excluded by bounds: there are no others.
-    Proved,
-    /// The budget ended first.
-    Unknown,
-}
-
-/// The answer for one frame.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Frame {
-    /// The contacts, sorted.
-    pub contacts: Vec<Contact>,
-    /// Whether there can be others.
-    pub completeness: Completeness,
-    /// What was skipped, and why.
-    pub skips: Skips,
-}
-
 /// Bodies, a kind of feature pair and a threshold.
-pub struct Scene {
+///
+/// Changes of bodies take effect at the next query: [`World::update`] brings the contacts up to date, and costs nothing for what
+/// did not change.
+pub struct World {
     kind: PairKind,
     threshold: Threshold,
     method: Method,
-    states: Vec<State>,
-    excluded: BTreeSet<(usize, usize)>,
-    links: Vec<Link>,
-    linked: bool,
-    filtered: u64,
-    /// Counts frames; moves only if something did.
-    frame: u64,
-    grid: PointGrid,
-    join: TreeJoin,
     parallel: bool,
-    /// What the next pass may deliver first, in its order...
-    laid_out: Vec<Contact>,
-    /// ...of which bodies, and in which frame they were measured.
-    laid_out_of: Option<(usize, usize, u64)>,
-    /// Counts what changes the known pairs within a frame: a pass that began before is of no more use.
+    /// By slot; `None` where a body was removed.
+    states: Vec<Option<State>>,
+    /// The generations of the next bodies in free slots, and these slots.
+    free: Vec<BodyId>,
+    membership: Membership,
+    tree: BodyTree,
+    pairs: Pairs,
+    /// What moves in the next frame.
+    pending: Vec<Pending>,
+    /// Bodies whose partners have to be looked for anew.
+    unpaired: Vec<u32>,
+    /// Records whose contacts are to be looked for.
+    dirty: Vec<u32>,
+    /// Whether one of them may have been taken out since, or be listed twice.
+    has_removed_dirty: bool,
+    /// Counts the frames in which something changed.
+    frame: u64,
+    /// Where the bodies that moved in this frame came from.
+    came_from: Vec<(u32, Placement)>,
+    /// Counts what changes the known contacts: a pass that began before is of no more use.
     answers: u64,
-    /// For sorting.
-    found: Found,
-    sorter: Sorter,
+    log: Log,
+    workspaces: Vec<Workspace>,
+    /// The last query of each body for its partners, by slot.
+    marks: Vec<u32>,
+    mark: u32,
 }
 
-impl Scene {
-    /// An empty scene.
+impl World {
+    /// An empty world.
     #[must_use]
     pub fn new(kind: PairKind, threshold: Threshold) -> Self {
         Self {
             kind,
             threshold,
             method: Method::Auto,
-            states: Vec::new(),
-            excluded: BTreeSet::new(),
-            links: Vec::new(),
-            linked: false,
-            filtered: 0,
-            frame: 0,
-            grid: PointGrid::new(),
-            join: TreeJoin::new(),
             parallel: false,
-            laid_out: Vec::new(),
-            laid_out_of: None,
+            states: Vec::new(),
+            free: Vec::new(),
+            membership: Membership::default(),
+            tree: BodyTree::default(),
+            pairs: Pairs::default(),
+            pending: Vec::new(),
+            unpaired: Vec::new(),
+            dirty: Vec::new(),
+            has_removed_dirty: false,
+            frame: 0,
+            came_from: Vec::new(),
             answers: 0,
-            found: Found::default(),
-            sorter: Sorter::default(),
+            log: Log::default(),
+            workspaces: vec![Workspace::new(false)],
+            marks: Vec::new(),
+            mark: 0,
         }
     }
 
-    /// Uses this method instead of what the cost model chooses. No method changes an answer.
+    /// Uses this method for all pairs of bodies. Default: [`Method::Auto`], the planner's choice. No method changes an answer.
     #[must_use]
     pub fn with_method(mut self, method: Method) -> Self {
         self.method = method;
         self
     }
 
-    /// Works on the current rayon pool. The answers are the same.
+    /// Works on the current rayon pool. Default: on the calling thread alone. The answers are the same.
     #[must_use]
     pub fn parallel(mut self) -> Self {
-        self.grid = PointGrid::parallel();
-        self.join = TreeJoin::parallel();
         self.parallel = true;
+        self.workspaces = vec![Workspace::new(true)];
         self
     }
 
-    /// Adds a body; returns its number.
-    pub fn add(&mut self, body: Body) -> usize {
-        self.states.push(State::new(body));
-        self.linked = false;
-        self.states.len() - 1
+    /// The kind of feature pair that the world looks for.
+    #[must_use]
+    pub fn kind(&self) -> PairKind {
+        self.kind
     }
 
-    /// Keeps two bodies (or one and itself) from colliding.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if a body does not exist.
-    pub fn exclude(&mut self, a: usize, b: usize) -> Result<(), Error> {
-        self.known(a)?;
-        self.known(b)?;
-        self.excluded.insert((a.min(b), a.max(b)));
-        self.linked = false;
-        Ok(())
+    /// The kinds of the two features of a pair.
+    #[must_use]
+    pub fn feature_kinds(&self) -> (FeatureKind, FeatureKind) {
+        self.kind.features()
     }
 
-    /// Puts a rigid body somewhere for the next frame.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if the body does not exist or is not rigid; [`Error::NonFiniteVertex`] if a vertex would leave the
-    /// range of numbers. The scene is then as before.
-    pub fn place(&mut self, body: usize, placement: Placement) -> Result<(), Error> {
-        self.known(body)?;
-        self.states[body].place(placement)
-    }
-
-    /// Puts the vertices of a deforming body somewhere for the next frame.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if the body does not exist, is not deforming or has another number of vertices;
-    /// [`Error::NonFiniteVertex`]. The scene is then as before.
-    pub fn deform(&mut self, body: usize, vertices: &[Point]) -> Result<(), Error> {
-        self.known(body)?;
-        self.states[body].deform(vertices)
-    }
-
-    fn known(&self, body: usize) -> Result<(), Error> {
-        if body < self.states.len() {
-            Ok(())
-        } else {
-            Err(Error::parameter("body", body, "a number that `add` returned"))
-        }
+    /// The threshold of the last or the next frame.
+    #[must_use]
+    pub fn threshold(&self) -> Threshold {
+        self.threshold
     }
 
     /// How many bodies there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.states.len()
+        self.states.len() - self.free.len()
     }
 
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.states.is_empty()
+        self.len() == 0
     }
 
-    /// Every contact of the frame that `place` and `deform` described. What is known from the last frame is used.
-    ///
-    /// # Errors
-    /// Only what `place` and `deform` would have refused; never for a scene that was built through them.
-    pub fn contacts(&mut self) -> Result<Frame, Error> {
-        self.watched(&Watch::none())
-    }
-
-    /// The same until `stop` says so, which is asked every 20 us to 10 ms from every thread that works, and told how many pairs
-    /// there are by now (those that a filter will leave out included). What was found until then is the answer; which pairs
-    /// these are depends on the time, on the method and on the threads, unlike those of a [`Pass`]. The next call starts anew.
-    ///
-    /// # Errors
-    /// As [`Scene::contacts`].
-    pub fn contacts_until(&mut self, stop: &(dyn Fn(usize) -> bool + Sync)) -> Result<Frame, Error> {
-        self.watched(&Watch::until(stop))
-    }
-
-    fn watched(&mut self, watch: &Watch<'_>) -> Result<Frame, Error> {
-        self.settle();
-        let mut skips = self.start_skips();
-        let mut contacts = Vec::new();
-        for at in 0..self.links.len() {
-            if watch.stopped() {
-                break;
-            }
-            self.enumerate(at, &mut skips, watch)?;
-            let link = &self.links[at];
-            contacts.extend(link.pairs.iter().map(|pair| link.contact(*pair)));
-        }
-        Ok(Frame {
-            contacts,
-            completeness: match watch.stopped() {
-                true => Completeness::Unknown,
-                false => Completeness::Proved,
-            },
-            skips,
+    /// The bodies, by index.
+    pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
+        let states = (0..).zip(&self.states);
+        states.filter_map(|(slot, state)| {
+            state.as_ref().map(|state| BodyId {
+                slot,
+                generation: state.generation,
+            })
         })
     }
 
-    /// Distance and closest points of a contact, or of any pair of features.
+    /// Whether a handle names a body of this world.
+    #[must_use]
+    pub fn contains(&self, body: BodyId) -> bool {
+        let state = self.states.get(body.slot as usize).and_then(Option::as_ref);
+        state.is_some_and(|state| state.generation == body.generation)
+    }
+
+    /// The mesh of a body, as it was added or replaced.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body.
+    pub fn mesh(&self, body: BodyId) -> Result<&SharedMesh, Error> {
+        Ok(&self.known(body)?.mesh)
+    }
+
+    /// The placement of a body in the last frame; the identity for a deforming body.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body.
+    pub fn placement(&self, body: BodyId) -> Result<Placement, Error> {
+        Ok(self.known(body)?.placement)
+    }
+
+    /// A box that holds a body in the last frame, at most a few roundings wider than its posed box.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body.
+    pub fn bounds(&self, body: BodyId) -> Result<Aabb, Error> {
+        Ok(self.known(body)?.bounds)
+    }
+
+    /// Bytes held beside the meshes and their trees.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.states.capacity() * size_of::<Option<State>>()
+            + self.tree.bytes()
+            + self.pairs.bytes()
+            + self.marks.capacity() * 4
+            + (self.unpaired.capacity() + self.dirty.capacity()) * 4
+            + self.pending.capacity() * size_of::<Pending>()
+            + self.came_from.capacity() * size_of::<(u32, Placement)>()
+    }
+
+    /// How many pairs of bodies are kept because their boxes meet, or nearly.
+    #[must_use]
+    pub fn kept_pairs(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Distance and closest points of a contact, or of any pair of features, in the last frame.
     ///
     /// # Errors
     /// [`Error::Parameter`] if a body or a feature does not exist.
     pub fn proximity(&self, contact: Contact) -> Result<Proximity, Error> {
-        let (kind_a, kind_b) = self.kind.features();
+        let (kind_a, kind_b) = self.feature_kinds();
         for (body, kind, feature) in [
             (contact.body_a, kind_a, contact.a),
             (contact.body_b, kind_b, contact.b),
         ] {
-            self.known(body)?;
-            if feature as usize >= self.states[body].count(kind) {
+            if feature as usize >= self.known(body)?.count(kind) {
                 return Err(Error::parameter(
                     "feature",
                     feature,
@@ -269,30 +248,73 @@ impl Scene {
                 ));
             }
         }
-        Ok(self.proximity_of(contact))
+        Ok(self.proximity_of(
+            [contact.body_a.slot, contact.body_b.slot],
+            Pair {
+                a: contact.a,
+                b: contact.b,
+            },
+        ))
     }
 
-    /// Goes to the next frame, and lists the pairs of bodies if they are not.
-    fn settle(&mut self) {
-        if !self.linked {
-            self.link();
-        }
-        if self.states.iter().any(State::is_pending) {
-            self.frame += 1;
-            self.states.iter_mut().for_each(State::settle);
+    /// Distance and closest points; the features exist.
+    fn proximity_of(&self, [a, b]: [u32; 2], Pair { a: i, b: j }: Pair) -> Proximity {
+        let (kind_a, kind_b) = self.kind.features();
+        let (a, b) = (self.state(a), self.state(b));
+        distance::proximity(&a.shape(kind_a, i), &b.shape(kind_b, j))
+    }
+
+    /// The body that a handle names.
+    fn known(&self, body: BodyId) -> Result<&State, Error> {
+        match self.states.get(body.slot as usize) {
+            Some(Some(state)) if state.generation == body.generation => Ok(state),
+            _ => Err(Error::parameter(
+                "body",
+                body,
+                "a handle that `add` returned, of a body that has not been removed",
+            )),
         }
     }
 
-    fn start_skips(&self) -> Skips {
-        let rigid = self
-            .states
-            .iter()
-            .filter(|state| state.body.motion != Motion::Deforming)
-            .count();
-        Skips {
-            filtered_bodies: self.filtered,
-            rigid_self: rigid as u64,
-            ..Skips::default()
+    /// The body in a slot that is known to hold one.
+    #[inline]
+    #[expect(
+        clippy::expect_used,
+        reason = "records, lists and the tree name only slots with a body"
+    )]
+    fn state(&self, slot: u32) -> &State {
+        self.states[slot as usize].as_ref().expect("a body in its slot")
+    }
+
+    #[expect(clippy::expect_used, reason = "as `state`")]
+    fn state_mut(&mut self, slot: u32) -> &mut State {
+        self.states[slot as usize].as_mut().expect("a body in its slot")
+    }
+
+    fn id(&self, slot: u32) -> BodyId {
+        BodyId {
+            slot,
+            generation: self.state(slot).generation,
+        }
+    }
+
+    /// How far no vertex of a body moved in the present frame.
+    fn motion_of(&self, slot: u32) -> f64 {
+        let state = self.state(slot);
+        if state.moved_at == self.frame {
+            state.motion
+        } else {
+            0.0
+        }
+    }
+
+    fn contact(&self, record: &Record, pair: Pair) -> Contact {
+        let [a, b] = record.bodies;
+        Contact {
+            body_a: self.id(a),
+            body_b: self.id(b),
+            a: pair.a,
+            b: pair.b,
         }
     }
 }

@@ -1,14 +1,13 @@
 //! A frame under a budget: the likeliest pairs first, and an exact resume.
 
-use super::link::{Near, couple, keeps};
-use super::{Completeness, Contact, Frame, Scene, Skips};
+use super::filter::Filter;
+use super::pairs::Status;
+use super::{Completeness, Contact, Frame, Skips, World};
 use crate::Error;
 use crate::broad::{Couple, Pair, Visit};
 
-/// Pairs verified between two questions to the budget.
+/// Contacts verified between two questions to the budget.
 const STRIDE: usize = 128;
-/// Groups of eight closest points looked at between two questions to the budget.
-const GROUPS: usize = 32;
 /// Pairs of groups of eight boxes visited between two questions to the budget.
 const VISITS: usize = 16;
 
@@ -17,94 +16,58 @@ const PARTS: usize = 16;
 /// Visits of each part between two questions to the budget.
 const VISITS_OF_PART: usize = 256;
 
-/// A frame that is being enumerated piece by piece. First come the contacts of the last frame that hold whatever moved (see
-/// [`Scene::measure_contacts`]), at no cost: they were laid out between the frames. Then come those whose closest points of then
-/// are still near where rigid bodies have gone, and then the others are verified, the closest of the last frame first, those of
-/// the bodies with most contacts first of all; then the bodies are searched in the same order.
+/// A frame that is being enumerated piece by piece.
+///
+/// Contacts of bodies that did not move are there at once. Then come the contacts of the last frame that hold by the bound of
+/// motion (see [`World::measure_contacts`]), at no cost, and the others of the last frame are verified, the closest first; the
+/// pairs of bodies with most contacts come first, then those whose boxes overlap most. Then the bodies are searched in the same
+/// order.
+///
+/// ```
+/// use satisfice_collision::distance::{PairKind, Threshold};
+/// use satisfice_collision::generate;
+/// use satisfice_collision::scene::{Body, Completeness, World};
+/// let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.2)?);
+/// world.add(Body::fixed(generate::icosphere(1.0, 3)?))?;
+/// world.add(Body::fixed(generate::icosphere(1.1, 3)?))?;
+/// let mut pass = world.pass();
+/// // until there are ten contacts
+/// let state = world.advance(&mut pass, &mut |found| found >= 10)?;
+/// assert!(state == Completeness::Unknown && world.found_by(&pass).count() >= 10);
+/// // and on from there to the end
+/// let state = world.advance(&mut pass, &mut |_| false)?;
+/// assert_eq!(state, Completeness::Proved);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 pub struct Pass {
     frame: u64,
     /// What was known when it began.
     answers: u64,
-    order: Vec<usize>,
+    /// What has to be looked at, in this order.
     links: Vec<Progress>,
-    delivered: Delivered,
+    /// Contacts of bodies at rest.
+    resting: usize,
+    delivered: usize,
     phase: Phase,
     skips: Skips,
 }
 
-/// What a pass has delivered of one link.
-#[derive(Default)]
+/// What a pass has delivered of one record.
 struct Progress {
-    /// Whether nothing moved, so that the pairs that are known are those of this frame; `held` counts them then.
-    at_rest: bool,
-    /// So many of the likely contacts, from the first on, hold by the bound of motion and are delivered.
+    record: u32,
+    /// So many of the likely contacts, from the first on, hold by the bound of motion.
     held: usize,
-    /// Whether these are all that hold so.
-    held_all: bool,
-    /// Which of the likely contacts are delivered since their closest points of the last frame are near, eight in a mask, beginning
-    /// with the group of the first that is not held.
-    near: Vec<u8>,
-    /// The other pairs delivered.
+    /// The other contacts, in the order in which they were found.
     others: Vec<Pair>,
-    /// All pairs delivered before the search, sorted.
+    /// All contacts delivered before the search, sorted.
     verified: Vec<Pair>,
-}
-
-/// Contacts in the order of their delivery. The first ones may lie there already before they are delivered.
-#[derive(Default)]
-struct Delivered {
-    contacts: Vec<Contact>,
-    count: usize,
-    /// So many of the first link's likely contacts lie there.
-    laid_out: usize,
-}
-
-impl Delivered {
-    fn push(&mut self, contact: Contact) {
-        match self.contacts.get_mut(self.count) {
-            Some(place) => *place = contact,
-            None => self.contacts.push(contact),
-        }
-        self.count += 1;
-    }
-
-    /// Those of eight contacts, or fewer, that a mask names.
-    fn push_some(&mut self, eight: &[Contact], mask: u8) {
-        let end = self.count + eight.len();
-        if self.contacts.len() < end {
-            self.contacts.resize(end, eight[0]);
-        }
-        // always written, kept by moving the end
-        for (lane, &contact) in eight.iter().enumerate() {
-            self.contacts[self.count] = contact;
-            self.count += usize::from(mask >> lane & 1);
-        }
-    }
-}
-
-impl Progress {
-    /// Whether a likely contact has been delivered already.
-    fn is_delivered(&self, likely: usize) -> bool {
-        let group = likely / 8 - (self.held / 8).min(likely / 8);
-        likely < self.held
-            || self
-                .near
-                .get(group)
-                .is_some_and(|mask| mask >> (likely % 8) & 1 == 1)
-    }
+    /// Whether all likely contacts have been verified, and whether all others have been searched.
+    is_verified: bool,
+    is_done: bool,
 }
 
 enum Phase {
-    /// Taking over the contacts that hold by the bound of motion, of the link at `turn` of the order.
-    Held {
-        turn: usize,
-    },
-    /// Taking over those of the others whose closest points are near, from the group `next` on.
-    Near {
-        turn: usize,
-        next: usize,
-    },
-    /// Verifying the others, from the likely one `next` on.
+    /// Verifying the likely contacts of the link at `turn`, from number `next` on.
     Verify {
         turn: usize,
         next: usize,
@@ -119,10 +82,10 @@ enum Phase {
 }
 
 impl Pass {
-    /// The contacts found so far, in the order in which they were found; nothing twice.
+    /// How many contacts have been found so far, those of bodies at rest included.
     #[must_use]
-    pub fn contacts(&self) -> &[Contact] {
-        &self.delivered.contacts[..self.delivered.count]
+    pub fn found(&self) -> usize {
+        self.resting + self.delivered
     }
 
     /// `Proved` once every pair has been decided or excluded.
@@ -139,59 +102,69 @@ impl Pass {
     pub fn skips(&self) -> Skips {
         self.skips
     }
-
-    /// The contacts so far as an answer, sorted.
-    #[must_use]
-    pub fn into_frame(self) -> Frame {
-        let completeness = self.completeness();
-        let mut contacts = self.delivered.contacts;
-        contacts.truncate(self.delivered.count);
-        contacts.sort_unstable();
-        Frame {
-            contacts,
-            completeness,
-            skips: self.skips,
-        }
-    }
 }
 
-impl Scene {
+impl World {
     /// Starts the frame that `place` and `deform` described. Nothing is searched yet.
     #[must_use]
     pub fn pass(&mut self) -> Pass {
+        self.log.begin();
         self.settle();
-        let order = self.order();
-        let first = order.first().map(|&at| &self.links[at]);
-        let likely = first.and_then(|link| self.likely(link));
-        let laid_out = likely.map_or(0, <[Contact]>::len);
-        let of = first.zip(self.frame.checked_sub(1));
-        let of = of.map(|(link, frame)| (link.a, link.b, frame));
-        let usable = laid_out > 0 && self.laid_out.len() == laid_out && self.laid_out_of == of;
+        self.dirty = self.take_dirty();
+        let mut order: Vec<_> = self
+            .dirty
+            .iter()
+            .map(|&record| (self.likelihood(record), record))
+            .collect();
+        order.sort_by(|((m, p), one), ((n, q), two)| n.cmp(m).then(q.total_cmp(p)).then(one.cmp(two)));
+        let resting = self
+            .pairs
+            .iter()
+            .filter(|(_, record)| record.status == Status::Current);
+        let resting = resting.map(|(_, record)| record.pairs.len()).sum();
+        let mut skips = Skips::default();
+        let links: Vec<Progress> = order
+            .into_iter()
+            .map(|(_, record)| Progress {
+                record,
+                held: self.holding(&self.pairs[record]),
+                others: Vec::new(),
+                verified: Vec::new(),
+                is_verified: false,
+                is_done: false,
+            })
+            .collect();
+        let delivered = links.iter().map(|link| link.held).sum();
+        skips.held_by_motion = delivered as u64;
         Pass {
             frame: self.frame,
             answers: self.answers,
-            order,
-            links: self.links.iter().map(|_| Progress::default()).collect(),
-            delivered: if usable {
-                Delivered {
-                    contacts: std::mem::take(&mut self.laid_out),
-                    count: 0,
-                    laid_out,
-                }
-            } else {
-                Delivered::default()
+            phase: match links.is_empty() {
+                true => Phase::Done,
+                false => Phase::Verify { turn: 0, next: 0 },
             },
-            phase: Phase::Held { turn: 0 },
-            skips: self.start_skips(),
+            skips: self.with_counts(skips, links.len()),
+            links,
+            resting,
+            delivered,
         }
     }
 
+    /// How many contacts a record had last, and how much the boxes of its bodies overlap.
+    fn likelihood(&self, record: u32) -> (usize, f64) {
+        let known = &self.pairs[record];
+        let [a, b] = known.bodies.map(|slot| self.state(slot).bounds);
+        let delta = self.threshold.get();
+        let side = |k: usize| (a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]) + delta).max(0.0);
+        (known.pairs.len(), side(0) * side(1) * side(2))
+    }
+
     /// Goes on with a pass until it is complete or `stop` says so; `stop` is asked every few microseconds and may look at a
-    /// clock, a counter or `found` contacts. Called again, it goes on exactly where it stopped: however often it is interrupted,
-    /// a pass delivers the same contacts in the same order. What it delivered is what the next pass tries first.
+    /// clock, a counter or the number of contacts found. Called again, it goes on exactly where it stopped: however often it is
+    /// interrupted, a pass delivers the same contacts in the same order. What it delivered is what the next pass tries first.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the scene has moved since the pass began, or was asked for an answer: it knows other contacts then.
+    /// [`Error::Parameter`] if the world has moved since the pass began, or was asked for an answer: it knows other contacts then.
     pub fn advance(
         &mut self,
         pass: &mut Pass,
@@ -204,158 +177,105 @@ impl Scene {
                 "a pass of the present frame that began after the last other answer",
             ));
         }
-        while !matches!(pass.phase, Phase::Done) && !stop(pass.delivered.count) {
+        while !matches!(pass.phase, Phase::Done) && !stop(pass.found()) {
             self.piece(pass)?;
         }
         Ok(pass.completeness())
     }
 
-    /// Ends a pass: its contacts are what the next frame starts from, complete or not. Cost: linear in them.
-    pub fn finish(&mut self, mut pass: Pass) -> Frame {
-        if !self.is_current(&pass) {
-            return pass.into_frame();
-        }
-        self.answers += 1;
-        let (completeness, skips) = (pass.completeness(), pass.skips);
-        let mut contacts = pass.delivered.contacts;
-        contacts.clear();
-        let done = completeness == Completeness::Proved;
-        for at in 0..self.links.len() {
-            let pairs = self.sorted(at, &mut pass.links[at]);
-            let link = &mut self.links[at];
-            contacts.extend(pairs.iter().map(|&pair| link.contact(pair)));
-            if pass.links[at].at_rest {
-                link.rested(self.frame);
-                continue;
-            }
-            link.pairs = pairs;
-            link.forget(done.then_some(self.frame));
-        }
+    /// The contacts that a pass has found so far: those of bodies at rest, then those of each pair of bodies in the order in
+    /// which they were found. Nothing twice; nothing at all if the world has changed since the pass began.
+    pub fn found_by<'w>(&'w self, pass: &'w Pass) -> impl Iterator<Item = Contact> + 'w {
+        let is_current = self.is_current(pass);
+        let resting = self
+            .pairs
+            .iter()
+            .filter(|(_, record)| record.status == Status::Current);
+        let resting = resting.map(|(_, record)| (record, &record.pairs[..], &[][..]));
+        let moving = pass.links.iter().filter(move |_| is_current).map(|link| {
+            let record = &self.pairs[link.record];
+            let held = record
+                .slack
+                .as_ref()
+                .map_or(&[][..], |slack| &slack.likely[..link.held]);
+            (record, held, &link.others[..])
+        });
+        let all = resting.filter(move |_| is_current).chain(moving);
+        all.flat_map(|(record, held, others)| {
+            held.iter().chain(others).map(|&pair| self.contact(record, pair))
+        })
+    }
+
+    /// The contacts that a pass has found so far as an answer, sorted.
+    #[must_use]
+    pub fn frame_of(&self, pass: &Pass) -> Frame {
+        let mut contacts: Vec<Contact> = self.found_by(pass).collect();
+        contacts.sort_unstable();
         Frame {
             contacts,
-            completeness,
-            skips,
+            completeness: pass.completeness(),
+            skips: pass.skips,
         }
+    }
+
+    /// Ends a pass: its contacts are what the next frame starts from, complete or not. Cost: linear in them.
+    pub fn finish(&mut self, mut pass: Pass) -> Frame {
+        let frame = self.frame_of(&pass);
+        if !self.is_current(&pass) {
+            return frame;
+        }
+        self.answers += 1;
+        for link in &mut pass.links {
+            let record = link.record;
+            if !link.is_verified {
+                // what was not verified stays likely
+                self.pairs[record].status = Status::Stale;
+                self.pairs[record].slack = None;
+                continue;
+            }
+            let bodies = self.pairs[record].bodies.map(|slot| self.id(slot));
+            let pairs = self.sorted(link);
+            let known = &mut self.pairs[record];
+            let before = std::mem::replace(&mut known.pairs, pairs);
+            (known.slack, known.verlet) = (None, None);
+            known.is_dirty = !link.is_done;
+            known.status = if link.is_done {
+                Status::Current
+            } else {
+                Status::Partial
+            };
+            if !(before.is_empty() && known.pairs.is_empty()) {
+                self.log.note(bodies, record, before);
+            }
+        }
+        let pairs = &self.pairs;
+        self.dirty.retain(|&record| pairs[record].is_dirty);
+        self.log.end();
+        frame
     }
 
     /// Whether nothing has changed since a pass began.
     fn is_current(&self, pass: &Pass) -> bool {
-        pass.frame == self.frame && pass.answers == self.answers && self.linked
+        pass.frame == self.frame
+            && pass.answers == self.answers
+            && self.pending.is_empty()
+            && self.unpaired.is_empty()
     }
 
-    /// All pairs that a pass has delivered of a link, sorted.
-    fn sorted(&self, at: usize, progress: &mut Progress) -> Vec<Pair> {
-        let link = &self.links[at];
-        if progress.at_rest {
-            return link.pairs[..progress.held].to_vec();
+    /// All contacts that a pass has delivered of a record, sorted.
+    fn sorted(&self, link: &mut Progress) -> Vec<Pair> {
+        let mut all = std::mem::take(&mut link.others);
+        if let Some(slack) = &self.pairs[link.record].slack {
+            all.extend_from_slice(&slack.likely[..link.held]);
         }
-        let mut others = std::mem::take(&mut progress.others);
-        if progress.verified.is_empty() {
-            let likely = self.likely(link).unwrap_or_default();
-            let near = (progress.held..likely.len()).filter(|&at| progress.is_delivered(at));
-            others.extend(near.map(|at| Pair {
-                a: likely[at].a,
-                b: likely[at].b,
-            }));
-        }
-        others.sort_unstable();
-        let others = merged(progress.verified.iter().copied(), others);
-        if !progress.verified.is_empty() {
-            return others;
-        }
-        if progress.held_all {
-            merged(link.held(self.drift(link)), others)
-        } else {
-            let likely = self.likely(link).unwrap_or_default();
-            let held = likely[..progress.held].iter().map(|contact| Pair {
-                a: contact.a,
-                b: contact.b,
-            });
-            let mut held: Vec<Pair> = held.collect();
-            held.sort_unstable();
-            merged(held.into_iter(), others)
-        }
+        all.sort_unstable();
+        all
     }
 
     fn piece(&mut self, pass: &mut Pass) -> Result<(), Error> {
         match &mut pass.phase {
-            Phase::Held { turn } => {
-                let Some(&at) = pass.order.get(*turn) else {
-                    pass.phase = Phase::Near { turn: 0, next: 0 };
-                    return Ok(());
-                };
-                let link = &self.links[at];
-                let progress = &mut pass.links[at];
-                progress.at_rest = self.is_at_rest(link);
-                if progress.at_rest {
-                    let end = link.pairs.len().min(progress.held + 16 * STRIDE);
-                    for &pair in &link.pairs[progress.held..end] {
-                        pass.delivered.push(link.contact(pair));
-                    }
-                    progress.held = end;
-                    if end == link.pairs.len() {
-                        pass.skips.unmoved_bodies += 1;
-                        *turn += 1;
-                    }
-                    return Ok(());
-                }
-                let likely = self.likely(link).unwrap_or_default();
-                let holding = if likely.is_empty() {
-                    0
-                } else {
-                    link.holding(self.drift(link))
-                };
-                let end = holding.min(progress.held + 16 * STRIDE);
-                let lie_there = *turn == 0 && end <= pass.delivered.laid_out;
-                if lie_there {
-                    pass.delivered.count = end;
-                } else {
-                    for &contact in &likely[progress.held..end] {
-                        pass.delivered.push(contact);
-                    }
-                }
-                pass.skips.held_by_motion += (end - progress.held) as u64;
-                progress.held = end;
-                if end == holding {
-                    progress.held_all = !likely.is_empty();
-                    *turn += 1;
-                }
-            }
-            Phase::Near { turn, next } => {
-                let Some(&at) = pass.order.get(*turn) else {
-                    pass.phase = Phase::Verify { turn: 0, next: 0 };
-                    return Ok(());
-                };
-                let link = &self.links[at];
-                let progress = &mut pass.links[at];
-                let likely = self.likely(link).unwrap_or_default();
-                let groups = link.witnesses().groups();
-                let first = (*next).max(progress.held / 8);
-                let end = groups.min(first + GROUPS);
-                if progress.at_rest || likely.is_empty() || first >= end {
-                    (*turn, *next) = (*turn + 1, 0);
-                    return Ok(());
-                }
-                let places = [link.a, link.b].map(|body| self.states[body].placement);
-                let known = progress.near.len();
-                link.witnesses().near(
-                    first..end,
-                    [&places[0], &places[1]],
-                    self.reach(link, &places),
-                    &mut progress.near,
-                );
-                let count = pass.delivered.count;
-                for (group, mask) in (first..end).zip(&mut progress.near[known..]) {
-                    let held = progress.held.saturating_sub(group * 8).min(8);
-                    *mask &= !((1_u16 << held) - 1) as u8;
-                    let eight = &likely[group * 8..likely.len().min(group * 8 + 8)];
-                    pass.delivered.push_some(eight, *mask);
-                }
-                pass.skips.held_by_motion += (pass.delivered.count - count) as u64;
-                *next = end;
-            }
             Phase::Verify { turn, next } => {
-                let Some(&at) = pass.order.get(*turn) else {
+                let Some(link) = pass.links.get_mut(*turn) else {
                     pass.phase = Phase::Search {
                         turn: 0,
                         stack: Vec::new(),
@@ -363,59 +283,50 @@ impl Scene {
                     };
                     return Ok(());
                 };
-                let link = &self.links[at];
-                let progress = &mut pass.links[at];
-                if progress.at_rest {
-                    (*turn, *next) = (*turn + 1, 0);
-                    return Ok(());
-                }
-                let likely = self.likely(link);
-                *next = (*next).max(progress.held);
-                let end = link.pairs.len().min(*next + STRIDE);
-                for i in *next..end {
-                    let pair = match likely {
-                        Some(_) if progress.is_delivered(i) => continue,
-                        Some(likely) => Pair {
-                            a: likely[i].a,
-                            b: likely[i].b,
-                        },
-                        None => link.pairs[i],
-                    };
-                    if self.decide(link, pair) {
-                        progress.others.push(pair);
-                        pass.delivered.push(link.contact(pair));
-                    }
-                }
+                let record = &self.pairs[link.record];
+                let likely = match &record.slack {
+                    Some(slack) if record.status == Status::Behind => &slack.likely,
+                    _ => &record.pairs,
+                };
+                let first = link.held.max(*next);
+                let end = likely.len().min(first + STRIDE);
+                let within = likely[first..end].iter().copied();
+                let known = link.others.len();
+                link.others
+                    .extend(within.filter(|&pair| self.decide(record.bodies, pair)));
+                pass.delivered += link.others.len() - known;
                 *next = end;
-                if end == link.pairs.len() {
+                if end == likely.len() {
+                    link.is_verified = true;
                     (*turn, *next) = (*turn + 1, 0);
                 }
             }
             Phase::Search { turn, stack, started } => {
-                let Some(&at) = pass.order.get(*turn) else {
+                let Some(link) = pass.links.get_mut(*turn) else {
                     pass.phase = Phase::Done;
                     return Ok(());
                 };
-                if pass.links[at].at_rest {
-                    *turn += 1;
-                    return Ok(());
-                }
+                let bodies = self.pairs[link.record].bodies;
                 if !*started {
-                    let verified = self.sorted(at, &mut pass.links[at]);
-                    pass.links[at].verified = verified;
-                    if self.boxes_apart(at) {
-                        pass.skips.boxes_apart += 1;
+                    if self.boxes_apart(bodies) {
+                        self.pairs.set_apart(link.record, true);
+                        link.is_done = true;
                         *turn += 1;
                         return Ok(());
                     }
-                    let (a, b) = (self.links[at].a, self.links[at].b);
-                    self.ready(a, b)?;
+                    self.pairs.set_apart(link.record, false);
+                    self.ensure_trees(bodies)?;
+                    let mut verified = link.others.clone();
+                    if let Some(slack) = &self.pairs[link.record].slack {
+                        verified.extend_from_slice(&slack.likely[..link.held]);
+                    }
+                    verified.sort_unstable();
+                    link.verified = verified;
                 }
-                let link = &self.links[at];
-                let (one, two, one_body) = (&self.states[link.a], &self.states[link.b], link.a == link.b);
-                let near = Near::default();
-                let keep = |i: u32, j: u32| keeps(self.kind, one, two, one_body, Pair { a: i, b: j }, &near);
-                if let Some(couple) = couple(self.kind, one, two, one_body, self.threshold, &keep) {
+                let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
+                let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
+                let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
+                if let Some(couple) = self.couple(bodies, self.threshold, &filter, &keep) {
                     if !*started {
                         couple.start(stack);
                     }
@@ -425,17 +336,17 @@ impl Scene {
                     } else {
                         couple.step(stack, VISITS, usize::MAX, &mut found);
                     }
-                    let Progress { verified, others, .. } = &mut pass.links[at];
-                    for pair in found {
-                        if verified.binary_search(&pair).is_err() {
-                            others.push(pair);
-                            pass.delivered.push(link.contact(pair));
-                        }
-                    }
+                    found.retain(|pair| link.verified.binary_search(pair).is_err());
+                    pass.delivered += found.len();
+                    link.others.append(&mut found);
                 }
-                near.count(&mut pass.skips);
+                filter.count(&mut pass.skips);
                 *started = !stack.is_empty();
-                *turn += usize::from(stack.is_empty());
+                if stack.is_empty() {
+                    link.is_done = true;
+                    link.verified = Vec::new();
+                    *turn += 1;
+                }
             }
             Phase::Done => {}
         }
@@ -458,18 +369,4 @@ fn step_in_parts(couple: &Couple<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pa
         stack.append(rest);
         found.append(pairs);
     }
-}
-
-/// Two sorted sequences as one.
-fn merged(one: impl Iterator<Item = Pair>, other: Vec<Pair>) -> Vec<Pair> {
-    let mut all = Vec::with_capacity(one.size_hint().0 + other.len());
-    let mut other = other.into_iter().peekable();
-    for pair in one {
-        while let Some(before) = other.next_if(|before| *before < pair) {
-            all.push(before);
-        }
-        all.push(pair);
-    }
-    all.extend(other);
-    all
 }

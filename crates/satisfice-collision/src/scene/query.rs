@@ -1,14 +1,18 @@
 //! Questions that need not know every contact: which bodies touch, the first contact, the closest ones.
 
-use super::link::{Near, couple, keeps};
-use super::{Completeness, Contact, Scene};
+use std::collections::BTreeSet;
+
+use super::filter::Filter;
+use super::pairs::Status;
+use super::{BodyId, Completeness, Contact, World};
 use crate::Error;
-use crate::FeatureKind;
 use crate::broad::{Pair, Watch, inflate, intersection};
 use crate::distance::{Proximity, Threshold};
 
-/// Visits of a tree between two looks at the watch: some 0.2 ms.
+/// Visits of a tree between two looks at the watch.
 const VISITS: usize = 4096;
+/// Contacts of an earlier frame that are tried before a search.
+const LIKELY: usize = 64;
 
 /// Told how many there are by now; says whether to stop.
 type Stop<'a> = &'a (dyn Fn(usize) -> bool + Sync);
@@ -21,23 +25,23 @@ fn completeness(watch: &Watch<'_>) -> Completeness {
     }
 }
 
-impl Scene {
-    /// Which bodies have a feature within the threshold of one of another body, or of their own: pairs of body numbers
-    /// `(a, b)`, `a <= b`, sorted. Stops at the first contact of each pair.
+impl World {
+    /// Which bodies have a feature within the threshold of one of another body, or of their own: pairs of bodies `(a, b)`,
+    /// `a <= b`, sorted. Stops at the first contact of each pair.
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
-    pub fn touching(&mut self) -> Result<Vec<(usize, usize)>, Error> {
+    /// As [`World::update`].
+    pub fn touching(&mut self) -> Result<Vec<(BodyId, BodyId)>, Error> {
         let witnesses = self.witnesses()?;
         let mut touching: Vec<_> = witnesses.iter().map(Contact::bodies).collect();
         touching.sort_unstable();
         Ok(touching)
     }
 
-    /// The same with a contact that shows it for each pair of bodies: the same one for the same scene.
+    /// The same with a contact that shows it for each pair of bodies: the same one for the same world.
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
+    /// As [`World::update`].
     pub fn witnesses(&mut self) -> Result<Vec<Contact>, Error> {
         Ok(self.witnesses_watched(&Watch::none())?.0)
     }
@@ -46,24 +50,25 @@ impl Scene {
     /// [`Completeness::Unknown`] where it did: of bodies that are not named, nothing is known.
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
+    /// As [`World::update`].
     pub fn witnesses_until(&mut self, stop: Stop<'_>) -> Result<(Vec<Contact>, Completeness), Error> {
         self.witnesses_watched(&Watch::until(stop))
     }
 
     fn witnesses_watched(&mut self, watch: &Watch<'_>) -> Result<(Vec<Contact>, Completeness), Error> {
-        self.settle();
+        let mut named = BTreeSet::new();
         let mut found: Vec<Contact> = Vec::new();
-        for at in 0..self.links.len() {
-            let (a, b) = (self.links[at].a, self.links[at].b);
+        for record in self.by_bodies() {
+            let [a, b] = self.pairs[record].bodies;
             let bodies = (a.min(b), a.max(b));
             if watch.ask(0) {
                 break;
             }
-            if found.iter().all(|contact| contact.bodies() != bodies)
-                && let Some(pair) = self.any(at, watch)?
+            if !named.contains(&bodies)
+                && let Some(pair) = self.any(record, watch)?
             {
-                found.push(self.links[at].contact(pair));
+                named.insert(bodies);
+                found.push(self.contact(&self.pairs[record], pair));
                 watch.ask(1);
             }
         }
@@ -71,10 +76,10 @@ impl Scene {
         Ok((found, completeness(watch)))
     }
 
-    /// Some contact, if there is any: the same one for the same scene.
+    /// Some contact, if there is any: the same one for the same world.
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
+    /// As [`World::update`].
     pub fn first(&mut self) -> Result<Option<Contact>, Error> {
         Ok(self.first_watched(&Watch::none())?.0)
     }
@@ -82,19 +87,21 @@ impl Scene {
     /// The same until `stop` says so; [`Completeness::Unknown`] where it did before there was one.
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
+    /// As [`World::update`].
     pub fn first_until(&mut self, stop: Stop<'_>) -> Result<(Option<Contact>, Completeness), Error> {
         self.first_watched(&Watch::until(stop))
     }
 
     fn first_watched(&mut self, watch: &Watch<'_>) -> Result<(Option<Contact>, Completeness), Error> {
-        self.settle();
-        for at in 0..self.links.len() {
+        for record in self.by_bodies() {
             if watch.ask(0) {
                 break;
             }
-            if let Some(pair) = self.any(at, watch)? {
-                return Ok((Some(self.links[at].contact(pair)), Completeness::Proved));
+            if let Some(pair) = self.any(record, watch)? {
+                return Ok((
+                    Some(self.contact(&self.pairs[record], pair)),
+                    Completeness::Proved,
+                ));
             }
         }
         Ok((None, completeness(watch)))
@@ -104,7 +111,7 @@ impl Scene {
     /// part of the threshold first and widens it only while too few are found.
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
+    /// As [`World::update`].
     pub fn closest(&mut self, k: usize) -> Result<Vec<(Contact, Proximity)>, Error> {
         Ok(self.closest_watched(k, &Watch::none())?.0)
     }
@@ -112,7 +119,7 @@ impl Scene {
     /// The same until `stop` says so: then the closest of what was found, and [`Completeness::Unknown`].
     ///
     /// # Errors
-    /// As [`Scene::contacts`].
+    /// As [`World::update`].
     pub fn closest_until(
         &mut self,
         k: usize,
@@ -126,7 +133,7 @@ impl Scene {
         k: usize,
         watch: &Watch<'_>,
     ) -> Result<(Vec<(Contact, Proximity)>, Completeness), Error> {
-        self.settle();
+        let records = self.by_bodies();
         let whole = self.threshold;
         let mut found = Vec::new();
         for part in [64.0, 16.0, 4.0, 1.0] {
@@ -137,44 +144,61 @@ impl Scene {
                 break;
             }
             // Closer ones are found again, unless there is no time for it.
-            for at in 0..self.links.len() {
-                let pairs = self.within(at, threshold, watch)?;
-                found.extend(pairs.into_iter().map(|pair| self.links[at].contact(pair)));
+            for &record in &records {
+                let pairs = self.within(record, threshold, watch)?;
+                found.extend(
+                    pairs
+                        .into_iter()
+                        .map(|pair| self.contact(&self.pairs[record], pair)),
+                );
             }
             found.sort_unstable();
             found.dedup();
         }
-        let mut closest: Vec<_> = found
-            .into_iter()
-            .map(|contact| (contact, self.proximity_of(contact)))
-            .collect();
+        let mut closest = Vec::with_capacity(found.len());
+        for contact in found {
+            closest.push((contact, self.proximity(contact)?));
+        }
         closest.sort_by(|(a, p), (b, q)| p.distance.total_cmp(&q.distance).then(a.cmp(b)));
         closest.truncate(k);
         Ok((closest, completeness(watch)))
     }
 
-    /// Some pair of a link, if the watch has time for it.
-    fn any(&mut self, at: usize, watch: &Watch<'_>) -> Result<Option<Pair>, Error> {
-        let link = &self.links[at];
-        if link.seen == Some(self.frame) {
-            return Ok(link.pairs.first().copied());
+    /// The records of the present frame in the order of their bodies.
+    fn by_bodies(&mut self) -> Vec<u32> {
+        self.settle();
+        let mut records: Vec<_> = self
+            .pairs
+            .iter()
+            .map(|(id, record)| (record.bodies, id))
+            .collect();
+        records.sort_unstable();
+        records.into_iter().map(|(_, id)| id).collect()
+    }
+
+    /// Some pair of a record, if the watch has time for it.
+    fn any(&mut self, record: u32, watch: &Watch<'_>) -> Result<Option<Pair>, Error> {
+        let known = &self.pairs[record];
+        let bodies = known.bodies;
+        if known.status == Status::Current {
+            return Ok(known.pairs.first().copied());
         }
         // a pair that touched last time is the likeliest to touch now
-        let likely = link
+        let likely = known
             .pairs
             .iter()
             .copied()
-            .take(64)
-            .find(|&pair| self.decide(link, pair));
-        if likely.is_some() || self.boxes_apart(at) {
+            .take(LIKELY)
+            .find(|&pair| self.decide(bodies, pair));
+        if likely.is_some() || self.boxes_apart(bodies) {
             return Ok(likely);
         }
-        let (a, b) = (link.a, link.b);
-        self.ready(a, b)?;
-        let (one, two, near) = (&self.states[a], &self.states[b], Near::default());
-        let keep = |i: u32, j: u32| keeps(self.kind, one, two, a == b, Pair { a: i, b: j }, &near);
+        self.ensure_trees(bodies)?;
+        let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
+        let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
+        let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let mut found = Vec::new();
-        if let Some(couple) = couple(self.kind, one, two, a == b, self.threshold, &keep) {
+        if let Some(couple) = self.couple(bodies, self.threshold, &filter, &keep) {
             let mut stack = Vec::new();
             couple.start(&mut stack);
             while !stack.is_empty() && found.is_empty() && !watch.ask(0) {
@@ -184,31 +208,25 @@ impl Scene {
         Ok(found.into_iter().min())
     }
 
-    /// All pairs of a link within a threshold of its own, or as many as the watch has time for; nothing remembered.
-    fn within(&mut self, at: usize, threshold: Threshold, watch: &Watch<'_>) -> Result<Vec<Pair>, Error> {
-        if watch.stopped() || self.boxes_apart(at) {
+    /// All pairs of a record within a threshold of its own, or as many as the watch has time for; nothing remembered.
+    fn within(&mut self, record: u32, threshold: Threshold, watch: &Watch<'_>) -> Result<Vec<Pair>, Error> {
+        let bodies = self.pairs[record].bodies;
+        let [a, b] = bodies;
+        let boxes = [a, b].map(|slot| self.state(slot).bounds);
+        let apart = a != b && intersection(&boxes[0], &inflate(&boxes[1], threshold.get())).is_none();
+        if watch.stopped() || apart {
             return Ok(Vec::new());
         }
-        let (a, b) = (self.links[at].a, self.links[at].b);
-        self.ready(a, b)?;
-        let (one, two, near) = (&self.states[a], &self.states[b], Near::default());
-        let keep = |i: u32, j: u32| keeps(self.kind, one, two, a == b, Pair { a: i, b: j }, &near);
-        Ok(match couple(self.kind, one, two, a == b, threshold, &keep) {
-            Some(couple) => self.join.all(&couple, watch).to_vec(),
+        self.ensure_trees(bodies)?;
+        let mut spaces = std::mem::take(&mut self.workspaces);
+        let (one, two) = (self.state(a), self.state(b));
+        let filter = Filter::new(self.kind, one, two, a == b);
+        let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
+        let pairs = match self.couple(bodies, threshold, &filter, &keep) {
+            Some(couple) => spaces[0].join.all(&couple, watch).to_vec(),
             None => Vec::new(),
-        })
-    }
-
-    /// Whether the inflated boxes of a link's bodies do not meet.
-    pub(super) fn boxes_apart(&self, at: usize) -> bool {
-        let link = &self.links[at];
-        let (a, b) = (&self.states[link.a].bounds, &self.states[link.b].bounds);
-        link.a != link.b && intersection(a, &inflate(b, self.threshold.get())).is_none()
-    }
-
-    /// The kinds of the two features of a pair.
-    #[must_use]
-    pub fn feature_kinds(&self) -> (FeatureKind, FeatureKind) {
-        self.kind.features()
+        };
+        self.workspaces = spaces;
+        Ok(pairs)
     }
 }

@@ -1,105 +1,29 @@
-//! Scenes over several frames against brute force over all pairs of features, by every method and query.
+//! Worlds over several frames against brute force over all pairs of features, by every method and query.
 #![allow(clippy::unwrap_used)]
 
-use super::{Body, Completeness, Contact, Frame, Scene};
+use super::{Body, BodyId, Completeness, Contact, Frame, World};
 use crate::broad::Method;
-use crate::distance::{
-    PairKind, Point, Threshold, edge_edge, triangle_triangle, vertex_triangle, vertex_vertex,
-};
-use crate::{Error, Mesh, Placement, generate, oracle};
+use crate::distance::{PairKind, Point, Threshold};
+use crate::{Error, Placement, generate, oracle};
 
-mod kept;
+mod referee;
+mod script;
 mod steady;
+mod structure;
 
-const KINDS: [PairKind; 4] = [
-    PairKind::VertexVertex,
-    PairKind::VertexTriangle,
-    PairKind::EdgeEdge,
-    PairKind::TriangleTriangle,
-];
-
-/// What the referee knows of a body: its posed mesh and whether it collides with itself, beyond which ring.
-struct Posed {
-    mesh: Mesh,
-    ring: Option<usize>,
-}
-
-fn features(mesh: &Mesh, kind: PairKind, second: bool) -> Vec<Vec<u32>> {
-    match (kind, second) {
-        (PairKind::VertexVertex, _) | (PairKind::VertexTriangle, false) => {
-            (0..mesh.vertices().len() as u32).map(|v| vec![v]).collect()
-        }
-        (PairKind::EdgeEdge, _) => mesh.edges().iter().map(|e| e.to_vec()).collect(),
-        _ => mesh.triangles().iter().map(|t| t.to_vec()).collect(),
-    }
-}
-
-fn within(kind: PairKind, a: &[Point], b: &[Point], threshold: Threshold) -> bool {
-    match kind {
-        PairKind::VertexVertex => vertex_vertex::within(&a[0], &b[0], threshold),
-        PairKind::VertexTriangle => vertex_triangle::within(&a[0], &[b[0], b[1], b[2]], threshold),
-        PairKind::EdgeEdge => edge_edge::within(&[a[0], a[1]], &[b[0], b[1]], threshold),
-        _ => triangle_triangle::within(&[a[0], a[1], a[2]], &[b[0], b[1], b[2]], threshold),
-    }
-}
-
-/// All contacts, by trying everything.
-fn referee(bodies: &[Posed], kind: PairKind, delta: f64) -> Vec<Contact> {
-    let threshold = Threshold::new(delta).unwrap();
-    let symmetric = kind != PairKind::VertexTriangle;
-    let mut contacts = Vec::new();
-    for (body_a, one) in bodies.iter().enumerate() {
-        for (body_b, two) in bodies.iter().enumerate() {
-            if (symmetric && body_a > body_b) || (body_a == body_b && one.ring.is_none()) {
-                continue;
-            }
-            let (of_a, of_b) = (features(&one.mesh, kind, false), features(&two.mesh, kind, true));
-            for (i, a) in of_a.iter().enumerate() {
-                let ring: Vec<u32> = match (body_a == body_b, one.ring) {
-                    (true, Some(width)) => a
-                        .iter()
-                        .flat_map(|&v| [one.mesh.adjacency().ring(v, width), vec![v]].concat())
-                        .collect(),
-                    _ => Vec::new(),
-                };
-                for (j, b) in of_b.iter().enumerate() {
-                    if (body_a == body_b && symmetric && j <= i) || b.iter().any(|v| ring.contains(v)) {
-                        continue;
-                    }
-                    let points =
-                        |mesh: &Mesh, of: &[u32]| of.iter().map(|&v| mesh.vertex(v)).collect::<Vec<_>>();
-                    if within(kind, &points(&one.mesh, a), &points(&two.mesh, b), threshold) {
-                        contacts.push(Contact {
-                            body_a,
-                            body_b,
-                            a: i as u32,
-                            b: j as u32,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    contacts.sort_unstable();
-    contacts
-}
-
-fn turn(angle: f64, by: [f64; 3]) -> Placement {
-    Placement::from_axis_angle([0.2, 1.0, 0.3], angle)
-        .unwrap()
-        .moved(by)
-        .unwrap()
-}
+use referee::{KINDS, Posed, contacts as referee, turn};
 
 /// Frames in which bodies rest, creep, jump, part, deform in one corner and deform everywhere. Calls `check` after each.
-fn play(scene: &mut Scene, mut check: impl FnMut(&mut Scene, &[Posed], usize)) {
+fn play(world: &mut World, mut check: impl FnMut(&mut World, &[Posed], usize)) {
     let torus = generate::torus(1.0, 0.35, 14, 8).unwrap();
     let ball = generate::icosphere(0.5, 1).unwrap();
     let sheet = generate::cloth(2.0, 2.0, 9, 9).unwrap();
-    let fixed = scene.add(Body::fixed(torus.clone()).at(turn(0.4, [0.0, 0.1, 0.0])));
-    let rigid = scene.add(Body::rigid(ball.clone()));
-    let soft = scene.add(Body::deforming(sheet.clone()).beyond_ring(1));
-    assert_eq!((fixed, rigid, soft), (0, 1, 2));
+    let fixed = world
+        .add(Body::fixed(torus.clone()).at(turn(0.4, [0.0, 0.1, 0.0])))
+        .unwrap();
+    let rigid = world.add(Body::rigid(ball.clone())).unwrap();
+    let soft = world.add(Body::deforming(sheet.clone()).beyond_ring(1)).unwrap();
+    assert_eq!([fixed, rigid, soft], [0, 1, 2].map(BodyId::nth));
     let mut posed = vec![
         Posed {
             mesh: turn(0.4, [0.0, 0.1, 0.0]).place(&torus).unwrap(),
@@ -126,7 +50,7 @@ fn play(scene: &mut Scene, mut check: impl FnMut(&mut Scene, &[Posed], usize)) {
             _ => None,
         };
         if let Some(place) = place {
-            scene.place(rigid, place).unwrap();
+            world.place(rigid, place).unwrap();
             posed[1].mesh = place.place(&ball).unwrap();
         }
         let deform = match frame {
@@ -150,10 +74,10 @@ fn play(scene: &mut Scene, mut check: impl FnMut(&mut Scene, &[Posed], usize)) {
             _ => false,
         };
         if deform {
-            scene.deform(soft, &points).unwrap();
+            world.deform(soft, &points).unwrap();
             posed[2].mesh = sheet.with_vertices(points.clone()).unwrap();
         }
-        check(scene, &posed, frame);
+        check(world, &posed, frame);
     }
 }
 
@@ -162,10 +86,10 @@ fn every_method_agrees_with_brute_force_in_every_frame() {
     for kind in KINDS {
         for method in [Method::Auto, Method::BruteForce, Method::Grid, Method::Tree] {
             let delta = 0.12;
-            let mut scene = Scene::new(kind, Threshold::new(delta).unwrap()).with_method(method);
+            let mut world = World::new(kind, Threshold::new(delta).unwrap()).with_method(method);
             let mut total = 0;
-            play(&mut scene, |scene, posed, frame| {
-                let answer = scene.contacts().unwrap();
+            play(&mut world, |world, posed, frame| {
+                let answer = world.frame().unwrap();
                 let expected = referee(posed, kind, delta);
                 assert!(
                     answer.contacts == expected,
@@ -184,22 +108,21 @@ fn every_method_agrees_with_brute_force_in_every_frame() {
 #[test]
 fn what_need_not_be_done_is_skipped_and_counted() {
     let kind = PairKind::VertexVertex;
-    let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap()).with_method(Method::Tree);
+    let mut world = World::new(kind, Threshold::new(0.12).unwrap()).with_method(Method::Tree);
     let mut all = Vec::new();
-    play(&mut scene, |scene, _, frame| {
-        let skips = scene.contacts().unwrap().skips;
+    play(&mut world, |world, _, frame| {
+        let skips = world.frame().unwrap().skips;
         assert_eq!(skips.rigid_self, 2);
+        // three bodies, of which one collides with itself, too; one of them is far away in frames 8 and 9
         if frame == 4 || frame == 9 {
-            assert_eq!(skips.unmoved_bodies, 4, "frame {frame}");
+            assert_eq!(skips.unmoved_bodies + skips.boxes_apart, 4, "frame {frame}");
         }
-        if frame == 8 {
-            assert_eq!(skips.boxes_apart, 2);
-        }
+        assert_eq!(skips.boxes_apart, if frame == 8 || frame == 9 { 2 } else { 0 });
         all.push(skips);
     });
     let sum = |of: fn(&super::Skips) -> u64| all.iter().map(of).sum::<u64>();
     assert!(
-        sum(|s| s.skin_lists) >= 2,
+        sum(|s| s.verlet_lists) >= 2,
         "a creeping body is answered from a list"
     );
     assert!(
@@ -219,8 +142,8 @@ fn what_need_not_be_done_is_skipped_and_counted() {
 #[test]
 fn queries_agree_with_the_complete_answer() {
     for kind in KINDS {
-        let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap());
-        play(&mut scene, |scene, posed, frame| {
+        let mut world = World::new(kind, Threshold::new(0.12).unwrap());
+        play(&mut world, |world, posed, frame| {
             let expected = referee(posed, kind, 0.12);
             let mut touching: Vec<_> = expected
                 .iter()
@@ -228,17 +151,17 @@ fn queries_agree_with_the_complete_answer() {
                 .collect();
             touching.sort_unstable();
             touching.dedup();
-            assert_eq!(scene.touching().unwrap(), touching, "{kind} frame {frame}");
-            let first = scene.first().unwrap();
+            assert_eq!(world.touching().unwrap(), touching, "{kind} frame {frame}");
+            let first = world.first().unwrap();
             assert_eq!(first.is_some(), !expected.is_empty());
             assert!(first.is_none_or(|contact| expected.contains(&contact)));
             let mut by_distance: Vec<_> = expected
                 .iter()
-                .map(|&contact| (scene.proximity(contact).unwrap().distance, contact))
+                .map(|&contact| (world.proximity(contact).unwrap().distance, contact))
                 .collect();
             by_distance.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             for k in [0, 1, 7, 10_000] {
-                let closest: Vec<_> = scene
+                let closest: Vec<_> = world
                     .closest(k)
                     .unwrap()
                     .into_iter()
@@ -251,7 +174,7 @@ fn queries_agree_with_the_complete_answer() {
                 );
             }
             if frame % 3 == 0 {
-                assert_eq!(scene.contacts().unwrap().contacts, expected);
+                assert_eq!(world.frame().unwrap().contacts, expected);
             }
         });
     }
@@ -260,21 +183,21 @@ fn queries_agree_with_the_complete_answer() {
 #[test]
 fn an_interrupted_pass_resumes_exactly() {
     for kind in KINDS {
-        let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap());
-        let mut twin = Scene::new(kind, Threshold::new(0.12).unwrap());
+        let mut world = World::new(kind, Threshold::new(0.12).unwrap());
+        let mut twin = World::new(kind, Threshold::new(0.12).unwrap());
         let mut orders = Vec::new();
         play(&mut twin, |twin, _, _| {
             let mut pass = twin.pass();
             twin.advance(&mut pass, &mut |_| false).unwrap();
-            orders.push(pass.contacts().to_vec());
+            orders.push(twin.found_by(&pass).collect::<Vec<_>>());
             twin.finish(pass);
         });
-        play(&mut scene, |scene, posed, frame| {
-            let mut pass = scene.pass();
+        play(&mut world, |world, posed, frame| {
+            let mut pass = world.pass();
             let mut interruptions = 0;
             loop {
                 let mut asked = 0;
-                let state = scene
+                let state = world
                     .advance(&mut pass, &mut |_| {
                         asked += 1;
                         asked > 2
@@ -285,9 +208,14 @@ fn an_interrupted_pass_resumes_exactly() {
                 }
                 interruptions += 1;
             }
-            assert!(interruptions > 0);
-            assert_eq!(pass.contacts(), orders[frame], "{kind} frame {frame}");
-            let answer = scene.finish(pass);
+            // in these frames nothing moves, or the only body that does leaves the others
+            let is_trivial = [4, 8, 9].contains(&frame);
+            assert_eq!(interruptions == 0, is_trivial, "{kind} frame {frame}");
+            assert!(
+                world.found_by(&pass).eq(orders[frame].iter().copied()),
+                "{kind} frame {frame}"
+            );
+            let answer = world.finish(pass);
             assert_eq!(
                 answer.contacts,
                 referee(posed, kind, 0.12),
@@ -304,12 +232,12 @@ fn a_stopped_question_keeps_what_it_found() {
     let ball = generate::icosphere(1.0, 3).unwrap();
     let threshold = Threshold::new(0.2).unwrap();
     let row = || {
-        let mut scene = Scene::new(PairKind::TriangleTriangle, threshold);
+        let mut world = World::new(PairKind::TriangleTriangle, threshold);
         for k in 0..4 {
             let at = turn(0.3, [2.1 * f64::from(k), 0.0, 0.0]);
-            scene.add(Body::rigid(at.place(&ball).unwrap()));
+            world.add(Body::rigid(at.place(&ball).unwrap())).unwrap();
         }
-        scene
+        world
     };
     let never = |_: usize| false;
     let (witnesses, state) = row().witnesses_until(&never).unwrap();
@@ -325,7 +253,7 @@ fn a_stopped_question_keeps_what_it_found() {
     assert!(first.is_some_and(|first| witnesses.contains(&first)));
     assert_eq!(row().first_until(&never).unwrap(), (first, Completeness::Proved));
 
-    let all = row().contacts().unwrap().contacts;
+    let all = row().frame().unwrap().contacts;
     let (closest, state) = row().closest_until(5, &never).unwrap();
     assert_eq!(
         (&closest, state),
@@ -337,11 +265,10 @@ fn a_stopped_question_keeps_what_it_found() {
         let (some, state) = row().closest_until(all.len(), &stop).unwrap();
         assert!(some.iter().all(|(contact, _)| all.contains(contact)));
         assert!(some.is_sorted_by(|(_, p), (_, q)| p.distance <= q.distance));
-        assert_eq!(
-            state == Completeness::Proved,
-            some.len() == all.len(),
-            "stopped at {at}"
-        );
+        // the last answer may have come after everything was found
+        let proved = state == Completeness::Proved;
+        assert!(!proved || some.len() == all.len(), "stopped at {at}");
+        assert!(at > 1 || some.len() < all.len(), "stopped at {at}");
     }
 }
 
@@ -352,16 +279,18 @@ fn a_stopped_enumeration_keeps_what_it_found() {
     let ball = generate::icosphere(1.0, 3).unwrap();
     for (delta, least) in [(0.9, 0), (2.5, 3)] {
         for method in [Method::BruteForce, Method::Grid, Method::Tree] {
-            for scene in [Scene::new, |kind, threshold| {
-                Scene::new(kind, threshold).parallel()
+            for world in [World::new, |kind, threshold| {
+                World::new(kind, threshold).parallel()
             }] {
-                let mut scene =
-                    scene(PairKind::VertexVertex, Threshold::new(delta).unwrap()).with_method(method);
-                scene.add(Body::deforming(ball.clone()));
-                scene.add(Body::deforming(turn(0.3, [0.1, 0.0, 0.0]).place(&ball).unwrap()));
+                let mut world =
+                    world(PairKind::VertexVertex, Threshold::new(delta).unwrap()).with_method(method);
+                world.add(Body::deforming(ball.clone())).unwrap();
+                world
+                    .add(Body::deforming(turn(0.3, [0.1, 0.0, 0.0]).place(&ball).unwrap()))
+                    .unwrap();
                 let asked = AtomicUsize::new(0);
-                let all = scene
-                    .contacts_until(&|_| {
+                let all = world
+                    .frame_until(&|_| {
                         asked.fetch_add(1, Ordering::Relaxed);
                         false
                     })
@@ -370,14 +299,14 @@ fn a_stopped_enumeration_keeps_what_it_found() {
                 assert!(asked.into_inner() >= least, "{method:?} {delta}");
                 for at in [0, 2] {
                     // as if the bodies had just moved
-                    let to = scene.states[0].vertices.iter().map(|&[x, y, z]| [x, y, -z]);
+                    let to = world.state(0).vertices().iter().map(|&[x, y, z]| [x, y, -z]);
                     let to: Vec<Point> = to.collect();
-                    scene.deform(0, &to).unwrap();
+                    world.deform(BodyId::nth(0), &to).unwrap();
                     let asked = AtomicUsize::new(0);
-                    let some = scene
-                        .contacts_until(&|_| asked.fetch_add(1, Ordering::Relaxed) >= at)
+                    let some = world
+                        .frame_until(&|_| asked.fetch_add(1, Ordering::Relaxed) >= at)
                         .unwrap();
-                    let whole = scene.contacts().unwrap();
+                    let whole = world.frame().unwrap();
                     assert_eq!(whole.completeness, Completeness::Proved);
                     let known = |contact: &Contact| whole.contacts.binary_search(contact).is_ok();
                     assert!(some.contacts.is_sorted() && some.contacts.iter().all(known));
@@ -390,7 +319,7 @@ fn a_stopped_enumeration_keeps_what_it_found() {
                             }
                         );
                     } else {
-                        assert!(some.contacts.len() < whole.contacts.len());
+                        assert!(at > 0 || some.contacts.len() < whole.contacts.len());
                     }
                 }
             }
@@ -401,18 +330,18 @@ fn a_stopped_enumeration_keeps_what_it_found() {
 #[test]
 fn contacts_that_hold_by_motion_are_right() {
     for kind in KINDS {
-        let mut scene = Scene::new(kind, Threshold::new(0.12).unwrap());
+        let mut world = World::new(kind, Threshold::new(0.12).unwrap());
         let mut held = 0;
-        play(&mut scene, |scene, posed, frame| {
-            let mut pass = scene.pass();
-            scene.advance(&mut pass, &mut |_| false).unwrap();
+        play(&mut world, |world, posed, frame| {
+            let mut pass = world.pass();
+            world.advance(&mut pass, &mut |_| false).unwrap();
             held += pass.skips().held_by_motion;
             assert_eq!(
-                scene.finish(pass).contacts,
+                world.finish(pass).contacts,
                 referee(posed, kind, 0.12),
                 "{kind} frame {frame}"
             );
-            scene.measure_contacts();
+            world.measure_contacts();
         });
         assert!(held > 100, "{kind}: {held}");
     }
@@ -432,23 +361,23 @@ fn a_budget_cut_finds_last_frames_contacts_first() {
         sheet.vertices().iter().map(place).collect()
     };
     let threshold = Threshold::new(0.04).unwrap();
-    let mut scene = Scene::new(PairKind::VertexVertex, threshold);
-    let body = scene.add(Body::deforming(sheet.clone()));
-    scene.deform(body, &fold(0.0)).unwrap();
-    let all = scene.contacts().unwrap().contacts.len();
-    scene.deform(body, &fold(0.05)).unwrap();
-    let mut pass = scene.pass();
+    let mut world = World::new(PairKind::VertexVertex, threshold);
+    let body = world.add(Body::deforming(sheet.clone())).unwrap();
+    world.deform(body, &fold(0.0)).unwrap();
+    let all = world.frame().unwrap().contacts.len();
+    world.deform(body, &fold(0.05)).unwrap();
+    let mut pass = world.pass();
     // as many questions as the verification of last frame's pairs takes
     let mut left = all / 128 + 1;
-    scene
+    world
         .advance(&mut pass, &mut |_| {
             left -= 1;
             left == 0
         })
         .unwrap();
-    let cut = pass.into_frame();
+    let cut = world.frame_of(&pass);
     assert_eq!(cut.completeness, Completeness::Unknown);
-    let now = scene.contacts().unwrap();
+    let now = world.frame().unwrap();
     assert!(
         all > 2000
             && cut
@@ -468,35 +397,41 @@ fn a_budget_cut_finds_last_frames_contacts_first() {
 #[test]
 fn a_pass_takes_over_what_has_not_moved() {
     let ball = generate::icosphere(0.5, 2).unwrap();
-    let mut scene = Scene::new(PairKind::TriangleTriangle, Threshold::new(0.05).unwrap());
+    let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.05).unwrap());
     let at = |x: f64| Placement::from_translation([x, 0.01, 0.02]).unwrap();
-    scene.add(Body::fixed(ball.clone()));
+    world.add(Body::fixed(ball.clone())).unwrap();
     for x in [0.9, 1.8] {
-        scene.add(Body::rigid(ball.clone()).at(at(x)));
+        world.add(Body::rigid(ball.clone()).at(at(x))).unwrap();
     }
-    let before = scene.contacts().unwrap().contacts;
-    let complete = |scene: &mut Scene| {
-        let mut pass = scene.pass();
-        scene.advance(&mut pass, &mut |_| false).unwrap();
-        scene.finish(pass)
+    let before = world.frame().unwrap().contacts;
+    let complete = |world: &mut World| {
+        let mut pass = world.pass();
+        world.advance(&mut pass, &mut |_| false).unwrap();
+        world.finish(pass)
     };
-    let same = complete(&mut scene);
-    assert_eq!((&same.contacts, same.skips.unmoved_bodies), (&before, 2 + 1));
+    let same = complete(&mut world);
+    assert_eq!(
+        (&same.contacts, same.skips.unmoved_bodies, same.skips.boxes_apart),
+        (&before, 2, 1)
+    );
     // The last ball moves: of three pairs of bodies only the first one rests.
-    scene.place(2, at(1.81)).unwrap();
-    let mut pass = scene.pass();
-    let of_first = before.iter().filter(|contact| contact.bodies() == (0, 1)).count();
-    scene.advance(&mut pass, &mut |found| found >= of_first).unwrap();
-    assert!(pass.contacts().len() >= of_first && of_first > 100);
-    let part = scene.finish(pass).contacts;
-    let answer = complete(&mut scene);
+    world.place(BodyId::nth(2), at(1.81)).unwrap();
+    let mut pass = world.pass();
+    let of_first = before
+        .iter()
+        .filter(|contact| contact.bodies() == (BodyId::nth(0), BodyId::nth(1)))
+        .count();
+    world.advance(&mut pass, &mut |found| found >= of_first).unwrap();
+    assert!(pass.found() >= of_first && of_first > 100);
+    let part = world.finish(pass).contacts;
+    let answer = complete(&mut world);
     assert_eq!(answer.completeness, Completeness::Proved);
-    let mut fresh = Scene::new(PairKind::TriangleTriangle, Threshold::new(0.05).unwrap());
-    fresh.add(Body::fixed(ball.clone()));
+    let mut fresh = World::new(PairKind::TriangleTriangle, Threshold::new(0.05).unwrap());
+    fresh.add(Body::fixed(ball.clone())).unwrap();
     for x in [0.9, 1.81] {
-        fresh.add(Body::rigid(ball.clone()).at(at(x)));
+        fresh.add(Body::rigid(ball.clone()).at(at(x))).unwrap();
     }
-    assert_eq!(answer.contacts, fresh.contacts().unwrap().contacts);
+    assert_eq!(answer.contacts, fresh.frame().unwrap().contacts);
     assert!(part.iter().all(|contact| answer.contacts.contains(contact)));
 }
 
@@ -505,20 +440,24 @@ fn filters_leave_out_bodies_and_vertices() {
     let ball = generate::icosphere(0.5, 1).unwrap();
     let threshold = Threshold::new(0.1).unwrap();
     let kind = PairKind::VertexVertex;
-    let mut scene = Scene::new(kind, threshold);
+    let mut world = World::new(kind, threshold);
     for (groups, mask) in [(1, 2), (2, 1), (2, 2), (4, 0)] {
-        scene.add(Body::rigid(ball.clone()).in_groups(groups, mask));
+        world
+            .add(Body::rigid(ball.clone()).in_groups(groups, mask))
+            .unwrap();
     }
-    let bodies = |scene: &mut Scene| scene.touching().unwrap();
-    assert_eq!(bodies(&mut scene), [(0, 1)]);
-    assert_eq!(scene.contacts().unwrap().skips.filtered_bodies, 5);
-    scene.exclude(1, 0).unwrap();
-    assert_eq!(bodies(&mut scene), []);
+    let bodies = |world: &mut World| world.touching().unwrap();
+    assert_eq!(bodies(&mut world), [(BodyId::nth(0), BodyId::nth(1))]);
+    assert_eq!(world.frame().unwrap().skips.filtered_bodies, 5);
+    world.exclude(BodyId::nth(1), BodyId::nth(0)).unwrap();
+    assert_eq!(bodies(&mut world), []);
 
-    let mut scene = Scene::new(kind, threshold);
-    scene.add(Body::rigid(ball.clone()).with_vertices(|v| v % 3 == 0));
-    scene.add(Body::fixed(ball.clone()));
-    let answer = scene.contacts().unwrap();
+    let mut world = World::new(kind, threshold);
+    world
+        .add(Body::rigid(ball.clone()).with_vertices(|v| v % 3 == 0))
+        .unwrap();
+    world.add(Body::fixed(ball.clone())).unwrap();
+    let answer = world.frame().unwrap();
     let all = referee(
         &[
             Posed {
@@ -541,44 +480,47 @@ fn filters_leave_out_bodies_and_vertices() {
 fn wrong_calls_are_refused_and_change_nothing() {
     let ball = generate::icosphere(0.5, 1).unwrap();
     let count = ball.vertices().len();
-    let mut scene = Scene::new(PairKind::EdgeEdge, Threshold::new(0.1).unwrap());
-    assert!(scene.contacts().unwrap().contacts.is_empty() && scene.is_empty());
-    let fixed = scene.add(Body::fixed(ball.clone()));
-    let rigid = scene.add(Body::rigid(ball.clone()));
-    let soft = scene.add(Body::deforming(ball.clone()));
-    let before = scene.contacts().unwrap().contacts;
+    let mut world = World::new(PairKind::EdgeEdge, Threshold::new(0.1).unwrap());
+    assert!(world.frame().unwrap().contacts.is_empty() && world.is_empty());
+    let fixed = world.add(Body::fixed(ball.clone())).unwrap();
+    let rigid = world.add(Body::rigid(ball.clone())).unwrap();
+    let soft = world.add(Body::deforming(ball.clone())).unwrap();
+    let before = world.frame().unwrap().contacts;
     let away = Placement::from_translation([9.0, 0.0, 0.0]).unwrap();
-    assert!(matches!(scene.place(fixed, away), Err(Error::Parameter { .. })));
-    assert!(matches!(scene.place(7, away), Err(Error::Parameter { .. })));
+    assert!(matches!(world.place(fixed, away), Err(Error::Parameter { .. })));
     assert!(matches!(
-        scene.deform(rigid, ball.vertices()),
+        world.place(BodyId::nth(7), away),
         Err(Error::Parameter { .. })
     ));
     assert!(matches!(
-        scene.deform(soft, &ball.vertices()[1..]),
+        world.deform(rigid, ball.vertices()),
+        Err(Error::Parameter { .. })
+    ));
+    assert!(matches!(
+        world.deform(soft, &ball.vertices()[1..]),
         Err(Error::Parameter { .. })
     ));
     let mut bad = ball.vertices().to_vec();
     bad[count - 1][2] = f64::NAN;
     assert!(matches!(
-        scene.deform(soft, &bad),
+        world.deform(soft, &bad),
         Err(Error::NonFiniteVertex { axis: 'z', .. })
     ));
     let far = Placement::from_translation([f64::MAX, 0.0, 0.0]).unwrap();
     let farther = Placement::from_translation([f64::MAX, f64::MAX, f64::MAX]).unwrap();
-    assert!(scene.place(rigid, far).is_ok() && scene.place(rigid, farther).is_ok());
-    scene.place(rigid, Placement::IDENTITY).unwrap();
-    assert_eq!(scene.contacts().unwrap().contacts, before);
+    assert!(world.place(rigid, far).is_ok() && world.place(rigid, farther).is_ok());
+    world.place(rigid, Placement::IDENTITY).unwrap();
+    assert_eq!(world.frame().unwrap().contacts, before);
     let none = Contact {
-        body_a: 0,
-        body_b: 1,
+        body_a: BodyId::nth(0),
+        body_b: BodyId::nth(1),
         a: 1 << 30,
         b: 0,
     };
-    assert!(matches!(scene.proximity(none), Err(Error::Parameter { .. })));
-    let stale = scene.pass();
-    scene.place(rigid, away).unwrap();
-    scene.touching().unwrap();
+    assert!(matches!(world.proximity(none), Err(Error::Parameter { .. })));
+    let stale = world.pass();
+    world.place(rigid, away).unwrap();
+    world.touching().unwrap();
     let mut stale = stale;
-    assert!(scene.advance(&mut stale, &mut |_| false).is_err());
+    assert!(world.advance(&mut stale, &mut |_| false).is_err());
 }

@@ -7,9 +7,11 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
     let ball = generate::icosphere(1.0, 3).unwrap();
     let delta = 0.1;
     for kind in [PairKind::VertexVertex, PairKind::TriangleTriangle] {
-        let mut scene = Scene::new(kind, Threshold::new(delta).unwrap());
-        scene.add(Body::fixed(ball.clone()).at(turn(0.3, [1.0, 0.0, 0.0])));
-        let rigid = scene.add(Body::rigid(ball.clone()));
+        let mut world = World::new(kind, Threshold::new(delta).unwrap());
+        world
+            .add(Body::fixed(ball.clone()).at(turn(0.3, [1.0, 0.0, 0.0])))
+            .unwrap();
+        let rigid = world.add(Body::rigid(ball.clone())).unwrap();
         // along, turning; from frame 9 on back; at rest in frames 5, 13 and 14
         let mut course = 0.0;
         let (mut steady, mut turning) = ([0, 0], [0, 0]);
@@ -20,20 +22,13 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
                 _ => course -= 1.0,
             }
             let place = turn(0.004 * course, [-0.9 + 0.01 * course, 0.006 * course, 0.2]);
-            scene.place(rigid, place).unwrap();
-            let mut pass = scene.pass();
-            let mut asked = 0;
-            scene
-                .advance(&mut pass, &mut |_| {
-                    asked += 1;
-                    asked > 1
-                })
-                .unwrap();
-            let at_once = pass.contacts().len();
-            scene.advance(&mut pass, &mut |_| false).unwrap();
-            let mut delivered = pass.contacts().to_vec();
+            world.place(rigid, place).unwrap();
+            let mut pass = world.pass();
+            let at_once = pass.found();
+            world.advance(&mut pass, &mut |_| false).unwrap();
+            let mut delivered = world.found_by(&pass).collect::<Vec<_>>();
             delivered.sort_unstable();
-            let answer = scene.finish(pass);
+            let answer = world.finish(pass);
             assert!(delivered == answer.contacts, "each once, {kind} frame {frame}");
             assert_eq!(answer.completeness, Completeness::Proved);
             let posed = [turn(0.3, [1.0, 0.0, 0.0]), place].map(|place| Posed {
@@ -44,7 +39,7 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
                 answer.contacts == referee(&posed, kind, delta),
                 "{kind} frame {frame}"
             );
-            scene.measure_contacts();
+            world.measure_contacts();
             let share = match frame {
                 // two frames after a start or a turn it is known to go on
                 3 | 4 | 8 | 11 | 12 | 17 | 18 => &mut steady,
@@ -71,7 +66,7 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
 fn a_pass_delivers_every_contact_once() {
     let ball = generate::icosphere(1.0, 3).unwrap();
     for bodies in [2, 4] {
-        let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(0.15).unwrap());
+        let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.15).unwrap());
         let place = |body: usize, t: f64| {
             let sway = 0.01 * (t + body as f64).sin();
             turn(
@@ -80,24 +75,24 @@ fn a_pass_delivers_every_contact_once() {
             )
         };
         for body in 0..bodies {
-            scene.add(Body::rigid(ball.clone()).at(place(body, 0.0)));
+            world.add(Body::rigid(ball.clone()).at(place(body, 0.0))).unwrap();
         }
         let mut total = 0;
         for frame in 0..14 {
             let t = f64::from(frame);
             // some of them rest now and then
             for body in (0..bodies).filter(|body| !(frame as usize + body).is_multiple_of(3)) {
-                scene.place(body, place(body, t)).unwrap();
+                world.place(BodyId::nth(body as u32), place(body, t)).unwrap();
             }
-            let mut pass = scene.pass();
-            scene.advance(&mut pass, &mut |_| false).unwrap();
-            let mut delivered = pass.contacts().to_vec();
+            let mut pass = world.pass();
+            world.advance(&mut pass, &mut |_| false).unwrap();
+            let mut delivered = world.found_by(&pass).collect::<Vec<_>>();
             delivered.sort_unstable();
-            let answer = scene.finish(pass);
+            let answer = world.finish(pass);
             assert!(delivered == answer.contacts, "{bodies} bodies, frame {frame}");
-            assert_eq!(scene.contacts().unwrap().contacts, answer.contacts);
+            assert_eq!(world.frame().unwrap().contacts, answer.contacts);
             if frame % 4 != 3 {
-                scene.measure_contacts();
+                world.measure_contacts();
             }
             total += delivered.len();
         }
@@ -109,23 +104,29 @@ fn a_pass_delivers_every_contact_once() {
 #[test]
 fn a_pass_after_an_exclusion_delivers_nothing_of_it() {
     let ball = generate::icosphere(1.0, 2).unwrap();
-    let mut scene = Scene::new(PairKind::VertexVertex, Threshold::new(0.4).unwrap());
+    let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.4).unwrap());
     for x in [0.0, 1.9, 3.8] {
-        scene.add(Body::rigid(ball.clone()).at(turn(0.0, [x, 0.0, 0.0])));
+        world
+            .add(Body::rigid(ball.clone()).at(turn(0.0, [x, 0.0, 0.0])))
+            .unwrap();
     }
-    assert!(!scene.contacts().unwrap().contacts.is_empty());
-    scene.measure_contacts();
-    scene.exclude(0, 1).unwrap();
-    scene.place(2, turn(0.0, [3.79, 0.0, 0.0])).unwrap();
-    let mut pass = scene.pass();
-    scene.advance(&mut pass, &mut |_| false).unwrap();
-    assert!(!pass.contacts().is_empty());
-    assert!(pass.contacts().iter().all(|contact| contact.body_a == 1));
+    assert!(!world.frame().unwrap().contacts.is_empty());
+    world.measure_contacts();
+    world.exclude(BodyId::nth(0), BodyId::nth(1)).unwrap();
+    world.place(BodyId::nth(2), turn(0.0, [3.79, 0.0, 0.0])).unwrap();
+    let mut pass = world.pass();
+    world.advance(&mut pass, &mut |_| false).unwrap();
+    assert!(pass.found() > 0);
+    assert!(
+        world
+            .found_by(&pass)
+            .all(|contact| contact.body_a == BodyId::nth(1))
+    );
     // an answer in between makes it useless, which is said
-    let mut pass = scene.pass();
-    scene.contacts().unwrap();
+    let mut pass = world.pass();
+    world.frame().unwrap();
     assert!(matches!(
-        scene.advance(&mut pass, &mut |_| false),
+        world.advance(&mut pass, &mut |_| false),
         Err(Error::Parameter { .. })
     ));
 }
@@ -141,18 +142,18 @@ fn frames_in_which_nothing_was_refitted_are_not_taken_for_frames_at_rest() {
         (PairKind::VertexTriangle, false),
         (PairKind::VertexTriangle, true),
     ] {
-        let mut scene = Scene::new(kind, Threshold::new(0.1).unwrap());
-        let cloth = scene.add(Body::deforming(sheet.clone()));
-        scene.add(Body::fixed(ball.clone()));
+        let mut world = World::new(kind, Threshold::new(0.1).unwrap());
+        let cloth = world.add(Body::deforming(sheet.clone())).unwrap();
+        world.add(Body::fixed(ball.clone())).unwrap();
         // its pairs with itself would have its tree refitted in every frame
-        scene.exclude(cloth, cloth).unwrap();
+        world.exclude(cloth, cloth).unwrap();
         let mut counts = Vec::new();
         for z in [1.0, 1.0, 50.0, 1.0, 0.99, 50.0, 0.99] {
-            scene.deform(cloth, &at(z)).unwrap();
+            world.deform(cloth, &at(z)).unwrap();
             let mut bad = at(3.0);
             bad[7][1] = f64::NAN;
-            assert!(!refuses || scene.deform(cloth, &bad).is_err());
-            counts.push(scene.contacts().unwrap().contacts.len());
+            assert!(!refuses || world.deform(cloth, &bad).is_err());
+            counts.push(world.frame().unwrap().contacts.len());
         }
         assert!(counts[0] > 50, "{counts:?}");
         assert_eq!(
@@ -164,23 +165,23 @@ fn frames_in_which_nothing_was_refitted_are_not_taken_for_frames_at_rest() {
     }
     // self-pairs of vertices by a grid, whose boxes a refused frame must leave alone
     let threshold = Threshold::new(0.3).unwrap();
-    let mut scene = Scene::new(PairKind::VertexVertex, threshold);
-    let cloth = scene.add(Body::deforming(sheet.clone()).beyond_ring(1));
-    scene.deform(cloth, &at(1.0)).unwrap();
-    scene.contacts().unwrap();
+    let mut world = World::new(PairKind::VertexVertex, threshold);
+    let cloth = world.add(Body::deforming(sheet.clone()).beyond_ring(1)).unwrap();
+    world.deform(cloth, &at(1.0)).unwrap();
+    world.frame().unwrap();
     let curled: Vec<Point> = sheet
         .vertices()
         .iter()
         .map(|&[x, y, _]| [0.5 * x, y, 0.4 * (5.0 * x).sin()])
         .collect();
-    scene.deform(cloth, &curled).unwrap();
+    world.deform(cloth, &curled).unwrap();
     let mut bad = at(3.0);
     bad[7][1] = f64::INFINITY;
-    assert!(scene.deform(cloth, &bad).is_err());
+    assert!(world.deform(cloth, &bad).is_err());
     let expected: Vec<[u32; 2]> = oracle::pairs_within(&curled, &sheet.adjacency().rings(1), threshold)
         .into_iter()
         .collect();
-    let found = scene.contacts().unwrap().contacts;
+    let found = world.frame().unwrap().contacts;
     let found: Vec<[u32; 2]> = found.iter().map(|contact| [contact.a, contact.b]).collect();
     assert!(!expected.is_empty() && found == expected);
 }

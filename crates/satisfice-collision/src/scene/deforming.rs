@@ -1,0 +1,158 @@
+//! The vertices of a deforming body, what of them moved, and its own trees.
+
+use crate::broad::{FeatureTree, Runs};
+use crate::distance::Point;
+use crate::{Adjacency, Error, FeatureKind, Mesh};
+
+/// How the vertices move to the next frame.
+#[derive(Default, Clone, Copy)]
+struct Step {
+    /// How many of them do.
+    count: usize,
+    /// The square of the longest way.
+    square: f64,
+}
+
+impl Step {
+    fn between(old: &[Point], new: &[Point]) -> Self {
+        let mut step = Self::default();
+        for (old, new) in old.iter().zip(new) {
+            let [x, y, z] = [new[0] - old[0], new[1] - old[1], new[2] - old[2]];
+            let square = x * x + y * y + z * z;
+            step.count += usize::from((x != 0.0) | (y != 0.0) | (z != 0.0));
+            step.square = if square > step.square { square } else { step.square };
+        }
+        step
+    }
+}
+
+/// A tree and the versions of the vertices it has seen.
+struct KeptTree {
+    tree: FeatureTree,
+    /// The version it was fitted to last, and the one before. What it marks as moved is what moved in between.
+    version: u64,
+    from: Option<u64>,
+}
+
+/// The part of a body that only deforming bodies have.
+pub(super) struct Deforming {
+    pub(super) vertices: Vec<Point>,
+    /// Counts the frames in which a vertex moved.
+    version: u64,
+    next: Vec<Point>,
+    step: Step,
+    /// The boxes of the vertices, block by block, if they have been measured.
+    blocks: Option<Runs>,
+    /// Those of the next vertices, and room to measure others that may be refused.
+    next_blocks: [Runs; 2],
+    trees: [Option<KeptTree>; 3],
+    /// Share of the vertices that moved last.
+    pub(super) share: f64,
+    /// How often in a row a refitted tree was so loose that it was built anew.
+    pub(super) rebuilds: u32,
+    /// Vertices within the excluded ring of each vertex.
+    pub(super) rings: Option<Adjacency>,
+    /// The excluded width; `None` for a body that does not collide with itself.
+    pub(super) ring: Option<usize>,
+}
+
+impl Deforming {
+    pub(super) fn new(mesh: &Mesh, ring: Option<usize>) -> Self {
+        let rings = ring
+            .filter(|&width| width > 0)
+            .map(|width| mesh.adjacency().rings(width));
+        Self {
+            vertices: mesh.vertices().to_vec(),
+            version: 0,
+            next: Vec::new(),
+            step: Step::default(),
+            blocks: None,
+            next_blocks: Default::default(),
+            trees: [const { None }; 3],
+            share: 1.0,
+            rebuilds: 0,
+            rings,
+            ring,
+        }
+    }
+
+    /// Whether the body collides with itself, if it is not excluded.
+    pub(super) fn collides_with_itself(&self) -> bool {
+        self.ring.is_some()
+    }
+
+    /// Remembers where the vertices go at the next frame.
+    pub(super) fn deform(&mut self, vertices: &[Point]) -> Result<(), Error> {
+        if vertices.len() != self.vertices.len() {
+            return Err(Error::parameter(
+                "number of vertices",
+                vertices.len(),
+                "a frame has as many vertices as its body",
+            ));
+        }
+        let [next, room] = &mut self.next_blocks;
+        room.measure(vertices, 1)?;
+        std::mem::swap(next, room);
+        self.next.clear();
+        self.next.extend_from_slice(vertices);
+        self.step = Step::between(&self.vertices, vertices);
+        Ok(())
+    }
+
+    /// Goes to the next frame. Returns how far no vertex moves, or `None` if none moves at all.
+    pub(super) fn advance(&mut self) -> Option<f64> {
+        let [next, _] = &mut self.next_blocks;
+        std::mem::swap(self.blocks.get_or_insert_default(), next);
+        if self.step.count == 0 {
+            return None;
+        }
+        std::mem::swap(&mut self.vertices, &mut self.next);
+        self.version += 1;
+        self.share = self.step.count as f64 / self.vertices.len() as f64;
+        // rounded up; squares that underflow belong to motions below 1e-153
+        Some(self.step.square.sqrt() * (1.0 + 1e-12) + 1e-153)
+    }
+
+    /// The boxes of the vertices, if they are known.
+    pub(super) fn blocks(&self) -> Option<&Runs> {
+        self.blocks.as_ref()
+    }
+
+    /// Builds the tree over features of this kind, or refits it if the vertices have moved since; builds it anew if they have
+    /// moved so far that it is loose.
+    pub(super) fn ensure_tree(&mut self, mesh: &Mesh, kind: FeatureKind) -> Result<(), Error> {
+        let slot = &mut self.trees[kind as usize];
+        if let Some(kept) = slot {
+            if kept.version == self.version {
+                return Ok(());
+            }
+            kept.tree.refit(&self.vertices)?;
+            (kept.from, kept.version) = (Some(kept.version), self.version);
+            if !kept.tree.is_loose() {
+                self.rebuilds = 0;
+                return Ok(());
+            }
+            self.rebuilds += 1;
+        }
+        *slot = Some(KeptTree {
+            tree: FeatureTree::new(&mesh.with_vertices(self.vertices.clone())?, kind),
+            version: self.version,
+            from: None,
+        });
+        Ok(())
+    }
+
+    /// The tree, if it fits the vertices.
+    pub(super) fn tree(&self, kind: FeatureKind) -> Option<&FeatureTree> {
+        let kept = self.trees[kind as usize].as_ref();
+        kept.filter(|kept| kept.version == self.version)
+            .map(|kept| &kept.tree)
+    }
+
+    /// Whether the marks of the tree say what moved in the last frame in which anything did.
+    pub(super) fn has_marks(&self, kind: FeatureKind) -> bool {
+        self.trees[kind as usize].as_ref().is_some_and(|kept| {
+            kept.version == self.version && kept.from.is_some_and(|from| from + 1 == self.version)
+        })
+    }
+}

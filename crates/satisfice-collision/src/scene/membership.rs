@@ -1,0 +1,348 @@
+//! Which bodies are in a world, and which of them may collide: adding, removing, groups and exclusions.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::body::{Body, BodyId};
+use super::narrow::Workspace;
+use super::pairs::{self, Status};
+use super::state::State;
+use super::{SharedMesh, World};
+use crate::{Error, FeatureKind};
+
+/// Counts that tell how many pairs of bodies are kept from colliding.
+#[derive(Default)]
+pub(super) struct Membership {
+    /// Excluded pairs of slots, both ways.
+    excluded: BTreeSet<(u32, u32)>,
+    /// How many bodies there are with these groups and this mask.
+    classes: HashMap<(u32, u32), u64>,
+    /// Pairs of bodies that are kept apart, and pairs that may collide, if they have been counted since the last change.
+    counted: Option<(u64, u64)>,
+    /// Fixed and rigid bodies.
+    pub(super) rigid: u64,
+    /// Deforming bodies that never collide with themselves.
+    aloof: u64,
+}
+
+impl Membership {
+    pub(super) fn is_excluded(&self, a: u32, b: u32) -> bool {
+        !self.excluded.is_empty() && self.excluded.contains(&(a, b))
+    }
+
+    fn exclude(&mut self, a: u32, b: u32, excluded: bool) -> bool {
+        self.counted = None;
+        match excluded {
+            true => self.excluded.insert((a, b)) | self.excluded.insert((b, a)),
+            false => self.excluded.remove(&(a, b)) | self.excluded.remove(&(b, a)),
+        }
+    }
+
+    /// A body with these groups and this mask comes or goes.
+    fn count(&mut self, state: &State, comes: bool) {
+        self.counted = None;
+        let class = self.classes.entry((state.groups, state.mask)).or_default();
+        if comes {
+            *class += 1;
+        } else {
+            *class -= 1;
+            if *class == 0 {
+                self.classes.remove(&(state.groups, state.mask));
+            }
+        }
+        let counter = match &state.deforming {
+            None => &mut self.rigid,
+            Some(own) if !own.collides_with_itself() => &mut self.aloof,
+            Some(_) => return,
+        };
+        *counter = if comes { *counter + 1 } else { *counter - 1 };
+    }
+
+    /// Forgets the exclusions of a slot.
+    fn forget(&mut self, slot: u32) {
+        let others: Vec<u32> = self
+            .excluded
+            .range((slot, 0)..=(slot, u32::MAX))
+            .map(|&(_, other)| other)
+            .collect();
+        for other in others {
+            self.exclude(slot, other, false);
+        }
+    }
+}
+
+fn match_groups([groups_a, mask_a]: [u32; 2], [groups_b, mask_b]: [u32; 2]) -> bool {
+    groups_a & mask_b != 0 && groups_b & mask_a != 0
+}
+
+impl World {
+    /// Adds a body, which counts from the next query on. Cost: constant; for a deforming body, linear in its size.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the mesh has no feature that the world's pairs are made of, such as a mesh without triangles where
+    /// pairs of triangles are looked for; [`Error::NonFiniteVertex`] if the placement takes a vertex out of the range of numbers.
+    /// The world is then as before.
+    pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
+        self.check_features(&body.mesh)?;
+        let vacant = self.free.last().copied();
+        let slot = vacant.map_or(self.states.len() as u32, |id| id.slot);
+        if slot == u32::MAX / 2 {
+            return Err(Error::parameter(
+                "number of bodies",
+                self.len(),
+                "less than 2^31 - 1",
+            ));
+        }
+        let state = State::new(body, vacant.map_or(0, |id| id.generation))?;
+        let id = BodyId {
+            slot,
+            generation: state.generation,
+        };
+        self.changing();
+        self.membership.count(&state, true);
+        let collides_with_itself = state
+            .deforming
+            .as_ref()
+            .is_some_and(|own| own.collides_with_itself());
+        if vacant.is_some() {
+            self.free.pop();
+            self.states[slot as usize] = Some(state);
+        } else {
+            self.states.push(Some(state));
+        }
+        if collides_with_itself {
+            self.add_record([slot; 2]);
+        }
+        self.unpaired.push(slot);
+        Ok(id)
+    }
+
+    /// Removes a body with its contacts, groups and exclusions. Cost: linear in its kept pairs.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body. The world is then as before.
+    pub fn remove(&mut self, body: BodyId) -> Result<(), Error> {
+        self.known(body)?;
+        self.changing();
+        let slot = body.slot;
+        let records: Vec<u32> = self.pairs.of(slot).collect();
+        records.into_iter().for_each(|record| self.remove_record(record));
+        self.tree.remove(slot);
+        self.membership.forget(slot);
+        self.forget_pending(slot);
+        if let Some(state) = self.states[slot as usize].take() {
+            self.membership.count(&state, false);
+            self.free.push(BodyId {
+                slot,
+                generation: state.generation.wrapping_add(1),
+            });
+        }
+        Ok(())
+    }
+
+    /// Gives a body another mesh, in its placement; a deforming body starts from the vertices of the new mesh, whatever was given
+    /// for the next frame. Its vertex predicate is forgotten, and its contacts are looked for anew.
+    ///
+    /// # Errors
+    /// As [`World::add`], and [`Error::Parameter`] if there is no such body. The world is then as before.
+    pub fn replace(&mut self, body: BodyId, mesh: impl Into<SharedMesh>) -> Result<(), Error> {
+        let (known, mesh) = (self.known(body)?, mesh.into());
+        self.check_features(&mesh)?;
+        let new = Body {
+            mesh,
+            motion: known.kind,
+            placement: known.placement,
+            groups: known.groups,
+            mask: known.mask,
+            ring: known.deforming.as_ref().and_then(|own| own.ring),
+            counted: None,
+        };
+        let state = State::new(new, known.generation)?;
+        let next = match self.next_placement(body.slot) {
+            Some(placement) => Some((placement, state.bounds_at(&placement)?)),
+            None => None,
+        };
+        self.changing();
+        self.workspaces.iter_mut().for_each(Workspace::forget);
+        self.forget_pending(body.slot);
+        let records: Vec<u32> = self.pairs.of(body.slot).collect();
+        for record in records {
+            let bodies = self.pairs[record].bodies;
+            self.remove_record(record);
+            self.add_record(bodies);
+        }
+        self.states[body.slot as usize] = Some(state);
+        self.unpaired.push(body.slot);
+        if let Some((placement, bounds)) = next {
+            self.move_to(body.slot, placement, bounds);
+        }
+        Ok(())
+    }
+
+    /// Sets the groups and the mask of a body, as [`Body::in_groups`] does.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body.
+    pub fn set_groups(&mut self, body: BodyId, groups: u32, mask: u32) -> Result<(), Error> {
+        let known = self.known(body)?;
+        if (known.groups, known.mask) == (groups, mask) {
+            return Ok(());
+        }
+        self.changing();
+        if let Some(mut state) = self.states[body.slot as usize].take() {
+            self.membership.count(&state, false);
+            (state.groups, state.mask) = (groups, mask);
+            self.membership.count(&state, true);
+            self.states[body.slot as usize] = Some(state);
+        }
+        let records: Vec<u32> = self.pairs.of(body.slot).collect();
+        for record in records {
+            let [a, b] = self.pairs[record].bodies;
+            if a != b && !self.collides(a, b) {
+                self.remove_record(record);
+            }
+        }
+        self.unpaired.push(body.slot);
+        Ok(())
+    }
+
+    /// Keeps two bodies from colliding, or one from colliding with itself.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body.
+    pub fn exclude(&mut self, a: BodyId, b: BodyId) -> Result<(), Error> {
+        self.known(a)?;
+        self.known(b)?;
+        if !self.membership.exclude(a.slot, b.slot, true) {
+            return Ok(());
+        }
+        self.changing();
+        let records = self.pairs.of(a.slot);
+        let both = |&record: &u32| {
+            let [one, two] = self.pairs[record].bodies;
+            [one, two] == [a.slot, b.slot] || [one, two] == [b.slot, a.slot]
+        };
+        let records: Vec<u32> = records.filter(both).collect();
+        for record in records {
+            self.remove_record(record);
+        }
+        Ok(())
+    }
+
+    /// Takes an exclusion back.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body.
+    pub fn include(&mut self, a: BodyId, b: BodyId) -> Result<(), Error> {
+        self.known(a)?;
+        self.known(b)?;
+        if !self.membership.exclude(a.slot, b.slot, false) {
+            return Ok(());
+        }
+        self.changing();
+        if a != b {
+            self.unpaired.push(a.slot);
+        } else if self
+            .state(a.slot)
+            .deforming
+            .as_ref()
+            .is_some_and(|own| own.collides_with_itself())
+        {
+            self.add_record([a.slot; 2]);
+        }
+        Ok(())
+    }
+
+    /// Whether two different bodies may collide.
+    pub(super) fn collides(&self, a: u32, b: u32) -> bool {
+        let (one, two) = (self.state(a), self.state(b));
+        match_groups([one.groups, one.mask], [two.groups, two.mask]) && !self.membership.is_excluded(a, b)
+    }
+
+    /// Adds the record of two bodies that may collide; kinds with two different features have one for each order.
+    pub(super) fn pair_up(&mut self, a: u32, b: u32) {
+        let (kind_a, kind_b) = self.feature_kinds();
+        self.add_record([a.min(b), a.max(b)]);
+        if kind_a != kind_b {
+            self.add_record([a.max(b), a.min(b)]);
+        }
+    }
+
+    fn add_record(&mut self, bodies: [u32; 2]) {
+        let record = self.pairs.add(bodies);
+        self.pairs[record].is_dirty = true;
+        self.dirty.push(record);
+    }
+
+    /// Takes a record out; its contacts end with the next update.
+    pub(super) fn remove_record(&mut self, record: u32) {
+        let bodies = self.pairs[record].bodies.map(|slot| self.id(slot));
+        let was_new = self.pairs[record].status == Status::New;
+        self.has_removed_dirty |= self.pairs[record].is_dirty;
+        let pairs = self.pairs.remove(record);
+        if !was_new {
+            self.log.note(bodies, pairs::NONE, pairs);
+        }
+    }
+
+    fn check_features(&self, mesh: &SharedMesh) -> Result<(), Error> {
+        let (kind_a, kind_b) = self.feature_kinds();
+        if kind_a.count(mesh.mesh()) > 0 || kind_b.count(mesh.mesh()) > 0 {
+            return Ok(());
+        }
+        let (value, allowed) = match kind_b {
+            FeatureKind::Vertex => ("no vertex", "a mesh needs a vertex"),
+            FeatureKind::Edge => (
+                "no edge",
+                "a mesh needs an edge where pairs of edges are looked for",
+            ),
+            FeatureKind::Triangle => (
+                "no triangle",
+                "a mesh needs a triangle, or an edge with edge-triangle pairs, or a vertex with vertex-triangle pairs",
+            ),
+        };
+        Err(Error::parameter("mesh", value, allowed))
+    }
+
+    /// Pairs of bodies, a body with itself included, that are kept from colliding, and pairs of two that may collide.
+    pub(super) fn counts(&mut self) -> (u64, u64) {
+        if let Some(counted) = self.membership.counted {
+            return counted;
+        }
+        let classes: Vec<_> = self
+            .membership
+            .classes
+            .iter()
+            .map(|(&(g, m), &n)| ([g, m], n))
+            .collect();
+        let mut wanted = 0;
+        for (at, (class, n)) in classes.iter().enumerate() {
+            let others = classes[at + 1..]
+                .iter()
+                .filter(|(other, _)| match_groups(*class, *other));
+            wanted += n * others.map(|(_, m)| m).sum::<u64>();
+            wanted += if match_groups(*class, *class) {
+                n * (n - 1) / 2
+            } else {
+                0
+            };
+        }
+        let (mut excluded, mut own) = (0, self.membership.aloof);
+        for &(a, b) in self.membership.excluded.iter().filter(|(a, b)| a <= b) {
+            let (one, two) = (self.state(a), self.state(b));
+            if a != b {
+                excluded += u64::from(match_groups([one.groups, one.mask], [two.groups, two.mask]));
+            } else if one
+                .deforming
+                .as_ref()
+                .is_some_and(|own| own.collides_with_itself())
+            {
+                own += 1;
+            }
+        }
+        let n = self.len() as u64;
+        wanted -= excluded;
+        let counted = (n * n.saturating_sub(1) / 2 - wanted + own, wanted);
+        self.membership.counted = Some(counted);
+        counted
+    }
+}

@@ -1,0 +1,293 @@
+//! The pairs of features of two bodies, or of one with itself, by a plan.
+
+use super::filter::Filter;
+use super::pairs::{Record, Status};
+use super::plan::{FRAMES, Plan, Situation};
+use super::state::State;
+use super::verlet::VerletList;
+use super::{Skips, World};
+use crate::Error;
+use crate::broad::{Couple, Moved, Pair, PointGrid, TreeJoin, Watch, inflate, intersection};
+use crate::distance::{self, PairKind, Point, Threshold};
+
+/// What a thread needs to find pairs. Keeps its memory.
+#[derive(Default)]
+pub(super) struct Workspace {
+    grid: PointGrid,
+    pub(super) join: TreeJoin,
+    posed: [Posed; 2],
+}
+
+impl Workspace {
+    pub(super) fn new(parallel: bool) -> Self {
+        let (grid, join) = match parallel {
+            true => (PointGrid::parallel(), TreeJoin::parallel()),
+            false => (PointGrid::new(), TreeJoin::new()),
+        };
+        Self {
+            grid,
+            join,
+            posed: Default::default(),
+        }
+    }
+
+    /// Forgets posed vertices, whose body has another mesh now.
+    pub(super) fn forget(&mut self) {
+        self.posed.iter_mut().for_each(|posed| posed.of = None);
+    }
+}
+
+/// The vertices of a body in the world.
+#[derive(Default)]
+struct Posed {
+    /// Of which body, and when it moved there.
+    of: Option<(u32, u32, u64)>,
+    points: Vec<Point>,
+}
+
+impl Posed {
+    fn points<'p>(&'p mut self, slot: u32, state: &'p State) -> &'p [Point] {
+        if state.is_unplaced() {
+            return state.vertices();
+        }
+        let of = Some((slot, state.generation, state.moved_at));
+        if self.of != of {
+            self.points.clear();
+            let posed = state.vertices().iter().map(|&p| state.placement.apply(p));
+            self.points.extend(posed);
+            self.of = of;
+        }
+        &self.points
+    }
+}
+
+/// What was found about a record.
+pub(super) struct Found {
+    pub(super) pairs: Vec<Pair>,
+    pub(super) verlet: Option<Box<VerletList>>,
+    pub(super) skips: Skips,
+    /// Whether a new grid found fewer pairs than there are vertices.
+    pub(super) sparse: Option<bool>,
+}
+
+impl World {
+    /// What the plan of a record depends on.
+    pub(super) fn situation(&self, record: &Record) -> Situation {
+        let [a, b] = record.bodies;
+        let (one, two) = (self.state(a), self.state(b));
+        let (kind_a, kind_b) = self.kind.features();
+        let motion = |slot: u32| self.motion_of(slot);
+        Situation {
+            method: self.method,
+            status: record.status,
+            is_one_body: a == b,
+            is_apart: self.boxes_apart(record.bodies),
+            is_points: self.kind == PairKind::VertexVertex,
+            list_holds: record.verlet.as_ref().is_some_and(|list| list.holds()),
+            counts: [one.count(kind_a), two.count(kind_b)],
+            trees_pay: [(one, kind_a), (two, kind_b)]
+                .iter()
+                .all(|(state, kind)| state.deforming.is_none() && state.mesh.pays_for_tree(*kind)),
+            moved_share: one.moved_share(self.frame).max(two.moved_share(self.frame)),
+            sparse: record.sparse,
+            motion: (motion(a) + motion(b)) / self.threshold.get(),
+        }
+    }
+
+    /// Whether the inflated boxes of two bodies do not meet.
+    pub(super) fn boxes_apart(&self, [a, b]: [u32; 2]) -> bool {
+        let (one, two) = (&self.state(a).bounds, &self.state(b).bounds);
+        a != b && intersection(one, &inflate(two, self.threshold.get())).is_none()
+    }
+
+    /// Finds the pairs of a record, or as many as the watch has time for. The trees that the plan wants are there.
+    pub(super) fn find(
+        &self,
+        record: &Record,
+        plan: Plan,
+        space: &mut Workspace,
+        watch: &Watch<'_>,
+    ) -> Result<Found, Error> {
+        let mut skips = Skips::default();
+        let found = |pairs| Found {
+            pairs,
+            verlet: None,
+            skips: Skips::default(),
+            sparse: None,
+        };
+        Ok(match plan {
+            Plan::Unchanged => found(record.pairs.clone()),
+            Plan::Apart => found(Vec::new()),
+            Plan::Refilter => {
+                skips.verlet_lists += 1;
+                let list = record.verlet.as_ref().map_or(&[][..], |list| &list.pairs);
+                let within = list
+                    .iter()
+                    .copied()
+                    .filter(|&pair| self.decide(record.bodies, pair));
+                let pairs = within.collect();
+                Found {
+                    skips,
+                    ..found(pairs)
+                }
+            }
+            Plan::Grid => self.by_grid(record, space, watch)?,
+            Plan::All => {
+                let pairs = self.by_tree(record, self.threshold, true, space, &mut skips, watch)?;
+                Found {
+                    skips,
+                    ..found(pairs)
+                }
+            }
+            Plan::Tree { wide } => {
+                let [a, b] = record.bodies;
+                let margin = FRAMES * (self.motion_of(a) + self.motion_of(b));
+                let wider = Threshold::new((self.threshold.get() + margin) * (1.0 + 1e-9));
+                match wider {
+                    Ok(wider) if wide => {
+                        let all = self.by_tree(record, wider, false, space, &mut skips, watch)?;
+                        let within = all
+                            .iter()
+                            .copied()
+                            .filter(|&pair| self.decide(record.bodies, pair));
+                        let pairs = within.collect();
+                        Found {
+                            pairs,
+                            verlet: Some(Box::new(VerletList::new(all, margin))),
+                            skips,
+                            sparse: None,
+                        }
+                    }
+                    _ => {
+                        let pairs = self.by_tree(record, self.threshold, false, space, &mut skips, watch)?;
+                        let vertices = self.state(a).vertices().len();
+                        Found {
+                            skips,
+                            sparse: (a == b && pairs.len() > vertices).then_some(false),
+                            ..found(pairs)
+                        }
+                    }
+                }
+            }
+        })
+    }
+
+    fn by_grid(&self, record: &Record, space: &mut Workspace, watch: &Watch<'_>) -> Result<Found, Error> {
+        let [a, b] = record.bodies;
+        let (one, two) = (self.state(a), self.state(b));
+        let Workspace { grid, posed, .. } = space;
+        let [posed_a, posed_b] = posed;
+        let points = posed_a.points(a, one);
+        let pairs = if a == b {
+            grid.within_until(points, one.blocks(), self.threshold, watch)?
+        } else {
+            grid.between_until(points, posed_b.points(b, two), self.threshold, watch)?
+        };
+        let filter = Filter::new(self.kind, one, two, a == b);
+        let mut kept = Vec::new();
+        let sparse = pairs.len() < one.vertices().len();
+        if filter.is_needed() {
+            kept.reserve(pairs.len());
+            kept.extend(pairs.iter().copied().filter(|&pair| filter.keeps(pair)));
+        } else {
+            kept.extend_from_slice(pairs);
+        }
+        let work = grid.work();
+        let mut skips = Skips {
+            outside_overlap: work.clipped,
+            without_partner: work.lonely,
+            ..Skips::default()
+        };
+        filter.count(&mut skips);
+        Ok(Found {
+            pairs: kept,
+            verlet: None,
+            skips,
+            sparse: Some(sparse),
+        })
+    }
+
+    /// By trees, or by deciding every pair. Of pairs that were known in the last frame, those of which nothing moved are kept.
+    fn by_tree(
+        &self,
+        record: &Record,
+        threshold: Threshold,
+        all: bool,
+        space: &mut Workspace,
+        skips: &mut Skips,
+        watch: &Watch<'_>,
+    ) -> Result<Vec<Pair>, Error> {
+        let [a, b] = record.bodies;
+        let (one, two) = (self.state(a), self.state(b));
+        let (kind_a, kind_b) = self.kind.features();
+        let filter = Filter::new(self.kind, one, two, a == b);
+        let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
+        let Some(mut couple) = self.couple(record.bodies, threshold, &filter, &keep) else {
+            return Ok(Vec::new());
+        };
+        if all {
+            let pairs = space.join.brute_force(&couple, watch).to_vec();
+            filter.count(skips);
+            return Ok(pairs);
+        }
+        let moved = [one.moved(self.frame, kind_a), two.moved(self.frame, kind_b)];
+        let is_partial =
+            record.status == Status::Behind && threshold == self.threshold && moved != [Moved::All; 2];
+        if is_partial {
+            couple.moved = moved;
+        }
+        let mut pairs = space.join.all(&couple, watch).to_vec();
+        if is_partial {
+            let rests = |state: &State, kind, moved, feature| match moved {
+                Moved::None => true,
+                Moved::All => false,
+                Moved::Marked => state.tree(kind).is_some_and(|tree| !tree.has_moved(feature)),
+            };
+            let found = pairs.len();
+            let known = record.pairs.iter().copied();
+            pairs.extend(
+                known.filter(|pair| {
+                    rests(one, kind_a, moved[0], pair.a) && rests(two, kind_b, moved[1], pair.b)
+                }),
+            );
+            skips.unmoved_pairs += (pairs.len() - found) as u64;
+            pairs.sort_unstable();
+        }
+        filter.count(skips);
+        Ok(pairs)
+    }
+
+    /// The question asked of two bodies whose trees are there.
+    pub(super) fn couple<'a>(
+        &'a self,
+        [a, b]: [u32; 2],
+        threshold: Threshold,
+        filter: &Filter<'_>,
+        keep: &'a (dyn Fn(u32, u32) -> bool + Sync),
+    ) -> Option<Couple<'a>> {
+        let (one, two) = (self.state(a), self.state(b));
+        let (kind_a, kind_b) = self.kind.features();
+        Some(Couple {
+            a: (one.tree(kind_a)?, &one.placement),
+            b: (two.tree(kind_b)?, &two.placement),
+            one_body: a == b && kind_a == kind_b,
+            threshold,
+            keep: filter.is_needed().then_some(keep),
+            moved: [Moved::All; 2],
+        })
+    }
+
+    /// Whether a pair of features of two bodies is within the threshold now: the exact decision.
+    pub(super) fn decide(&self, [a, b]: [u32; 2], pair: Pair) -> bool {
+        let (kind_a, kind_b) = self.kind.features();
+        let (a, b) = (self.state(a), self.state(b));
+        distance::within(&a.shape(kind_a, pair.a), &b.shape(kind_b, pair.b), self.threshold)
+    }
+
+    /// Sees to the trees of two deforming bodies.
+    pub(super) fn ensure_trees(&mut self, [a, b]: [u32; 2]) -> Result<(), Error> {
+        let (kind_a, kind_b) = self.kind.features();
+        self.state_mut(a).ensure_tree(kind_a)?;
+        self.state_mut(b).ensure_tree(kind_b)
+    }
+}

@@ -1,0 +1,89 @@
+//! The one place that chooses how the pairs of two bodies are found. No choice changes an answer.
+
+use super::pairs::Status;
+use crate::broad::Method;
+
+/// How the pairs of two bodies, or of one with itself, are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Plan {
+    /// Nothing moved: the known pairs are the answer.
+    Unchanged,
+    /// The boxes are apart: there are no pairs.
+    Apart,
+    /// A list with a margin still holds: its pairs are decided.
+    Refilter,
+    /// Trees are descended; if `wide`, with a margin, which makes a list for the next frames.
+    Tree { wide: bool },
+    /// A new grid; vertices only.
+    Grid,
+    /// Every pair is decided.
+    All,
+}
+
+/// What a plan depends on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Situation {
+    /// The method that the user asked for.
+    pub(super) method: Method,
+    pub(super) status: Status,
+    pub(super) is_one_body: bool,
+    /// Whether the boxes are apart.
+    pub(super) is_apart: bool,
+    /// Whether both features are vertices.
+    pub(super) is_points: bool,
+    /// Whether a list with a margin is there and holds.
+    pub(super) list_holds: bool,
+    /// How many features there are of both kinds.
+    pub(super) counts: [usize; 2],
+    /// Whether building both trees pays at once, or they are there.
+    pub(super) trees_pay: bool,
+    /// The greatest share of vertices of a body that moved one by one.
+    pub(super) moved_share: f64,
+    /// Frames in a row in which a new grid found fewer pairs than there are vertices.
+    pub(super) sparse: i16,
+    /// By how much the bodies come closer in a frame at most, in thresholds.
+    pub(super) motion: f64,
+}
+
+/// Up to so many pairs of features, deciding all of them is cheaper than any structure.
+const FEW: usize = 256;
+/// From this share of moved vertices on, a new grid beats a tree that has to be refitted for it.
+const MOST_MOVED: f64 = 0.3;
+/// After so many frames in which a new grid found few pairs, a tree is built.
+pub(super) const SPARSE: i16 = 3;
+/// A list is made with a margin of so many frames' motion...
+pub(super) const FRAMES: f64 = 6.0;
+/// ...if that is at most so many thresholds.
+const WIDEST: f64 = 0.5;
+
+impl Situation {
+    pub(super) fn plan(&self) -> Plan {
+        if self.status == Status::Current {
+            return Plan::Unchanged;
+        }
+        if self.is_apart {
+            return Plan::Apart;
+        }
+        if self.list_holds {
+            return Plan::Refilter;
+        }
+        let few = self.counts[0].saturating_mul(self.counts[1]) <= FEW;
+        let wide = self.status == Status::Behind && self.motion > 0.0 && FRAMES * self.motion <= WIDEST;
+        let tree = Plan::Tree { wide };
+        match self.method {
+            Method::BruteForce => Plan::All,
+            Method::Grid if self.is_points => Plan::Grid,
+            Method::Grid | Method::Tree => tree,
+            Method::Auto if few => Plan::All,
+            Method::Auto if self.is_points && self.prefers_grid() => Plan::Grid,
+            Method::Auto => tree,
+        }
+    }
+
+    fn prefers_grid(&self) -> bool {
+        if self.is_one_body && self.sparse >= SPARSE {
+            return false;
+        }
+        (self.status == Status::New && !self.trees_pay) || self.moved_share > MOST_MOVED
+    }
+}

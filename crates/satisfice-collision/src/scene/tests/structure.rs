@@ -1,0 +1,244 @@
+//! Handles, shared meshes, what is refused, and what a frame costs.
+
+use super::super::{Body, BodyId, SharedMesh, World};
+use super::referee::turn;
+use crate::distance::{PairKind, Threshold};
+use crate::{Error, Mesh, Placement, generate};
+
+fn at(x: f64, y: f64, z: f64) -> Placement {
+    Placement::from_translation([x, y, z]).unwrap()
+}
+
+fn world(kind: PairKind, delta: f64) -> World {
+    World::new(kind, Threshold::new(delta).unwrap())
+}
+
+fn is_refused<T>(result: Result<T, Error>, parameter: &str) {
+    match result {
+        Err(Error::Parameter { parameter: named, .. }) => assert_eq!(named, parameter),
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("not refused"),
+    }
+}
+
+#[test]
+fn handles_of_removed_bodies_are_refused_everywhere() {
+    let ball = SharedMesh::from(generate::icosphere(0.5, 1).unwrap());
+    let mut world = world(PairKind::TriangleTriangle, 0.05);
+    let ids: Vec<BodyId> = (0..3)
+        .map(|x| {
+            world
+                .add(Body::rigid(ball.clone()).at(at(0.9 * f64::from(x), 0.0, 0.0)))
+                .unwrap()
+        })
+        .collect();
+    let before = world.frame().unwrap().contacts;
+    assert!(before.len() > 20);
+    world.remove(ids[1]).unwrap();
+    assert_eq!(world.contacts().count(), 0, "what it touched is gone at once");
+    assert_eq!((world.len(), world.contains(ids[1])), (2, false));
+    // another body in its place
+    let new = world
+        .add(Body::rigid(ball.clone()).at(at(0.9, 0.0, 0.0)))
+        .unwrap();
+    assert_eq!((new.index(), new == ids[1]), (1, false));
+    assert_eq!(
+        (ids[1].to_string(), new.to_string()),
+        ("1".to_owned(), "1.1".to_owned())
+    );
+    let stale = ids[1];
+    is_refused(world.place(stale, at(0.0, 0.0, 0.0)), "body");
+    is_refused(world.deform(stale, &[]), "body");
+    is_refused(world.remove(stale), "body");
+    is_refused(world.replace(stale, ball.clone()), "body");
+    is_refused(world.exclude(ids[0], stale), "body");
+    is_refused(world.include(stale, ids[0]), "body");
+    is_refused(world.set_groups(stale, 1, 1), "body");
+    is_refused(world.mesh(stale).map(|_| ()), "body");
+    is_refused(world.bounds(stale), "body");
+    is_refused(world.placement(stale), "body");
+    is_refused(world.proximity(before[0]), "body");
+    let after = world.frame().unwrap().contacts;
+    assert_eq!(after.len(), before.len(), "the same bodies with another handle");
+    assert!(world.bodies().eq([ids[0], new, ids[2]]));
+}
+
+#[test]
+fn what_is_refused_changes_nothing() {
+    let ball = SharedMesh::from(generate::icosphere(0.5, 0).unwrap());
+    let mut world = world(PairKind::TriangleTriangle, 0.05);
+    let ids: Vec<BodyId> = (0..1000)
+        .map(|n| {
+            world.add(Body::rigid(ball.clone()).at(at(
+                0.85 * f64::from(n % 10),
+                0.85 * f64::from(n / 10),
+                0.0,
+            )))
+        })
+        .collect::<Result<_, _>>()
+        .unwrap();
+    let before = world.frame().unwrap().contacts;
+    assert!(before.len() > 500, "{}", before.len());
+    // a mesh without triangles, where triangles are asked for
+    let dust = Mesh::new(vec![[0.0; 3]; 4], vec![], vec![]).unwrap();
+    is_refused(world.add(Body::fixed(dust.clone())), "mesh");
+    is_refused(world.replace(ids[7], dust.clone()), "mesh");
+    // NaN and infinity
+    is_refused(Placement::from_translation([f64::NAN, 0.0, 0.0]), "translation");
+    let far = Placement::from_translation([f64::MAX; 3]).unwrap();
+    let large = generate::icosphere(1.0, 0).unwrap();
+    let large = large
+        .with_vertices(large.vertices().iter().map(|p| p.map(|c| 1e308 * c)).collect())
+        .unwrap();
+    assert!(matches!(
+        world.add(Body::fixed(large.clone()).at(far)),
+        Err(Error::NonFiniteVertex { .. })
+    ));
+    is_refused(Threshold::new(0.0), "threshold");
+    assert_eq!(world.update().unwrap().recomputed, 0);
+    assert_eq!(world.sorted_contacts(), before);
+    let mut bad = ball.mesh().vertices().to_vec();
+    bad[3][1] = f64::NAN;
+    is_refused(world.deform(ids[500], &bad), "body");
+    let soft = world
+        .add(Body::deforming(ball.clone()).without_self_collision())
+        .unwrap();
+    world.remove(ids[0]).unwrap();
+    let with_soft = world.frame().unwrap().contacts;
+    assert!(matches!(
+        world.deform(soft, &bad),
+        Err(Error::NonFiniteVertex { vertex: 3, .. })
+    ));
+    is_refused(world.deform(soft, &bad[1..]), "number of vertices");
+    assert_eq!(world.update().unwrap().recomputed, 0);
+    assert_eq!(world.sorted_contacts(), with_soft);
+    // a point, and a body of scale 0: all of its triangles are that point
+    let point = vec![[0.3, 0.3, 0.5]; bad.len()];
+    world.deform(soft, &point).unwrap();
+    world.update().unwrap();
+    assert!(
+        world
+            .contacts()
+            .all(|contact| world.proximity(contact).unwrap().distance < 0.05)
+    );
+    // vertices count with triangles, but edges do not
+    let mut mixed = World::new(PairKind::VertexTriangle, Threshold::new(0.1).unwrap());
+    let dust = mixed.add(Body::fixed(dust)).unwrap();
+    let sheet = mixed
+        .add(Body::rigid(generate::cloth(1.0, 1.0, 3, 3).unwrap()))
+        .unwrap();
+    mixed.update().unwrap();
+    assert!(mixed.contacts().count() >= 4);
+    assert!(
+        mixed
+            .contacts()
+            .all(|contact| (contact.body_a, contact.body_b) == (dust, sheet))
+    );
+}
+
+/// Ten thousand copies of a mesh cost one mesh and one tree; a frame costs what moved in it.
+#[test]
+fn a_frame_costs_what_moves_in_it() {
+    let ball = SharedMesh::from(generate::icosphere(0.45, 1).unwrap());
+    let mut world = world(PairKind::TriangleTriangle, 0.01);
+    let side = 16;
+    let place = |n: usize| {
+        at(
+            (n % side) as f64,
+            (n / side % side) as f64,
+            (n / side / side) as f64,
+        )
+    };
+    let ids: Vec<BodyId> = (0..side * side * side)
+        .map(|n| world.add(Body::rigid(ball.clone()).at(place(n))).unwrap())
+        .collect();
+    let first = world.update().unwrap();
+    assert_eq!(world.contacts().count(), 0);
+    let n = ids.len() as u64;
+    assert_eq!(first.skips.boxes_apart, n * (n - 1) / 2);
+    assert!(world.bytes() < 400 * ids.len(), "{}", world.bytes() / ids.len());
+    assert!(ids.iter().all(|&id| world.mesh(id).unwrap().is_same(&ball)));
+    for frame in 1..6 {
+        // one body moves towards a neighbour, one away
+        let (near, far) = (ids[1000 + frame], ids[2000 + frame]);
+        let moved = |n: usize, by: f64| place(n).then(&at(by, 0.0, 0.0)).unwrap();
+        world.place(near, moved(1000 + frame, 0.1)).unwrap();
+        world.place(far, moved(2000 + frame, 0.04)).unwrap();
+        let update = world.update().unwrap();
+        assert!((1..=60).contains(&update.recomputed), "{}", update.recomputed);
+        assert!(
+            world
+                .body_changes()
+                .all(|change| change.body_a == near || change.body_b == near)
+        );
+        assert_eq!(world.update().unwrap().recomputed, 0);
+        assert_eq!(world.changes().count(), 0);
+    }
+    assert!(world.kept_pairs() < 200);
+}
+
+#[test]
+fn all_bodies_in_one_place_and_in_one_line() {
+    let ball = SharedMesh::from(generate::icosphere(0.5, 0).unwrap());
+    for (step, expected) in [
+        ([0.0; 3], 60 * 59 / 2),
+        ([1.0, 0.0, 0.0], 59),
+        ([0.0, 50.0, 0.0], 0),
+    ] {
+        let mut world = world(PairKind::VertexVertex, 0.3);
+        for n in 0..60 {
+            let by = step.map(|c| c * f64::from(n));
+            world
+                .add(Body::rigid(ball.clone()).at(at(by[0], by[1], by[2])))
+                .unwrap();
+        }
+        assert_eq!(world.touching().unwrap().len(), expected);
+        assert_eq!(
+            world.update().unwrap().recomputed,
+            if expected == 0 { 0 } else { expected }
+        );
+        let touching = world.body_changes().count();
+        assert_eq!(touching, expected);
+    }
+}
+
+#[test]
+fn groups_and_exclusions_can_change() {
+    let ball = SharedMesh::from(generate::icosphere(0.5, 1).unwrap());
+    let mut world = world(PairKind::EdgeTriangle, 0.05);
+    let ids: Vec<BodyId> = (0..3)
+        .map(|n| {
+            world
+                .add(Body::rigid(ball.clone()).at(turn(f64::from(n), [0.3 * f64::from(n), 0.0, 0.0])))
+                .unwrap()
+        })
+        .collect();
+    let touching = |world: &mut World| world.touching().unwrap().len();
+    assert_eq!(touching(&mut world), 3);
+    world.exclude(ids[2], ids[0]).unwrap();
+    assert_eq!(touching(&mut world), 2);
+    assert_eq!(world.update().unwrap().skips.filtered_bodies, 1);
+    world.set_groups(ids[1], 2, 2).unwrap();
+    assert_eq!(
+        (
+            touching(&mut world),
+            world.update().unwrap().skips.filtered_bodies
+        ),
+        (0, 3)
+    );
+    world.include(ids[0], ids[2]).unwrap();
+    assert_eq!(touching(&mut world), 1);
+    world.set_groups(ids[1], 1, u32::MAX).unwrap();
+    assert_eq!(
+        (
+            touching(&mut world),
+            world.update().unwrap().skips.filtered_bodies
+        ),
+        (3, 0)
+    );
+    // an exclusion goes with its body
+    world.exclude(ids[0], ids[1]).unwrap();
+    world.remove(ids[1]).unwrap();
+    world.add(Body::rigid(ball)).unwrap();
+    assert_eq!(touching(&mut world), 3);
+}
