@@ -381,7 +381,7 @@ impl Script {
 fn scripts_agree_with_brute_force_over_all_pairs_of_bodies() {
     for (seed, kind) in (1..).zip(KINDS) {
         let total = Script::new(kind, seed, false).play(200);
-        assert!(total > 10_000, "{kind}: {total}");
+        assert!(total > 2_000, "{kind}: {total}");
     }
 }
 
@@ -390,7 +390,7 @@ fn scripts_agree_on_two_threads() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     for (seed, kind) in (11..).zip(KINDS) {
         let total = pool.install(|| Script::new(kind, seed, true).play(200));
-        assert!(total > 10_000, "{kind}: {total}");
+        assert!(total > 2_000, "{kind}: {total}");
     }
 }
 
@@ -429,6 +429,6 @@ fn changes_lead_from_frame_to_frame() {
                 .filter(|change| change.kind != ChangeKind::Ended);
             assert_eq!(touching, here.count());
         }
-        assert!(counts.iter().all(|&count| count > 100), "{kind}: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 50), "{kind}: {counts:?}");
     }
 }
