@@ -28,7 +28,7 @@ impl SatisficingProblem for GearTrain {
 
 fn main() -> Result<(), satisfice::Error> {
     let problem = GearTrain(Space::new([Axis::integer(12, 60); 4])?);
-    let mut search = Search::new(engine::build("portfolio")?).seed(1);
+    let mut search = Search::with(engine::build("portfolio")?).seed(1);
     let report = search.run(&problem, &Budget::evaluations(300_000))?;
 
     println!("{report}\nthe first hits:");

@@ -7,7 +7,9 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use satisfice::{Budget, Cancel, Hit, Located, Observer, Search, StopReason, TracePoint, engine, from_fn};
+use satisfice::{
+    Budget, Cancel, Hit, Located, Observer, RunOptions, Search, StopReason, TracePoint, engine, from_fn,
+};
 use satisfice::{SatisficingProblem, Space};
 
 /// A generous limit, so that nothing runs forever if the other limit fails.
@@ -38,8 +40,8 @@ impl Observer<Located<f64>> for Patience {
     }
 }
 
-fn search() -> Result<Search<f64, Located<f64>>, satisfice::Error> {
-    Ok(Search::new(engine::build("latest-hit-qpso")?).seed(1))
+fn search<P: SatisficingProblem<Scalar = f64>>() -> Result<Search<P>, satisfice::Error> {
+    Ok(Search::with(engine::build("latest-hit-qpso")?).seed(1))
 }
 
 fn main() -> Result<(), satisfice::Error> {
@@ -62,7 +64,11 @@ fn main() -> Result<(), satisfice::Error> {
         }
         ControlFlow::Continue(())
     };
-    let report = search()?.run_observed(&problem, &Budget::evaluations(FAR), &mut watch)?;
+    let report = search()?.run_with(
+        &problem,
+        &Budget::evaluations(FAR),
+        RunOptions::new().observer(&mut watch),
+    )?;
     println!("  {report}");
     let (solution, count) = north.expect("a sphere has a north");
     println!("  hit {count}: {:?}", solution.coordinates);
@@ -76,7 +82,11 @@ fn main() -> Result<(), satisfice::Error> {
         latest: 0,
         printed: 0,
     };
-    let report = search()?.run_observed(&problem, &Budget::evaluations(FAR), &mut patience)?;
+    let report = search()?.run_with(
+        &problem,
+        &Budget::evaluations(FAR),
+        RunOptions::new().observer(&mut patience),
+    )?;
     println!("  {report}");
     assert_eq!(
         report.stop_reason,
@@ -99,7 +109,11 @@ fn main() -> Result<(), satisfice::Error> {
             let _ = sender.send(count);
             ControlFlow::Continue(())
         };
-        search()?.run_observed(&problem, &Budget::until(&cancel).and_evaluations(FAR), &mut tell)
+        search()?.run_with(
+            &problem,
+            &Budget::until(&cancel).and_evaluations(FAR),
+            RunOptions::new().observer(&mut tell),
+        )
     })?;
     println!("  {report}");
     assert_eq!(report.stop_reason, StopReason::Cancelled);

@@ -150,7 +150,7 @@ fn exact(problem: &Teapots) -> Result<BTreeSet<Pair>, Box<dyn Error>> {
 }
 
 fn search(problem: &Teapots, name: &str, seed: u64, budget: &Budget) -> Result<Found, satisfice::Error> {
-    Search::new(engine::build(name)?).seed(seed).run(problem, budget)
+    Search::with(engine::build(name)?).seed(seed).run(problem, budget)
 }
 
 /// The reports of all seeds, made on all cores. Under budgets of evaluations the number of cores changes no report.

@@ -29,7 +29,7 @@ where
     P: SatisficingProblem<Scalar = f64>,
 {
     // Probes are not part of the comparison: no loop has them.
-    let mut search = Search::new(engine::build(name).unwrap()).seed(seed).probes(0.0);
+    let mut search = Search::with(engine::build(name).unwrap()).seed(seed).probes(0.0);
     let report = search
         .run(problem, &Budget::evaluations(evaluations as u64))
         .unwrap();
@@ -90,7 +90,7 @@ fn archive(c: &mut Criterion) {
         let fill = || {
             let mut archive = Archive::default();
             for (n, &pair) in pairs.iter().enumerate() {
-                archive.insert(pair, n as u64, 0.0);
+                archive.insert(pair, -1.0, n as u64, 0.0);
             }
             archive
         };

@@ -46,6 +46,6 @@ pub(crate) fn our_swarm(batch: &str) -> usize {
     let settings = [("particles", particles.as_str()), ("batch", batch)];
     let engine = engine::find("pso").unwrap().configure(settings).unwrap();
     let budget = Budget::evaluations(EVALUATIONS as u64);
-    let report = Search::new(engine).seed(7).run(&problem, &budget).unwrap();
+    let report = Search::with(engine).seed(7).run(&problem, &budget).unwrap();
     report.hit_count()
 }

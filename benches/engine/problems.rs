@@ -1,6 +1,7 @@
 //! Problems whose fitness costs next to nothing, or ten microseconds.
 #![expect(clippy::disallowed_methods, reason = "a bench asks the time")]
 
+use satisfice::{Encoding, Neighbourhood};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -32,11 +33,23 @@ impl SatisficingProblem for Lattice {
     fn threshold(&self) -> f64 {
         25.0
     }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, (u32, u32)>> {
+        Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<(u32, u32)>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, (u32, u32)> for Lattice {
     fn encode(&self, &(i, j): &(u32, u32), values: &mut [f64]) -> bool {
         values.copy_from_slice(&[f64::from(i), f64::from(j)]);
         true
     }
-    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
+}
+
+impl Neighbourhood<(u32, u32)> for Lattice {
+    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) {
         for (k, l) in [
             (i.wrapping_sub(1), j),
             (i + 1, j),
@@ -47,7 +60,6 @@ impl SatisficingProblem for Lattice {
                 visit((k, l));
             }
         }
-        true
     }
 }
 
@@ -99,10 +111,10 @@ impl SatisficingProblem for Slow {
     fn threshold(&self) -> f64 {
         self.lattice.threshold()
     }
-    fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
-        self.lattice.encode(solution, values)
+    fn encoding(&self) -> Option<&dyn Encoding<f64, (u32, u32)>> {
+        self.lattice.encoding()
     }
-    fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        self.lattice.neighbours(of, visit)
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<(u32, u32)>> {
+        self.lattice.neighbourhood()
     }
 }

@@ -222,7 +222,7 @@ fn overshoots(table: &mut Table, full: bool) {
                 .unwrap()
                 .configure([("batch", batch)])
                 .unwrap();
-            let mut search = Search::new(engine).seed(seed).threads(threads);
+            let mut search = Search::with(engine).seed(seed).threads(threads);
             let report = search.run(&problem, &Budget::time(time)).unwrap();
             report.overshoot.as_secs_f64() * 1e3
         };
@@ -241,7 +241,7 @@ fn on_threads(slow: &Slow, name: &str, settings: &[(&str, &str)], threads: usize
         .unwrap()
         .configure(settings.iter().copied())
         .unwrap();
-    let mut search = Search::new(engine).seed(7).threads(threads);
+    let mut search = Search::with(engine).seed(7).threads(threads);
     let budget = Budget::evaluations(4 * 4096);
     black_box(search.run(slow, &budget).unwrap().hit_count());
 }

@@ -100,7 +100,7 @@ impl MovingTeapots {
     ) -> Result<Vec<f64>, Box<dyn Error>> {
         let mut recalls = vec![0.0; self.frames.len()];
         for seed in 1..=seeds {
-            let mut search = Search::new(engine::find(engine)?.configure(settings.iter().copied())?)
+            let mut search = Search::with(engine::find(engine)?.configure(settings.iter().copied())?)
                 .seed(seed)
                 .warm_start(rule);
             for (frame, problem) in self.frames.iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::spec::RunSpec;
 #[derive(Serialize, Deserialize)]
 #[serde(bound(
     serialize = "T: Serialize",
-    deserialize = "T: serde::de::DeserializeOwned + satisfice::Identity"
+    deserialize = "T: Serialize + serde::de::DeserializeOwned + satisfice::Identity"
 ))]
 pub(crate) struct SavedRun<T> {
     #[serde(flatten)]

@@ -25,9 +25,6 @@ pub enum Error {
         /// The value asked for.
         now: String,
     },
-    /// Islands cannot be saved or resumed.
-    #[error("checkpoints of islands are not kept: leave out the islands or the checkpoint")]
-    Islands,
     /// The specification has 0 slices.
     #[error("0 slices leave nothing to run: give at least 1")]
     NoSlices,

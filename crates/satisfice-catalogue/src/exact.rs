@@ -157,7 +157,7 @@ impl<'a> Scene<'a> {
             .iter()
             .map(|pair| (self.numbers[0][pair.a as usize], self.numbers[1][pair.b as usize]));
         if self.one_body {
-            let ordered = pairs.map(|(i, j)| self.problem.canonical((i, j)));
+            let ordered = pairs.map(|pair| self.problem.canonical(&pair).unwrap_or(pair));
             ordered
                 .filter(|pair| self.problem.fitness(pair) < self.problem.threshold())
                 .collect()

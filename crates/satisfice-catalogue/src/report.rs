@@ -44,6 +44,9 @@ pub struct RunReport {
     pub unseen_confidence: Option<f64>,
     /// How it was estimated.
     pub unseen_method: Option<Method>,
+    /// The least fitness of all slices, and where; `null` if no fitness was finite or none is known but that of the hits.
+    #[serde(default)]
+    pub best: Option<Best>,
     /// Distinct hits against evaluations and time, over all slices.
     pub trace: Vec<TracePoint>,
     /// The slices one by one, where there are several.
@@ -73,6 +76,30 @@ pub struct Slice {
     pub new_hits: u64,
     /// Whether it proved that all hits are listed.
     pub completeness: Completeness,
+}
+
+/// The candidate with the least fitness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Best {
+    /// The candidate.
+    pub solution: Value,
+    /// F of it.
+    pub fitness: f64,
+    /// The evaluation that found it, counted from 1 over all slices.
+    pub evaluation: u64,
+}
+
+impl Best {
+    /// The best of some hits, for methods that see nothing else.
+    #[must_use]
+    pub fn of(hits: &[Solution]) -> Option<Self> {
+        let best = hits.iter().min_by(|a, b| a.fitness.total_cmp(&b.fitness))?;
+        Some(Self {
+            solution: best.solution.clone(),
+            fitness: best.fitness,
+            evaluation: best.evaluation,
+        })
+    }
 }
 
 /// One hit.
@@ -109,6 +136,7 @@ impl RunReport {
             unseen_interval: None,
             unseen_confidence: None,
             unseen_method: None,
+            best: None,
             trace: Vec::new(),
             slices: Vec::new(),
             solutions: Vec::new(),
@@ -147,6 +175,7 @@ impl RunReport {
                 elapsed_seconds: seconds,
                 hits,
             }],
+            best: Best::of(&solutions),
             solutions,
             ..Self::new(spec)
         }
@@ -192,6 +221,14 @@ impl RunReport {
                 seconds: seconds + found.seconds,
                 ..found
             }));
+        let next_best = next.best.map(|best| Best {
+            evaluation: evaluations + best.evaluation,
+            ..best
+        });
+        self.best = [self.best.take(), next_best]
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.fitness.total_cmp(&b.fitness));
         self.counts += next.counts;
         self.elapsed_seconds += next.elapsed_seconds;
         self.overshoot_seconds += next.overshoot_seconds;

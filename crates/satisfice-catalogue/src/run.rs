@@ -3,8 +3,8 @@
 use core::ops::ControlFlow;
 
 use satisfice::{
-    Archive, Checkpoint, Completeness, Counts, Identity, Islands, Observer, Real, Report, SatisficingProblem,
-    Saving, Search, StopReason, TracePoint,
+    Archive, Checkpoint, Completeness, Counts, Identity, Observer, Real, Report, RunOptions,
+    SatisficingProblem, Search, StopReason, TracePoint,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use crate::checkpoint::{self, Saved, SavedRun};
 use crate::control::{Progress, RunControl};
 use crate::error::Error;
-use crate::report::{RunReport, Slice, Solution};
+use crate::report::{Best, RunReport, Slice, Solution};
 use crate::spec::RunSpec;
 
 /// Runs `spec` on `problem`, whatever problem `spec` names; for problems with a name see
@@ -20,44 +20,17 @@ use crate::spec::RunSpec;
 ///
 /// # Errors
 /// [`Error::Search`] for an unknown engine, a parameter out of range or a budget that cannot be used; [`Error::NoSlices`];
-/// [`Error::Json`] for a solution that JSON cannot represent; [`Error::Checkpoint`], [`Error::Differs`] and
-/// [`Error::Islands`] for checkpoints.
+/// [`Error::Json`] for a solution that JSON cannot represent; [`Error::Checkpoint`] and [`Error::Differs`] for
+/// checkpoints.
 pub fn run<P>(problem: &P, spec: RunSpec, mut control: RunControl<'_>) -> Result<RunReport, Error>
 where
     P: SatisficingProblem,
     P::Solution: Serialize + DeserializeOwned,
 {
     let spec = spec.complete()?;
-    let reports = if spec.islands > 1 {
-        run_islands(problem, &spec, &mut control)?
-    } else {
-        run_slices(problem, &spec, &mut control)?
-    };
+    let reports = run_slices(problem, &spec, &mut control)?;
     // Threads do not change a report, and JSON does not keep them.
     write_up(problem, RunSpec { threads: 1, ..spec }, &reports)
-}
-
-fn run_islands<P: SatisficingProblem>(
-    problem: &P,
-    spec: &RunSpec,
-    control: &mut RunControl<'_>,
-) -> Result<Vec<Report<P::Solution>>, Error> {
-    if control.resume.is_some() || control.save.is_some() {
-        return Err(Error::Islands);
-    }
-    let mut islands = Islands::new(spec.islands, || spec.configured_engine())?
-        .seed(spec.seed)
-        .threads(spec.threads);
-    if let Some(share) = spec.probes {
-        islands = islands.probes(share);
-    }
-    let budget = spec.slice_budget(&control.cancel);
-    let mut reports = Vec::new();
-    while goes_on(&reports, spec) {
-        let mut watcher = Watcher::new(&reports, control);
-        reports.push(islands.run_observed(problem, &budget, &mut watcher)?);
-    }
-    Ok(reports)
 }
 
 fn run_slices<P>(
@@ -75,25 +48,26 @@ where
         checkpoint::check_same(&checkpoint::spec(bytes)?, spec)?;
         let saved: SavedRun<P::Solution> =
             serde_json::from_slice(bytes).map_err(|error| Error::Checkpoint(error.to_string()))?;
-        unfinished = saved.search.slice.is_some();
+        unfinished = saved.search.contents.unfinished.is_some();
         search = Search::resume(saved.search, engine)?;
         reports = saved.reports;
     } else {
-        search = Search::new(engine).seed(spec.seed);
+        search = Search::with(engine).seed(spec.seed).islands(spec.islands);
         if let Some(share) = spec.probes {
             search = search.probes(share);
         }
         (reports, unfinished) = (Vec::new(), false);
     }
     search = search.threads(spec.threads);
-    let budget = spec.slice_budget(&control.cancel);
+    let cancel = control.cancel.clone();
+    let budget = spec.slice_budget(&cancel);
     let mut failed = None;
     while unfinished || goes_on(&reports, spec) {
         let every = control.every;
         let mut save = control.save.take();
         let mut watcher = Watcher::new(&reports, control);
         let report = if save.is_none() && !unfinished {
-            search.run_observed(problem, &budget, &mut watcher)
+            search.run_with(problem, &budget, RunOptions::new().observer(&mut watcher))
         } else {
             let mut write = |state: &Checkpoint<P::Solution>| {
                 let Some(save) = save.as_deref_mut() else { return };
@@ -107,11 +81,13 @@ where
                     Err(error) => failed = Some(error),
                 }
             };
-            let saving = Saving::every(every, &mut write);
+            let options = RunOptions::new()
+                .observer(&mut watcher)
+                .checkpoints(every, &mut write);
             if unfinished {
-                search.run_resumed(problem, budget.cancel.as_ref(), &mut watcher, Some(saving))
+                search.run_resumed(problem, options.cancel(&cancel))
             } else {
-                search.run_saving(problem, &budget, &mut watcher, saving)
+                search.run_with(problem, &budget, options)
             }
         };
         control.save = save;
@@ -170,6 +146,7 @@ fn unite<T: Identity + Clone>(reports: &[Report<T>]) -> (Archive<T>, Vec<TracePo
         for hit in report.hits() {
             all.insert(
                 hit.solution.clone(),
+                hit.fitness,
                 evaluations + hit.evaluation,
                 seconds + hit.seconds,
             );
@@ -194,6 +171,28 @@ fn unite<T: Identity + Clone>(reports: &[Report<T>]) -> (Archive<T>, Vec<TracePo
     (all, trace, slices)
 }
 
+/// The least fitness of all slices, at its evaluation counted from the start of the first slice.
+fn best<T: Serialize>(reports: &[Report<T>]) -> Result<Option<Best>, Error> {
+    let (mut evaluations, mut least) = (0, None);
+    for report in reports {
+        if let Some(best) = report.best()
+            && least.is_none_or(|(least, _): (&satisfice::Best<T>, u64)| best.fitness < least.fitness)
+        {
+            least = Some((best, evaluations + best.evaluation));
+        }
+        evaluations += report.counts.evaluations;
+    }
+    least
+        .map(|(best, evaluation)| {
+            Ok(Best {
+                solution: serde_json::to_value(&best.solution)?,
+                fitness: best.fitness,
+                evaluation,
+            })
+        })
+        .transpose()
+}
+
 fn sum(slices: &[Slice]) -> Counts {
     slices.iter().fold(Counts::default(), |mut sum, slice| {
         sum += slice.counts;
@@ -212,7 +211,7 @@ where
         .map(|hit| {
             Ok(Solution {
                 solution: serde_json::to_value(hit.solution)?,
-                fitness: problem.fitness(hit.solution).f64(),
+                fitness: hit.fitness,
                 evaluation: hit.evaluation,
                 seconds: hit.seconds,
             })
@@ -226,6 +225,7 @@ where
         elapsed_seconds: slices.iter().map(|slice| slice.elapsed_seconds).sum(),
         overshoot_seconds: slices.iter().map(|slice| slice.overshoot_seconds).sum(),
         hits: all.len() as u64,
+        best: best(reports)?,
         trace,
         solutions,
         ..RunReport::new(spec)

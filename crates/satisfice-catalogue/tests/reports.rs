@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use satisfice::Encoding;
 use satisfice::catalogue::{Catalogued, Parameter, Params};
 use satisfice::{Axis, Cancel, Error, SatisficingProblem, Space};
 use satisfice_catalogue::{ProblemSpec, RunControl, RunReport, RunSpec, catalogue};
@@ -27,6 +28,12 @@ impl SatisficingProblem for Corner {
     fn threshold(&self) -> f64 {
         f64::from(self.sum)
     }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, [u32; 2]>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, [u32; 2]> for Corner {
     fn encode(&self, solution: &[u32; 2], values: &mut [f64]) -> bool {
         values.copy_from_slice(&solution.map(f64::from));
         true

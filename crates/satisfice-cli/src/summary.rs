@@ -73,6 +73,18 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&Solution) -> Strin
             ),
         );
     }
+    if let (true, Some(best)) = (report.solutions.is_empty(), &report.best) {
+        let threshold = report.threshold.map_or_else(|| "infinite".to_owned(), digits);
+        line(
+            "best",
+            format!(
+                "F = {} at evaluation {}, where a hit is below {threshold}: {}",
+                digits(best.fitness),
+                best.evaluation,
+                best.solution
+            ),
+        );
+    }
     for (index, found) in report.solutions.iter().take(SHOWN).enumerate() {
         line(
             &format!("hit {}", index + 1),

@@ -20,11 +20,23 @@ const LONG: &str = "run falsification --engine latest-hit-qpso --evaluations 100
 #[cfg(unix)]
 #[test]
 fn a_run_that_ctrl_c_has_interrupted_goes_on_as_if_nothing_had_been() {
+    interrupted_and_resumed("");
+}
+
+#[cfg(unix)]
+#[test]
+fn so_do_islands() {
+    interrupted_and_resumed(" --islands 3");
+}
+
+/// Interrupts a long run with `more` options, resumes it, and compares the report with that of a whole run.
+#[cfg(unix)]
+fn interrupted_and_resumed(more: &str) {
     let folder = tempfile::tempdir().unwrap();
     let checkpoint = folder.path().join("run.json");
     let mut child = command(
         folder.path(),
-        &format!("{LONG} --checkpoint run.json --json part.json"),
+        &format!("{LONG}{more} --checkpoint run.json --json part.json"),
     )
     .stdout(Stdio::null())
     .spawn()
@@ -50,7 +62,7 @@ fn a_run_that_ctrl_c_has_interrupted_goes_on_as_if_nothing_had_been() {
     assert_eq!((done.code, done.stderr.as_str()), (0, ""));
     let whole = satisfice_in(
         folder.path(),
-        &format!("{LONG} --json whole.json --checkpoint end.json"),
+        &format!("{LONG}{more} --json whole.json --checkpoint end.json"),
     );
     assert_eq!(whole.code, 0);
     let [rest, whole] = ["rest.json", "whole.json"].map(|name| read(&folder.path().join(name)));

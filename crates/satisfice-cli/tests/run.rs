@@ -66,7 +66,6 @@ fn mistakes_are_told_in_one_line() {
         "run teapots --threads many",
         "run teapots --threads 100000",
         "run teapots --islands 0",
-        "run teapots --islands 2 --checkpoint saved.json",
         "run teapots --plot hits.pdf",
         "run teapots --json no/such/folder/report.json",
         "run teapots --json src",
@@ -170,6 +169,9 @@ fn a_report_has_the_keys_of_the_contract() {
     for key in ["solution", "fitness", "evaluation", "seconds"] {
         assert!(report["solutions"][0].get(key).is_some(), "{key}");
     }
+    let fitness = |hit: &Value| hit["fitness"].as_f64().unwrap();
+    let least = report["solutions"].as_array().unwrap().iter().map(fitness);
+    assert!(fitness(&report["best"]) <= least.fold(f64::INFINITY, f64::min));
     for key in ["evaluations", "elapsed_seconds", "hits"] {
         assert!(report["trace"][0].get(key).is_some(), "{key}");
     }

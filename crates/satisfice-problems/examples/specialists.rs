@@ -97,8 +97,8 @@ where
 {
     let problem: P = make(settings)?;
     row(&problem, settings, "branch and bound, proved", || {
-        let report =
-            Search::new(engine::build("branch-and-bound")?).run(&problem, &Budget::evaluations(UNLIMITED))?;
+        let report = Search::with(engine::build("branch-and-bound")?)
+            .run(&problem, &Budget::evaluations(UNLIMITED))?;
         if report.completeness != Completeness::Proved {
             return Err("not proved".into());
         }

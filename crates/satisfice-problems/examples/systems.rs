@@ -51,7 +51,7 @@ fn row<P: Catalogued<Scalar = f64>>(
     let roots = problem.reference_hits().unwrap_or(0);
     let (mut found, mut complete) = (0, 0);
     for seed in 0..runs {
-        let mut search = Search::new(engine::build(engine)?).seed(seed);
+        let mut search = Search::with(engine::build(engine)?).seed(seed);
         let hits = search
             .run(problem, &Budget::evaluations(evaluations))?
             .hit_count() as u64;

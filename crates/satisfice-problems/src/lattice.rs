@@ -2,6 +2,7 @@
 
 use satisfice::catalogue::Description;
 use satisfice::{Axis, Error, SatisficingProblem, Space};
+use satisfice::{Encoding, Neighbourhood};
 
 /// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices. Or the random keys of a
 /// permutation of `0..D`: reals whose ranks are the solution.
@@ -104,6 +105,18 @@ impl Lattice {
     }
 }
 
+impl Encoding<f64, Vec<u32>> for Lattice {
+    fn encode(&self, cells: &Vec<u32>, values: &mut [f64]) -> bool {
+        Self::encode(self, cells, values)
+    }
+}
+
+impl Neighbourhood<Vec<u32>> for Lattice {
+    fn neighbours(&self, of: &Vec<u32>, visit: &mut dyn FnMut(Vec<u32>)) {
+        self.changes(of, visit);
+    }
+}
+
 /// The methods of `SatisficingProblem` that are alike on every lattice, for a type with the fields `lattice`, `threshold`
 /// and `description`.
 macro_rules! lattice_methods {
@@ -126,8 +139,8 @@ macro_rules! lattice_methods {
         fn threshold(&self) -> f64 {
             self.threshold
         }
-        fn encode(&self, cells: &Vec<u32>, values: &mut [f64]) -> bool {
-            self.lattice.encode(cells, values)
+        fn encoding(&self) -> Option<&dyn satisfice::Encoding<f64, Vec<u32>>> {
+            Some(&self.lattice)
         }
         fn description(&self) -> satisfice::catalogue::Description {
             self.description.clone()

@@ -29,7 +29,7 @@ where
     let mut values = vec![0.0; dimension];
     for solution in &all {
         assert!(problem.fitness(solution) < problem.threshold());
-        assert!(problem.encode(solution, &mut values));
+        assert!(problem.encoding().unwrap().encode(solution, &mut values));
         assert_eq!(problem.decode(&values), *solution);
     }
     if let Some(enumerated) = count_hits(problem, 1e6) {
@@ -48,10 +48,11 @@ where
             all.binary_search(&solution).is_ok()
         );
         let mut neighbours = 0;
-        assert!(problem.neighbours(&solution, &mut |neighbour| {
+        let neighbourhood = problem.neighbourhood().unwrap();
+        neighbourhood.neighbours(&solution, &mut |neighbour| {
             neighbours += 1;
-            assert!(neighbour != solution && problem.encode(&neighbour, &mut values));
-        }));
+            assert!(neighbour != solution && problem.encoding().unwrap().encode(&neighbour, &mut values));
+        });
         assert!(neighbours > 0 || dimension == 1);
         // Some axes fixed at this point, the others free.
         let free: Vec<bool> = axes.iter().map(|_| rng.below(2) == 1).collect();
@@ -64,9 +65,10 @@ where
                 .map(|j| end(&free[j], draw[j], axes[j].upper()))
                 .collect(),
         };
-        if let Some(bound) = problem.lower_bound(&region) {
+        let bounds = problem.bounds();
+        if let Some(bound) = bounds.and_then(|bounds| bounds.lower_bound(&region)) {
             for solution in all.iter().chain([&solution]) {
-                assert!(problem.encode(solution, &mut values));
+                assert!(problem.encoding().unwrap().encode(solution, &mut values));
                 assert!(!region.contains(&values) || bound <= problem.fitness(solution));
             }
         }

@@ -105,7 +105,8 @@ fn puma_is_polished_from_a_flat_valley() {
         2.9480088150525643,
     ];
     assert!(puma.fitness(&puma.decode(&start)) < puma.threshold());
-    let end = puma.canonical(puma.decode(&start));
+    let start = puma.decode(&start);
+    let end = puma.canonical(&start).unwrap_or(start);
     assert!(puma.fitness(&end) < 1e-18, "{} at {end:?}", puma.fitness(&end));
 }
 
@@ -129,7 +130,8 @@ fn puma_has_eight_postures() {
             .sum();
         assert_relative_eq!(puma.fitness(&puma.decode(&start)), square, max_relative = 1e-9);
         // From anywhere, the damped steps end at a posture or at a local minimum far above the threshold.
-        let end = puma.canonical(puma.decode(&start));
+        let start = puma.decode(&start);
+        let end = puma.canonical(&start).unwrap_or(start);
         let fitness = puma.fitness(&end);
         assert!(!(1e-18..0.02).contains(&fitness), "{fitness} at {end:?}");
         let apart = |other: &Vec<f64>| {

@@ -34,13 +34,18 @@ fn fitness_is<P: Catalogued<Scalar = f64, Solution = Vec<u32>>>(
             max_relative = 1e-12
         );
         let mut back = vec![0.0; cells.len()];
-        assert!(problem.encode(&solution, &mut back));
+        assert!(problem.encoding().unwrap().encode(&solution, &mut back));
         assert_eq!(back, cells);
     }
     // What comes from outside does no harm.
     assert!(problem.fitness(&Vec::new()).is_nan());
     assert!(problem.fitness(&vec![u32::MAX; axes.len()]).is_nan());
-    assert!(!problem.encode(&vec![u32::MAX; axes.len()], &mut vec![0.0; axes.len()]));
+    assert!(
+        !problem
+            .encoding()
+            .unwrap()
+            .encode(&vec![u32::MAX; axes.len()], &mut vec![0.0; axes.len()])
+    );
 }
 
 /// Bounds of random regions are below the fitness at random points inside, and equal it where the region is one point.
@@ -56,7 +61,7 @@ fn bounds_are_sound<P: Catalogued<Scalar = f64, Solution = Vec<u32>>>(problem: &
             upper.push(if trial % 4 == 0 { a.min(b) } else { a.max(b) });
         }
         let region = Region { lower, upper };
-        let bound = problem.lower_bound(&region).unwrap();
+        let bound = problem.bounds().unwrap().lower_bound(&region).unwrap();
         for _ in 0..20 {
             let values: Vec<f64> = (region.lower.iter().zip(&region.upper))
                 .map(|(&a, &b)| draw(a, b))
@@ -371,7 +376,9 @@ fn queens() {
             .sum::<usize>() as f64
     });
     let mut neighbours = 0;
-    assert!(problem::<Queens>(&[]).neighbours(&vec![0; 8], &mut |_| neighbours += 1));
+    let queens = problem::<Queens>(&[]);
+    let neighbourhood = queens.neighbourhood().unwrap();
+    neighbourhood.neighbours(&vec![0; 8], &mut |_| neighbours += 1);
     assert_eq!(neighbours, 8 * 7);
     assert!(Queens::new(0).is_err());
 }

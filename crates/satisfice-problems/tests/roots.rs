@@ -26,7 +26,7 @@ where
             if problem.fitness(&hit) >= level {
                 continue;
             }
-            let root = problem.canonical(hit);
+            let root = problem.canonical(&hit).unwrap_or(hit);
             assert!(problem.fitness(&root) < 1e-20, "{root:?} is no root");
             let root = root.coordinates;
             let near = |other: &Vec<f64>| (other[0] - root[0]).hypot(other[1] - root[1]);
@@ -53,7 +53,7 @@ where
             upper.push(a.min(b) + scale * (a - b).abs());
         }
         let region = Region { lower, upper };
-        let bound = problem.lower_bound(&region).unwrap();
+        let bound = problem.bounds().unwrap().lower_bound(&region).unwrap();
         for _ in 0..10 {
             let inside = region.lower.iter().zip(&region.upper);
             let values: Vec<f64> = inside
@@ -106,7 +106,7 @@ fn a_swarm_finds_all_four() {
     let himmelblau = problem::<Himmelblau>(&[]);
     let engine = satisfice::engine::build("latest-hit-qpso").unwrap();
     let budget = satisfice::Budget::evaluations(100_000).and_hits(4);
-    let report = satisfice::Search::new(engine)
+    let report = satisfice::Search::with(engine)
         .seed(1)
         .run(&himmelblau, &budget)
         .unwrap();

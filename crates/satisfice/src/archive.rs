@@ -9,18 +9,19 @@ const FILTERED: usize = 1 << 16;
 /// Bits of the filter for each hit it has room for: about one look-up in 16 is not spared.
 const BITS: usize = 16;
 
-/// The distinct hits, in the order found, each with the evaluation and the time that found it.
+/// The distinct hits, in the order found, each with its fitness and with the evaluation and the time that found it.
 ///
-/// Memory, at rest and beyond the solutions: 12 bytes a hit and 5 bytes a slot of a table that is between 7/16 and 7/8 full,
-/// so between 17.7 and 23.5 bytes. A look-up that finds nothing costs a hash, a bit test and, seldom, a table look-up.
+/// Memory, at rest and beyond the solutions: 20 bytes a hit and 5 bytes a slot of a table that is between 7/16 and 7/8 full,
+/// so between 25.7 and 31.5 bytes. A look-up that finds nothing costs a hash, a bit test and, seldom, a table look-up.
 #[derive(Debug, Clone)]
 pub struct Archive<T> {
     solutions: Vec<T>,
+    fitness: Vec<f64>,
     evaluations: Vec<u64>,
     seconds: Vec<f32>,
     table: HashTable<u32>,
     /// Hits of probes that the engine has not found itself: [`Archive::contains`] does not see them.
-    hidden: HashTable<u32>,
+    probe_only: HashTable<u32>,
     filter: Vec<u64>,
 }
 
@@ -30,7 +31,7 @@ pub(crate) enum Entered {
     /// It was new.
     New,
     /// Only a probe had found it; now the engine has, too.
-    Revealed,
+    Promoted,
     /// It was known.
     Known,
 }
@@ -39,21 +40,23 @@ impl<T> Default for Archive<T> {
     fn default() -> Self {
         Self {
             solutions: Vec::new(),
+            fitness: Vec::new(),
             evaluations: Vec::new(),
             seconds: Vec::new(),
             table: HashTable::new(),
-            hidden: HashTable::new(),
+            probe_only: HashTable::new(),
             filter: Vec::new(),
         }
     }
 }
 
 /// One hit, as a report shows it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Hit<'a, T> {
     /// The solution.
     pub solution: &'a T,
+    /// Its fitness F; `f32` values are widened exactly.
+    pub fitness: f64,
     /// The evaluation that found it, counted from 1.
     pub evaluation: u64,
     /// When, in seconds from the start of the slice.
@@ -70,8 +73,8 @@ impl<T> Archive<T> {
 
     /// Number of hits that only probes have found.
     #[inline]
-    pub(crate) fn hidden(&self) -> usize {
-        self.hidden.len()
+    pub(crate) fn probe_only(&self) -> usize {
+        self.probe_only.len()
     }
 
     /// Whether there is none.
@@ -86,6 +89,7 @@ impl<T> Archive<T> {
     pub fn get(&self, index: usize) -> Option<Hit<'_, T>> {
         Some(Hit {
             solution: self.solutions.get(index)?,
+            fitness: *self.fitness.get(index)?,
             evaluation: *self.evaluations.get(index)?,
             seconds: f64::from(*self.seconds.get(index)?),
         })
@@ -95,10 +99,12 @@ impl<T> Archive<T> {
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Hit<'_, T>> {
         self.solutions
             .iter()
+            .zip(&self.fitness)
             .zip(&self.evaluations)
             .zip(&self.seconds)
-            .map(|((solution, &evaluation), &seconds)| Hit {
+            .map(|(((solution, &fitness), &evaluation), &seconds)| Hit {
                 solution,
+                fitness,
                 evaluation,
                 seconds: f64::from(seconds),
             })
@@ -119,10 +125,10 @@ impl<T> Archive<T> {
     /// Bytes beyond the solutions themselves.
     #[must_use]
     pub fn overhead_bytes(&self) -> usize {
-        self.evaluations.capacity() * 8
+        (self.fitness.capacity() + self.evaluations.capacity()) * 8
             + self.seconds.capacity() * 4
             + self.table.allocation_size()
-            + self.hidden.allocation_size()
+            + self.probe_only.allocation_size()
             + self.filter.capacity() * 8
             + (self.solutions.capacity() - self.solutions.len()) * size_of::<T>()
     }
@@ -142,7 +148,7 @@ impl<T: Identity> Archive<T> {
     /// Whether a solution is the same as the hit at `recent`: whoever finds a known hit again often does so many times.
     #[inline]
     pub(crate) fn is_again(&self, solution: &T, recent: usize) -> bool {
-        self.solutions.get(recent).is_some_and(|hit| hit.same(solution)) && !self.is_hidden(recent)
+        self.solutions.get(recent).is_some_and(|hit| hit.same(solution)) && !self.is_probe_only(recent)
     }
 
     /// [`Archive::contains`]; where it does, the hit is left in `recent`.
@@ -180,35 +186,43 @@ impl<T: Identity> Archive<T> {
     /// Adds a solution unless one that is the same is here; returns whether it was new. Amortised cost: O(1).
     ///
     /// At 2^32 - 1 hits, the archive is full and takes no more.
-    pub fn insert(&mut self, solution: T, evaluation: u64, seconds: f64) -> bool {
-        self.enter(solution, evaluation, seconds, false) == Entered::New
+    pub fn insert(&mut self, solution: T, fitness: f64, evaluation: u64, seconds: f64) -> bool {
+        self.enter(solution, fitness, evaluation, seconds, false) == Entered::New
     }
 
     /// The same for a hit of the engine or of a probe. That of a probe is listed, but hidden from
     /// [`contains`](Archive::contains) until the engine finds it, too, or the archive comes to rest.
-    pub(crate) fn enter(&mut self, solution: T, evaluation: u64, seconds: f64, probe: bool) -> Entered {
+    pub(crate) fn enter(
+        &mut self,
+        solution: T,
+        fitness: f64,
+        evaluation: u64,
+        seconds: f64,
+        probe: bool,
+    ) -> Entered {
         if self.contains(&solution) {
             return Entered::Known;
         }
-        if let Some(index) = self.position_hidden(&solution) {
+        if let Some(index) = self.position_probe_only(&solution) {
             if probe {
                 return Entered::Known;
             }
-            self.reveal(index);
-            return Entered::Revealed;
+            self.promote(index);
+            return Entered::Promoted;
         }
         let Ok(index) = u32::try_from(self.solutions.len()) else {
             return Entered::Known;
         };
         let key = solution.key();
         self.solutions.push(solution);
+        self.fitness.push(fitness);
         self.evaluations.push(evaluation);
         #[expect(clippy::cast_possible_truncation, reason = "7 digits of a time are plenty")]
         self.seconds.push(seconds as f32);
         let solutions = &self.solutions;
         let rehash = |&i: &u32| solutions[i as usize].key();
         if probe {
-            self.hidden.insert_unique(key, index, rehash);
+            self.probe_only.insert_unique(key, index, rehash);
         } else {
             self.table.insert_unique(key, index, rehash);
             self.note(key);
@@ -224,18 +238,18 @@ impl<T: Identity> Archive<T> {
             found.is_some()
         });
         found
-            .or_else(|| self.position_hidden(solution))
+            .or_else(|| self.position_probe_only(solution))
             .map(|index| index as usize)
     }
 
-    fn position_hidden(&self, solution: &T) -> Option<u32> {
-        if self.hidden.is_empty() {
+    fn position_probe_only(&self, solution: &T) -> Option<u32> {
+        if self.probe_only.is_empty() {
             return None;
         }
         let mut found = None;
         solution.visit_keys(&mut |key| {
             found = self
-                .hidden
+                .probe_only
                 .find(key, |&i| self.solutions[i as usize].same(solution))
                 .copied();
             found.is_some()
@@ -244,39 +258,39 @@ impl<T: Identity> Archive<T> {
     }
 
     /// Whether only a probe has found hit `index`.
-    pub(crate) fn is_hidden(&self, index: usize) -> bool {
-        !self.hidden.is_empty()
+    pub(crate) fn is_probe_only(&self, index: usize) -> bool {
+        !self.probe_only.is_empty()
             && self.solutions.get(index).is_some_and(|solution| {
-                self.hidden
+                self.probe_only
                     .find(solution.key(), |&i| i as usize == index)
                     .is_some()
             })
     }
 
     /// Indices of the hits that only probes have found, ascending.
-    pub(crate) fn hidden_indices(&self) -> Vec<u32> {
-        let mut indices: Vec<u32> = self.hidden.iter().copied().collect();
+    pub(crate) fn probe_only_indices(&self) -> Vec<u32> {
+        let mut indices: Vec<u32> = self.probe_only.iter().copied().collect();
         indices.sort_unstable();
         indices
     }
 
     /// Hides hit `index` from [`contains`](Archive::contains); `false` where there is none.
-    pub(crate) fn hide(&mut self, index: u32) -> bool {
+    pub(crate) fn set_probe_only(&mut self, index: u32) -> bool {
         let Some(key) = self.solutions.get(index as usize).map(Identity::key) else {
             return false;
         };
         if let Ok(entry) = self.table.find_entry(key, |&i| i == index) {
             entry.remove();
             let solutions = &self.solutions;
-            self.hidden
+            self.probe_only
                 .insert_unique(key, index, |&i| solutions[i as usize].key());
         }
         true
     }
 
-    fn reveal(&mut self, index: u32) {
+    fn promote(&mut self, index: u32) {
         let key = self.solutions[index as usize].key();
-        if let Ok(entry) = self.hidden.find_entry(key, |&i| i == index) {
+        if let Ok(entry) = self.probe_only.find_entry(key, |&i| i == index) {
             entry.remove();
         }
         let solutions = &self.solutions;
@@ -287,9 +301,10 @@ impl<T: Identity> Archive<T> {
 
     /// Gives back memory that is kept for growth and for speed, and hides nothing any more.
     pub fn rest(&mut self) {
-        let hidden = core::mem::take(&mut self.hidden);
-        hidden.into_iter().for_each(|index| self.reveal(index));
+        let probe_only = core::mem::take(&mut self.probe_only);
+        probe_only.into_iter().for_each(|index| self.promote(index));
         self.solutions.shrink_to_fit();
+        self.fitness.shrink_to_fit();
         self.evaluations.shrink_to_fit();
         self.seconds.shrink_to_fit();
         let solutions = &self.solutions;
@@ -334,7 +349,6 @@ impl<T: Identity> Archive<T> {
     }
 }
 
-#[cfg(feature = "serde")]
 mod as_list {
     //! An archive is written as the list of its hits and read back in that order.
 
@@ -344,6 +358,7 @@ mod as_list {
     #[derive(Deserialize)]
     struct Row<T> {
         solution: T,
+        fitness: f64,
         evaluation: u64,
         seconds: f64,
     }
@@ -359,7 +374,7 @@ mod as_list {
             let rows = Vec::<Row<T>>::deserialize(deserializer)?;
             let mut archive = Self::default();
             for row in rows {
-                archive.insert(row.solution, row.evaluation, row.seconds);
+                archive.insert(row.solution, row.fitness, row.evaluation, row.seconds);
             }
             Ok(archive)
         }
@@ -381,7 +396,7 @@ mod tests {
             let pair = [rng.below(600), rng.below(600)];
             assert_eq!(archive.contains(&pair), set.contains(&pair));
             if rng.uniform() < 0.6 {
-                assert_eq!(archive.insert(pair, n, 0.0), set.insert(pair));
+                assert_eq!(archive.insert(pair, -1.0, n, 0.0), set.insert(pair));
             }
         }
         assert_eq!(archive.len(), set.len());
@@ -399,21 +414,21 @@ mod tests {
                 let located = Located::new(&point, 0.05);
                 let near = archive.solutions().iter().any(|other| located.same(other));
                 assert_eq!(archive.contains(&located), near);
-                assert_eq!(archive.insert(located, n, 0.0), !near);
+                assert_eq!(archive.insert(located, -1.0, n, 0.0), !near);
             }
         }
     }
 
     #[test]
-    fn at_rest_it_stays_under_24_bytes_a_hit() {
+    fn at_rest_it_stays_under_32_bytes_a_hit() {
         for hits in [1_000_u32, 60_000, 200_000, 458_753] {
             let mut archive = Archive::default();
             for n in 0..hits {
-                archive.insert([n, n], u64::from(n), 0.0);
+                archive.insert([n, n], -1.0, u64::from(n), 0.0);
             }
             archive.rest();
             let bytes = archive.overhead_bytes() as f64 / f64::from(hits);
-            assert!(bytes < 24.0, "{bytes} bytes a hit at {hits}");
+            assert!(bytes < 32.0, "{bytes} bytes a hit at {hits}");
             assert!(archive.contains(&[hits - 1, hits - 1]) && !archive.contains(&[hits, hits]));
         }
     }

@@ -14,8 +14,7 @@ use crate::error::Error;
 /// let budget = Budget::time(Duration::from_millis(100)).and_evaluations(1_000_000).and_hits(10);
 /// # let _ = budget;
 /// ```
-#[derive(Debug, Clone, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Budget {
     /// Wall time, from the start of the slice.
     pub time: Option<Duration>,
@@ -26,7 +25,7 @@ pub struct Budget {
     /// Evaluations to which schedules relate, where that is not the budget itself.
     pub horizon: Option<u64>,
     /// Somebody who may cancel.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    #[serde(skip)]
     pub cancel: Option<Cancel>,
 }
 
@@ -38,6 +37,15 @@ impl Budget {
             time: Some(time),
             ..Self::default()
         }
+    }
+    /// A budget of wall time in milliseconds.
+    ///
+    /// ```
+    /// assert_eq!(satisfice::Budget::millis(100).time, Some(std::time::Duration::from_millis(100)));
+    /// ```
+    #[must_use]
+    pub fn millis(milliseconds: u64) -> Self {
+        Self::time(Duration::from_millis(milliseconds))
     }
     /// A budget of evaluations: reproducible.
     #[must_use]
@@ -157,8 +165,7 @@ impl Cancel {
 }
 
 /// Why a slice ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum StopReason {
     /// The time was up.
     Time,
@@ -174,4 +181,6 @@ pub enum StopReason {
     Exhausted,
     /// The whole space was evaluated or excluded by bounds.
     Covered,
+    /// The problem panicked, and the run was to [catch that](crate::RunOptions::catch_panics).
+    Panicked,
 }

@@ -49,7 +49,7 @@ impl<S: Real, T> Default for Candidates<S, T> {
 impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     /// Brings the points inside, decodes the first `limit` of them and looks them up in C.
     #[inline]
-    pub(crate) fn prepare<P: SatisficingProblem<Scalar = S, Solution = T>>(
+    pub(crate) fn prepare<P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized>(
         &mut self,
         problem: &P,
         archive: &Archive<T>,
@@ -71,7 +71,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
 
     /// Brings one point inside, decodes it and lets `judge` see the solution.
     #[inline]
-    pub(crate) fn with_one<P: SatisficingProblem<Scalar = S, Solution = T>, R>(
+    pub(crate) fn with_one<P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized, R>(
         &mut self,
         problem: &P,
         point: &mut [S],
@@ -148,6 +148,11 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         slot < self.ready || (self.has_gaps && self.done[slot])
     }
 
+    /// Whether every live fitness is computed.
+    pub(crate) fn is_complete(&self) -> bool {
+        (self.ready..self.live).all(|slot| self.is_done(slot))
+    }
+
     /// Solutions, fitness, and whether it is computed, to be filled in in any order.
     #[cfg(feature = "rayon")]
     pub(crate) fn slots(&mut self) -> (&[T], &mut [S], &mut [bool]) {
@@ -156,7 +161,8 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
             self.done.resize(self.live, false);
             self.has_gaps = true;
         }
-        self.done[..self.ready].fill(true);
+        let ready = self.ready.min(self.live);
+        self.done[..ready].fill(true);
         (
             &self.solutions[..self.live],
             &mut self.fitness[..self.live],

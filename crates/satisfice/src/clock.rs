@@ -53,7 +53,7 @@ impl Clock {
 
     /// Time since the start, exactly.
     pub(crate) fn elapsed(&self) -> Duration {
-        self.before + self.start.elapsed()
+        self.before.saturating_add(self.start.elapsed())
     }
 
     /// How many evaluations may pass before the next look, at least 1.
@@ -80,7 +80,7 @@ impl Clock {
             .clamp(1, (2 * self.interval).min(LOOK_AFTER));
         self.last = now;
         self.since = 0;
-        self.seen = self.before + (now - self.start);
+        self.seen = self.before.saturating_add(now - self.start);
         self.seen
     }
 

@@ -42,8 +42,7 @@ impl<T: Eq + Hash> Identity for T {
 
 /// A point of a continuous space that counts once per separation radius: two are the same if their Euclidean distance is
 /// at most the radius, which a problem gives all its solutions alike.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Located<S> {
     /// Coordinates, in the units of the space.
     pub coordinates: Vec<S>,

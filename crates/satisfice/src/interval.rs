@@ -14,7 +14,7 @@
 //!
 //! ```
 //! use satisfice::interval::{lower_bound, sides, EnclosureOps, IntervalOps};
-//! use satisfice::{Located, Region, SatisficingProblem, Space};
+//! use satisfice::{Bounds, Located, Region, SatisficingProblem, Space};
 //!
 //! /// All points where (x^2 + y - 11)^2 + (x + y^2 - 7)^2 < 0.01.
 //! struct Himmelblau(Space<f64>);
@@ -30,6 +30,10 @@
 //!         a * a + b * b
 //!     }
 //!     fn threshold(&self) -> f64 { 0.01 }
+//!     fn bounds(&self) -> Option<&dyn Bounds<f64>> { Some(self) }
+//! }
+//!
+//! impl Bounds<f64> for Himmelblau {
 //!     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
 //!         let [x, y] = sides(region)?;
 //!         let (a, b) = (x.sqr() + y - 11.0, x + y.sqr() - 7.0);

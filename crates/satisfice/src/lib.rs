@@ -1,16 +1,18 @@
 #![doc = include_str!("../README.md")]
 
+mod accounting;
 pub mod archive;
 pub mod batch;
+mod best;
 mod binomial;
 pub mod budget;
 mod candidates;
+pub mod capability;
 pub mod catalogue;
 mod clock;
 pub mod context;
 pub mod engine;
 mod error;
-mod evaluate;
 pub mod identity;
 #[cfg(feature = "interval")]
 pub mod interval;
@@ -28,9 +30,16 @@ mod threads;
 mod unseen;
 mod view;
 
+pub mod checkpoint {
+    //! What a saved search holds.
+    pub use crate::search::{Checkpoint, Contents, Fingerprint, Unfinished};
+}
+
 pub use archive::{Archive, Hit};
 pub use batch::{Batch, Outcome};
+pub use best::Best;
 pub use budget::{Budget, Cancel, StopReason};
+pub use capability::{Bounds, Encoding, Neighbourhood};
 pub use context::Context;
 pub use engine::{Engine, WarmStart};
 pub use error::Error;
@@ -39,7 +48,7 @@ pub use observer::Observer;
 pub use problem::{SatisficingProblem, from_fn};
 pub use report::{Completeness, Counts, Report, TracePoint};
 pub use scalar::Real;
-pub use search::{Checkpoint, Islands, Saving, Search, Unfinished};
+pub use search::{Checkpoint, RunOptions, Search, Stepper};
 pub use seed::SearchRng;
 pub use space::{Axis, AxisKind, Boundary, Region, Space};
 pub use unseen::{Method, Unseen};

@@ -24,7 +24,7 @@ const LARGEST_BATCH: u64 = 64;
 const MOST: f64 = 0.5;
 
 /// The probes of one slice.
-#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Probes {
     share: f64,
     rng: SearchRng,
@@ -90,7 +90,11 @@ impl Probes {
         self.due = ((self.sample.probes + self.batch()) as f64 / self.share).ceil() as u64;
     }
 
-    pub(crate) fn propose<P: SatisficingProblem>(&mut self, problem: &P, out: &mut Batch<P::Scalar>) {
+    pub(crate) fn propose<P: SatisficingProblem + ?Sized>(
+        &mut self,
+        problem: &P,
+        out: &mut Batch<P::Scalar>,
+    ) {
         out.clear();
         for _ in 0..self.batch() {
             out.push_with(|position| self.rng.position(problem.space(), position));
@@ -98,7 +102,7 @@ impl Probes {
     }
 
     /// Takes what became of the probes of `batch`.
-    pub(crate) fn take<P: SatisficingProblem>(
+    pub(crate) fn take<P: SatisficingProblem + ?Sized>(
         &mut self,
         problem: &P,
         batch: &Batch<P::Scalar>,
@@ -117,24 +121,25 @@ impl Probes {
             }
             space.values(point, &mut values);
             let solution = problem.decode(&values);
-            let canonical = problem.canonical(solution.clone());
+            let canonical = problem.canonical(&solution);
+            let canonical = canonical.as_ref().unwrap_or(&solution);
             let index = archive
                 .position(&solution)
-                .or_else(|| archive.position(&canonical));
+                .or_else(|| archive.position(canonical));
             // None only where the archive is full or the problem is not pure.
             let Some((index, hit)) = index.and_then(|index| Some((index, archive.solutions().get(index)?)))
             else {
                 continue;
             };
-            let place = self.place(problem, &values, hit, &canonical);
-            self.enter(index, archive.is_hidden(index), place);
+            let place = self.place(problem, &values, hit, canonical);
+            self.enter(index, archive.is_probe_only(index), place);
         }
         self.schedule();
     }
 
     /// Whether `values` are the one point that stands for `hit`. On a lattice on which several points decode to one
     /// solution, counting only that point gives every solution the same chance.
-    fn place<P: SatisficingProblem>(
+    fn place<P: SatisficingProblem + ?Sized>(
         &mut self,
         problem: &P,
         values: &[P::Scalar],
@@ -143,10 +148,13 @@ impl Probes {
     ) -> bool {
         let mut own = vec![P::Scalar::zero(); values.len()];
         if self.sample.blurred || problem.space().cardinality().is_none() {
-            return true; // no lattice, or no use of it: nobody asks
+            return true; // no lattice, or no use of it
         }
-        if !problem.encode(hit, &mut own) || own == values {
-            return true; // where no encoding is offered, every point is taken to be a solution of its own
+        let Some(encoding) = problem.encoding() else {
+            return true; // without an encoding, every point is taken to be a solution of its own
+        };
+        if !encoding.encode(hit, &mut own) || own == values {
+            return true;
         }
         // Another point stands for this hit. It has to be a point of the lattice that decodes to it...
         let mut other = vec![P::Scalar::zero(); values.len()];
@@ -154,9 +162,9 @@ impl Probes {
             .iter()
             .zip(problem.space().axes())
             .all(|(&x, axis)| axis.lower() <= x && x <= axis.upper() && axis.value(x) == x)
-            && problem.canonical(problem.decode(&own)).same(hit)
+            && represents(problem, &problem.decode(&own)).same(hit)
             // ...and this solution has to have the same one: if it has its own, the two are the same only roughly.
-            && problem.encode(canonical, &mut other)
+            && encoding.encode(canonical, &mut other)
             && own == other;
         self.sample.blurred |= !stands;
         false
@@ -186,16 +194,16 @@ impl Probes {
     }
 
     /// What the probes say of the hits that are not in C now. `None` without a probe.
-    pub(crate) fn estimate<P: SatisficingProblem>(
+    pub(crate) fn estimate<P: SatisficingProblem + ?Sized>(
         &self,
         problem: &P,
         archive: &Archive<P::Solution>,
     ) -> Option<Unseen> {
         let mut sample = self.sample.clone();
         sample.points = problem.space().cardinality();
-        sample.known = (archive.len() - archive.hidden()) as u64;
+        sample.known = (archive.len() - archive.probe_only()) as u64;
         for first in &self.first {
-            if archive.is_hidden(first.index) {
+            if archive.is_probe_only(first.index) {
                 sample.distinct += 1;
                 sample.fresh += first.probes;
                 sample.own_fresh += first.own;
@@ -208,4 +216,9 @@ impl Probes {
         }
         sample.estimate()
     }
+}
+
+/// The solution that represents a hit.
+fn represents<P: SatisficingProblem + ?Sized>(problem: &P, hit: &P::Solution) -> P::Solution {
+    problem.canonical(hit).unwrap_or_else(|| hit.clone())
 }

@@ -1,5 +1,6 @@
 //! The problem: what a candidate means, how good it is, and when it is good enough.
 
+use crate::capability::{Bounds, Encoding, Neighbourhood};
 use crate::catalogue::Description;
 use crate::identity::{Identity, Located};
 use crate::scalar::{Real, copy_row};
@@ -65,38 +66,29 @@ pub trait SatisficingProblem: Sync {
         }
     }
 
-    /// Writes values that decode to `solution`; `false` where that is not offered or not possible.
-    fn encode(&self, _solution: &Self::Solution, _values: &mut [Self::Scalar]) -> bool {
-        false
-    }
-
-    /// Visits the solutions next to `of`, in a fixed order; `false` where that is not offered. Needs [`encode`].
-    ///
-    /// Where a problem offers none, engines use the next lattice points on integer axes and shrinking steps on
-    /// continuous ones.
-    ///
-    /// [`encode`]: SatisficingProblem::encode
-    fn neighbours(&self, _of: &Self::Solution, _visit: &mut dyn FnMut(Self::Solution)) -> bool {
-        false
-    }
-
-    /// A value that F exceeds or equals everywhere in `region`, `None` where no bound is known. Soundness is the
-    /// problem's duty: a bound that is too high loses hits.
-    fn lower_bound(&self, _region: &Region<Self::Scalar>) -> Option<Self::Scalar> {
+    /// At which values a solution is; `None`, the default, if that is not offered.
+    fn encoding(&self) -> Option<&dyn Encoding<Self::Scalar, Self::Solution>> {
         None
     }
 
-    /// Whether every point of `region` decodes to a solution that is the same as `hit`; `false` where that is not so or not
-    /// known. With it, and with bounds, a search of continuous axes can prove that no hit is missing. Where solutions are
-    /// [`Located`] at the values themselves: [`Located::covers`].
-    fn covers(&self, _hit: &Self::Solution, _region: &Region<Self::Scalar>) -> bool {
-        false
+    /// The solutions next to a solution; `None`, the default, if they are not offered. Needs an
+    /// [`encoding`](SatisficingProblem::encoding).
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<Self::Solution>> {
+        None
     }
 
-    /// The representative of a hit, for instance a root polished; called for hits only. Two hits with the same
-    /// representative count once.
-    fn canonical(&self, hit: Self::Solution) -> Self::Solution {
-        hit
+    /// Lower bounds of F over regions; `None`, the default, if they are not offered.
+    fn bounds(&self) -> Option<&dyn Bounds<Self::Scalar>> {
+        None
+    }
+
+    /// The representative of a hit, for instance a root polished to the last digit or a pair in ascending order; `None`, the
+    /// default, if the hit represents itself. Called for hits only. Two hits with the same representative count once.
+    ///
+    /// The representative is a hit, too, and the one that is listed, with its own fitness: that call of the fitness is
+    /// counted nowhere.
+    fn canonical(&self, _hit: &Self::Solution) -> Option<Self::Solution> {
+        None
     }
 
     /// Name and parameters, for the report.
@@ -122,7 +114,7 @@ pub struct FnProblem<S, F> {
 /// ```
 /// use satisfice::{engine, from_fn, Budget, Search, Space};
 /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| ((x[0] - 50.0).powi(2) + (x[1] - 20.0).powi(2)).sqrt());
-/// let report = Search::new(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(100_000))?;
+/// let report = Search::with(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(100_000))?;
 /// assert_eq!(report.hit_count(), 21); // the lattice points of a disc of radius 2.5
 /// # Ok::<(), satisfice::Error>(())
 /// ```
@@ -178,17 +170,26 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     fn threshold(&self) -> S {
         self.threshold
     }
-    fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
-        values.copy_from_slice(&solution.coordinates);
-        true
-    }
-    fn covers(&self, hit: &Located<S>, region: &Region<S>) -> bool {
-        hit.covers(region)
+    fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
+        Some(self)
     }
     fn description(&self) -> Description {
         Description {
             name: "closure".to_owned(),
             parameters: Vec::new(),
         }
+    }
+}
+
+impl<S: Real, F> Encoding<S, Located<S>> for FnProblem<S, F> {
+    fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
+        let fits = solution.coordinates.len() == values.len();
+        if fits {
+            values.copy_from_slice(&solution.coordinates);
+        }
+        fits
+    }
+    fn covers(&self, hit: &Located<S>, region: &Region<S>) -> bool {
+        hit.covers(region)
     }
 }

@@ -4,13 +4,13 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use crate::archive::{Archive, Hit};
+use crate::best::Best;
 use crate::budget::{Budget, StopReason};
 use crate::catalogue::Description;
 use crate::unseen::Unseen;
 
 /// How complete the hits are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Completeness {
     /// All hits of the space are listed: it was covered, or excluded by bounds.
     Proved,
@@ -19,8 +19,7 @@ pub enum Completeness {
 }
 
 /// One point of the curve |C| against evaluations and time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TracePoint {
     /// Evaluations so far.
     pub evaluations: u64,
@@ -31,8 +30,7 @@ pub struct TracePoint {
 }
 
 /// What the ledger counted.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counts {
     /// Candidates that reached the ledger.
     pub evaluations: u64,
@@ -45,7 +43,7 @@ pub struct Counts {
     /// Hits of the slice before that were evaluated anew at the start of this one.
     pub verified: u64,
     /// Uniform probes among the evaluations.
-    #[cfg_attr(feature = "serde", serde(default))]
+    #[serde(default)]
     pub probes: u64,
     /// Calls of the problem's neighbours.
     pub neighbour_calls: u64,
@@ -68,15 +66,11 @@ impl core::ops::AddAssign for Counts {
 }
 
 /// The result of one time slice: plain data.
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize",
-        deserialize = "T: serde::Deserialize<'de> + crate::Identity"
-    ))
-)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[serde(bound(
+    serialize = "T: serde::Serialize",
+    deserialize = "T: serde::Deserialize<'de> + crate::Identity"
+))]
 pub struct Report<T> {
     /// The problem and its parameters.
     pub problem: Description,
@@ -91,7 +85,7 @@ pub struct Report<T> {
     /// The budget.
     pub budget: Budget,
     /// The share of the evaluations spent on uniform probes.
-    #[cfg_attr(feature = "serde", serde(default))]
+    #[serde(default)]
     pub probe_share: f64,
     /// Why it ended.
     pub stop_reason: StopReason,
@@ -104,8 +98,11 @@ pub struct Report<T> {
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
     /// How many hits are missing, estimated; `None` where nothing was probed or proved.
-    #[cfg_attr(feature = "serde", serde(default))]
+    #[serde(default)]
     pub unseen: Option<Unseen>,
+    /// The least fitness evaluated, and where; `None` if no fitness was finite.
+    #[serde(default = "Option::default")]
+    pub best: Option<Best<T>>,
     /// |C| at fixed evaluation counts (some ten a decade) and, under a time budget, at each hundredth of it.
     pub trace: Vec<TracePoint>,
     /// The version of this crate.
@@ -118,6 +115,12 @@ impl<T> Report<T> {
     /// The hits, in the order found.
     pub fn hits(&self) -> impl ExactSizeIterator<Item = Hit<'_, T>> {
         self.archive.iter()
+    }
+
+    /// The candidate with the least fitness, also when nothing hit; `None` if no fitness was finite.
+    #[must_use]
+    pub fn best(&self) -> Option<&Best<T>> {
+        self.best.as_ref()
     }
 
     /// |C|.

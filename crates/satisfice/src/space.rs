@@ -8,8 +8,7 @@ use crate::error::Error;
 use crate::scalar::{Real, floor};
 
 /// Whether the values of an axis are all reals between its bounds, or the integers only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum AxisKind {
     /// Every real in `[lower, upper]`.
     Continuous,
@@ -18,8 +17,7 @@ pub enum AxisKind {
 }
 
 /// One axis of a [`Space`]. Made by [`Axis::continuous`] and [`Axis::integer`], checked by [`Space::new`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Axis<S> {
     lower: S,
     upper: S,
@@ -154,8 +152,7 @@ impl<S: Real> Axis<S> {
 
 /// What happens to a position outside the bounds. An infinite position goes to the bound it points at, NaN to the
 /// middle of its axis, under every rule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Boundary {
     /// Mirrored at the bounds as often as needed, in closed form: any overshoot ends inside.
     ///
@@ -181,8 +178,7 @@ pub enum Boundary {
 /// assert_eq!(value, [0.0, 0.25]);     // floored on the integer axis
 /// # Ok::<(), satisfice::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Space<S> {
     axes: Vec<Axis<S>>,
     boundary: Boundary,

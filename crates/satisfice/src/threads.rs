@@ -51,7 +51,7 @@ impl Threads {
     }
 
     /// Wakes the helpers, which takes some tens of microseconds once they sleep: for the next batch, while it is thought out.
-    pub(crate) fn rouse(&self) {
+    pub(crate) fn wake(&self) {
         #[cfg(feature = "rayon")]
         if let Some(helpers) = &self.helpers {
             for _ in 0..helpers.current_num_threads() {
@@ -121,7 +121,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
             x[0]
         });
-        let mut search = Search::new(engine::build("random").unwrap()).threads(2);
+        let mut search = Search::with(engine::build("random").unwrap()).threads(2);
         search.run(&problem, &Budget::evaluations(64)).unwrap();
         let seen = seen.lock().unwrap();
         assert!(seen.len() == 64 && seen.iter().any(|id| *id != seen[0]));

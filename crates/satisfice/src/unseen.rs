@@ -10,8 +10,7 @@ const QUANTILE: f64 = 1.644_853_626_951_472_7;
 /// The hits that a slice has not found, estimated.
 ///
 /// `docs/completeness.md` says what is assumed and where that fails.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Unseen {
     /// The number of distinct hits that are not in C, estimated. Not rounded.
     pub estimate: f64,
@@ -36,8 +35,7 @@ pub struct Unseen {
 ///
 /// n probes; m of them hit one of the c hits that the engine has found, u hit one of the v that it has not. Of the v,
 /// the probes found d, which are in C; what is unseen is v - d.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Method {
     /// The space was covered or excluded by bounds: nothing is unseen.
     Proved,

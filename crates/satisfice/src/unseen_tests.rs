@@ -1,5 +1,6 @@
 //! Coverage and width of the intervals over seeded runs with a brute-force count as referee, and the edge cases.
 
+use crate::Encoding;
 use core::ops::ControlFlow;
 
 use super::*;
@@ -94,7 +95,7 @@ fn run<P: SatisficingProblem<Scalar = f64>>(
     share: f64,
     seed: u64,
 ) -> Report<P::Solution> {
-    Search::new(engine::build(engine).unwrap())
+    Search::with(engine::build(engine).unwrap())
         .seed(seed)
         .probes(share)
         .run(problem, &Budget::evaluations(budget))
@@ -154,15 +155,21 @@ impl SatisficingProblem for Pairs {
         let (a, b) = (values[0] as u32, values[1] as u32);
         [a.min(b), a.max(b)]
     }
-    fn encode(&self, &[a, b]: &[u32; 2], values: &mut [f64]) -> bool {
-        values.copy_from_slice(&[f64::from(a), f64::from(b)]);
-        true
-    }
     fn fitness(&self, &[a, b]: &[u32; 2]) -> f64 {
         f64::from((a * 37 + b * 101) % 97)
     }
     fn threshold(&self) -> f64 {
         9.0
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, [u32; 2]>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, [u32; 2]> for Pairs {
+    fn encode(&self, &[a, b]: &[u32; 2], values: &mut [f64]) -> bool {
+        values.copy_from_slice(&[f64::from(a), f64::from(b)]);
+        true
     }
 }
 
@@ -203,8 +210,8 @@ impl SatisficingProblem for Discs {
     fn threshold(&self) -> f64 {
         0.2
     }
-    fn canonical(&self, [disc, _]: [usize; 2]) -> [usize; 2] {
-        [disc, 0]
+    fn canonical(&self, &[disc, _]: &[usize; 2]) -> Option<[usize; 2]> {
+        Some([disc, 0])
     }
 }
 
@@ -350,17 +357,17 @@ fn probes_do_not_disturb_the_engine() {
 #[test]
 fn every_hit_is_announced_and_counted_once() {
     let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
-    let mut search = Search::new(engine::build("descent-flood").unwrap()).probes(0.3);
+    let mut search = Search::with(engine::build("descent-flood").unwrap()).probes(0.3);
     let mut announced = Vec::new();
     let mut observer = |hit: crate::Hit<'_, crate::Located<f64>>, count: usize| {
         announced.push((hit.solution.clone(), count));
         ControlFlow::Continue(())
     };
     let report = search
-        .run_observed(
+        .run_with(
             &problem,
             &Budget::hits(500).and_evaluations(50_000),
-            &mut observer,
+            crate::RunOptions::new().observer(&mut observer),
         )
         .unwrap();
     assert_eq!(report.hit_count(), 500);
@@ -384,22 +391,22 @@ fn driven_by_hand_and_on_threads_it_is_the_same() {
     let whole = run(&problem, "latest-hit-qpso", 4_000, 0.1, 3);
     let budget = Budget::evaluations(4_000);
     let search = || {
-        Search::new(engine::build("latest-hit-qpso").unwrap())
+        Search::with(engine::build("latest-hit-qpso").unwrap())
             .seed(3)
             .probes(0.1)
     };
     let threaded = search().threads(2).run(&problem, &budget).unwrap();
     let mut by_hand = search();
-    by_hand.begin(&problem, &budget).unwrap();
+    let mut by_hand = by_hand.start(&problem, &budget).unwrap();
     loop {
-        let candidates = by_hand.ask(&problem).unwrap();
+        let candidates = by_hand.ask().unwrap();
         if candidates.is_empty() {
             break;
         }
         let fitness: Vec<f64> = candidates.iter().map(|c| problem.fitness(c)).collect();
-        by_hand.tell(&problem, &fitness).unwrap();
+        by_hand.tell(&fitness).unwrap();
     }
-    for other in [threaded, by_hand.finish(&problem).unwrap()] {
+    for other in [threaded, by_hand.finish()] {
         assert_eq!(other.unseen, whole.unseen);
         assert_eq!(other.counts, whole.counts);
         assert_eq!(other.archive.solutions(), whole.archive.solutions());
@@ -437,7 +444,7 @@ impl Engine<f64> for Rows {
 fn what_is_covered_is_proved_unless_a_probe_belies_it() {
     let problem = from_fn(Space::lattice(2, 60).unwrap(), 10.0, |x: &[f64]| x[0] + x[1]);
     let covered = |skipped, share| {
-        Search::new(ConfiguredEngine::custom("rows", move || Rows {
+        Search::with(ConfiguredEngine::custom("rows", move || Rows {
             next: 0,
             skipped,
         }))
@@ -464,14 +471,13 @@ fn what_is_covered_is_proved_unless_a_probe_belies_it() {
 fn a_share_that_is_none_is_refused() {
     let problem = from_fn(Space::lattice(1, 9).unwrap(), 1.0, |x: &[f64]| x[0]);
     for share in [-0.1, 0.51, f64::NAN, f64::INFINITY] {
-        let result = Search::new(engine::build("random").unwrap())
+        let result = Search::with(engine::build("random").unwrap())
             .probes(share)
             .run(&problem, &Budget::evaluations(10));
         assert!(matches!(result, Err(Error::Parameter { .. })), "{share}");
     }
 }
 
-#[cfg(feature = "serde")]
 #[test]
 fn an_open_interval_survives_json() {
     let unseen = Sample {

@@ -2,9 +2,9 @@
 
 use core::cell::{Cell, RefCell};
 
+use crate::accounting::Ledger;
 use crate::archive::Archive;
 use crate::context::Context;
-use crate::evaluate::Ledger;
 use crate::problem::SatisficingProblem;
 use crate::space::{Region, Space};
 
@@ -13,8 +13,6 @@ use crate::space::{Region, Space};
 pub(crate) struct Calls {
     pub(crate) neighbours: Cell<u64>,
     pub(crate) bounds: Cell<u64>,
-    /// Whether the problem names neighbours, once asked.
-    pub(crate) offers_neighbours: Cell<Option<bool>>,
 }
 
 /// Memory for one position and its solution.
@@ -27,16 +25,15 @@ pub(crate) struct Scratch<S, T> {
 /// Memory that is not in use. A list, because an engine may ask again while it is visiting neighbours.
 pub(crate) type Scratches<S, T> = RefCell<Vec<Scratch<S, T>>>;
 
-pub(crate) struct View<'a, P: SatisficingProblem> {
+pub(crate) struct View<'a, P: SatisficingProblem + ?Sized> {
     pub(crate) problem: &'a P,
-    pub(crate) archive: &'a Archive<P::Solution>,
     pub(crate) previous: &'a Archive<P::Solution>,
-    pub(crate) ledger: &'a Ledger,
+    pub(crate) ledger: &'a Ledger<P::Solution>,
     pub(crate) calls: &'a Calls,
     pub(crate) scratches: &'a Scratches<P::Scalar, P::Solution>,
 }
 
-impl<P: SatisficingProblem> View<'_, P> {
+impl<P: SatisficingProblem + ?Sized> View<'_, P> {
     /// Lends memory that holds the position, brought inside.
     fn with_scratch<R>(
         &self,
@@ -78,19 +75,23 @@ impl<P: SatisficingProblem> View<'_, P> {
     }
 
     fn own_neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
+        let (Some(neighbourhood), Some(encoding)) = (self.problem.neighbourhood(), self.problem.encoding())
+        else {
+            return false;
+        };
         self.with_scratch(of, |scratch| {
             let (solution, values) = self.decode(scratch);
-            // Neighbours without an encoding are of no use to an engine.
-            if !self.problem.encode(solution, values) {
+            if !encoding.encode(solution, values) {
                 return false;
             }
             let space = self.problem.space();
-            self.problem.neighbours(solution, &mut |neighbour| {
-                if self.problem.encode(&neighbour, values) {
+            neighbourhood.neighbours(solution, &mut |neighbour| {
+                if encoding.encode(&neighbour, values) {
                     space.positions(values);
                     visit(values);
                 }
-            })
+            });
+            true
         })
     }
 
@@ -123,7 +124,7 @@ impl<P: SatisficingProblem> View<'_, P> {
     }
 }
 
-impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
+impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn space(&self) -> &Space<P::Scalar> {
         self.problem.space()
     }
@@ -137,41 +138,40 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         self.ledger.counts.evaluations
     }
     fn hits(&self) -> usize {
-        self.archive.len() - self.archive.hidden()
+        self.ledger.archive.len() - self.ledger.archive.probe_only()
     }
     fn is_deleted(&self, position: &[P::Scalar]) -> bool {
-        !self.archive.is_empty()
-            && self.with_scratch(position, |scratch| self.archive.contains(self.decode(scratch).0))
+        !self.ledger.archive.is_empty()
+            && self.with_scratch(position, |scratch| {
+                self.ledger.archive.contains(self.decode(scratch).0)
+            })
     }
     fn neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
         self.own_neighbours(of, visit) || self.lattice_neighbours(of, visit)
     }
     fn offers_neighbours(&self) -> bool {
-        let known = self.calls.offers_neighbours.get();
-        known.unwrap_or_else(|| {
-            // Asked at any one point; a problem either names neighbours or does not.
-            let corner = self.problem.space().region().lower;
-            let offers = self.own_neighbours(&corner, &mut |_| {});
-            self.calls.offers_neighbours.set(Some(offers));
-            offers
-        })
+        self.problem.neighbourhood().is_some() && self.problem.encoding().is_some()
     }
     fn lower_bound(&self, region: &Region<P::Scalar>) -> Option<P::Scalar> {
-        let bound = self.problem.lower_bound(region)?;
+        let bound = self.problem.bounds()?.lower_bound(region)?;
         self.calls.bounds.set(self.calls.bounds.get() + 1);
         Some(bound)
     }
     fn covers(&self, region: &Region<P::Scalar>) -> bool {
-        if self.archive.is_empty() {
+        if self.ledger.archive.is_empty() {
             return false;
         }
+        let Some(encoding) = self.problem.encoding() else {
+            return false;
+        };
         self.with_scratch(&region.lower, |scratch| {
             self.problem.space().positions(&mut scratch.values);
             let (corner, _) = self.decode(scratch);
             // A hit that covers the region is the same as its corner.
-            self.archive
-                .any_same(corner, |hit| self.problem.covers(hit, region))
+            self.ledger
+                .archive
+                .any_same(corner, |hit| encoding.covers(hit, region))
         })
     }
     fn evaluations_left(&self) -> u64 {
@@ -185,7 +185,8 @@ impl<P: SatisficingProblem> Context<P::Scalar> for View<'_, P> {
         let Some(hit) = self.previous.get(index) else {
             return false;
         };
-        let encoded = self.problem.encode(hit.solution, position);
+        let encoding = self.problem.encoding();
+        let encoded = encoding.is_some_and(|encoding| encoding.encode(hit.solution, position));
         if encoded {
             self.problem.space().positions(position);
         }

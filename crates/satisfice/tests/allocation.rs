@@ -5,6 +5,7 @@
 use allocation_counter::measure;
 use satisfice::engine::{self, EngineSpec};
 use satisfice::{Budget, SatisficingProblem, Search, Space, from_fn};
+use satisfice::{Encoding, Neighbourhood};
 
 /// Pairs of indices, as in collision detection.
 struct Pairs(Space<f64>);
@@ -24,11 +25,23 @@ impl SatisficingProblem for Pairs {
     fn threshold(&self) -> f64 {
         40.0
     }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, [u32; 2]>> {
+        Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<[u32; 2]>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, [u32; 2]> for Pairs {
     fn encode(&self, &[i, j]: &[u32; 2], values: &mut [f64]) -> bool {
         values.copy_from_slice(&[f64::from(i), f64::from(j)]);
         true
     }
-    fn neighbours(&self, &[i, j]: &[u32; 2], visit: &mut dyn FnMut([u32; 2])) -> bool {
+}
+
+impl Neighbourhood<[u32; 2]> for Pairs {
+    fn neighbours(&self, &[i, j]: &[u32; 2], visit: &mut dyn FnMut([u32; 2])) {
         for (k, l) in [
             (i.wrapping_sub(1), j),
             (i + 1, j),
@@ -39,14 +52,13 @@ impl SatisficingProblem for Pairs {
                 visit([k, l]);
             }
         }
-        true
     }
 }
 
 /// Allocations and hits of a run.
 fn run<P: SatisficingProblem<Scalar = f64>>(problem: &P, entry: &EngineSpec, evaluations: u64) -> (u64, u64) {
     // Probes keep every solution that they hit, new or not: they are left out, whatever the engine wishes.
-    let mut search = Search::new(entry.configure([]).unwrap()).seed(3).probes(0.0);
+    let mut search = Search::with(entry.configure([]).unwrap()).seed(3).probes(0.0);
     let mut hits = 0;
     let allocations = measure(|| {
         let report = search.run(problem, &Budget::evaluations(evaluations)).unwrap();

@@ -286,7 +286,7 @@ impl Engine<f64> for Deaf {
 #[test]
 fn an_engine_that_does_not_listen_overruns_no_budget() {
     let square = from_fn(Space::cube(2, 0.0, 1.0).unwrap(), 0.5, |x: &[f64]| x[0]);
-    let report = Search::new(ConfiguredEngine::custom("deaf", || Deaf))
+    let report = Search::with(ConfiguredEngine::custom("deaf", || Deaf))
         .run(&square, &Budget::evaluations(777))
         .unwrap();
     assert_eq!(report.counts.evaluations, 777);

@@ -16,7 +16,9 @@ use core::fmt::Write as _;
 use std::path::Path;
 use std::sync::Mutex;
 
-use satisfice::{Budget, Located, Real, Region, SatisficingProblem, Search, Space, engine};
+use satisfice::{
+    Bounds, Budget, Encoding, Located, Neighbourhood, Real, Region, SatisficingProblem, Search, Space, engine,
+};
 
 /// Points shown bit by bit.
 const SHOWN: usize = 8;
@@ -103,14 +105,26 @@ impl<S: Real> SatisficingProblem for Bowls<S> {
     fn threshold(&self) -> S {
         S::of(self.delta)
     }
+    fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
+        Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<Located<S>>> {
+        self.guides.then_some(self as _)
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<S>> {
+        self.guides.then_some(self as _)
+    }
+}
+
+impl<S: Real> Encoding<S, Located<S>> for Bowls<S> {
     fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
         values.copy_from_slice(&solution.coordinates);
         true
     }
-    fn neighbours(&self, of: &Located<S>, visit: &mut dyn FnMut(Located<S>)) -> bool {
-        if !self.guides {
-            return false;
-        }
+}
+
+impl<S: Real> Neighbourhood<Located<S>> for Bowls<S> {
+    fn neighbours(&self, of: &Located<S>, visit: &mut dyn FnMut(Located<S>)) {
         for (j, axis) in self.space.axes().iter().enumerate() {
             for step in [-S::one(), S::one()] {
                 let mut neighbour = of.clone();
@@ -120,12 +134,13 @@ impl<S: Real> SatisficingProblem for Bowls<S> {
                 }
             }
         }
-        true
     }
+}
+
+impl<S: Real> Bounds<S> for Bowls<S> {
     fn lower_bound(&self, region: &Region<S>) -> Option<S> {
         // A little less than the distance, because it is rounded.
-        self.guides
-            .then(|| S::of(0.999 * self.distance(&region.lower, &region.upper)))
+        Some(S::of(0.999 * self.distance(&region.lower, &region.upper)))
     }
 }
 
@@ -135,7 +150,7 @@ fn run<S: Real>(name: &str, settings: &[(&str, &str)], problem: &Bowls<S>, out: 
         .unwrap()
         .configure(settings.iter().copied())
         .unwrap();
-    let report = Search::new(engine)
+    let report = Search::with(engine)
         .seed(42)
         .run(problem, &Budget::evaluations(RUN))
         .unwrap();

@@ -21,7 +21,7 @@ fn hits(
                 .configure([("without", without)])
                 .unwrap();
             let problem = from_fn(space.clone(), delta, fitness).separation(0.02);
-            let mut search = Search::new(engine).seed(seed);
+            let mut search = Search::with(engine).seed(seed);
             search
                 .run(&problem, &Budget::evaluations(evaluations))
                 .unwrap()

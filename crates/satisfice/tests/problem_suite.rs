@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use core::sync::atomic::{AtomicU32, Ordering};
+use satisfice::{Bounds, Encoding, Neighbourhood};
 
 use satisfice::testing::problem::{Law, check};
 use satisfice::{Axis, Region, SatisficingProblem, Space, from_fn};
@@ -94,6 +95,25 @@ impl SatisficingProblem for Faulty {
             3.0
         }
     }
+    fn canonical(&self, hit: &[i64; 2]) -> Option<[i64; 2]> {
+        match self.fault {
+            Fault::RepresentativeIsNoHit => Some([19, 19]),
+            Fault::RepresentativesWander => Some([hit[0], (hit[1] - 1).max(0)]),
+            _ => None,
+        }
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, [i64; 2]>> {
+        Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<[i64; 2]>> {
+        Some(self)
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, [i64; 2]> for Faulty {
     fn encode(&self, &[a, b]: &[i64; 2], values: &mut [f64]) -> bool {
         values.copy_from_slice(&[a as f64, b as f64]);
         match self.fault {
@@ -103,28 +123,26 @@ impl SatisficingProblem for Faulty {
         }
         true
     }
-    fn neighbours(&self, &[a, b]: &[i64; 2], visit: &mut dyn FnMut([i64; 2])) -> bool {
+}
+
+impl Neighbourhood<[i64; 2]> for Faulty {
+    fn neighbours(&self, &[a, b]: &[i64; 2], visit: &mut dyn FnMut([i64; 2])) {
         if self.fault == Fault::NeighboursAlternate && self.count() % 2 == 1 {
-            return true;
+            return;
         }
         if a < 19 || self.fault == Fault::NeighboursLeaveTheSpace {
             visit([a + 1, b]);
         }
-        true
     }
+}
+
+impl Bounds<f64> for Faulty {
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         Some(match self.fault {
             Fault::BoundIsTooHigh => (region.upper[0] + region.lower[1]) / 3.0,
             Fault::BoundIsNaN => f64::NAN,
             _ => (region.lower[0] + region.lower[1]) / 3.0,
         })
-    }
-    fn canonical(&self, hit: [i64; 2]) -> [i64; 2] {
-        match self.fault {
-            Fault::RepresentativeIsNoHit => [19, 19],
-            Fault::RepresentativesWander => [hit[0], (hit[1] - 1).max(0)],
-            _ => hit,
-        }
     }
 }
 

@@ -457,8 +457,8 @@ fn recalls(
     warm: bool,
     seed: u64,
 ) -> Result<Vec<f64>, Error> {
-    let fresh = |frame: u64| -> Result<Search<f64, (u32, u32)>, Error> {
-        Ok(Search::new(engine::build(name)?).seed(seed.wrapping_mul(1000).wrapping_add(frame)))
+    let fresh = |frame: u64| -> Result<Search<VertexPairs>, Error> {
+        Ok(Search::with(engine::build(name)?).seed(seed.wrapping_mul(1000).wrapping_add(frame)))
     };
     let mut search = fresh(0)?;
     let mut recalls = Vec::new();

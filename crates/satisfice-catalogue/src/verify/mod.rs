@@ -6,7 +6,7 @@ mod solutions;
 use core::fmt;
 
 pub use accounting::accounting;
-pub use solutions::{LISTED_BEFORE, solutions, solutions_by};
+pub use solutions::{LISTED_BEFORE, best_by, solutions, solutions_by};
 
 use crate::report::{RunReport, recall};
 

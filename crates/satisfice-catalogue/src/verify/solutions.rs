@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use satisfice::{Archive, Real, SatisficingProblem};
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 use super::Mismatch;
 use crate::report::{RunReport, Solution};
@@ -27,23 +28,70 @@ where
     }
     let mut seen = Archive::default();
     mismatches.extend(solutions_by(report, problem.threshold().f64(), |listed| {
-        let solution: P::Solution =
-            serde_json::from_value(listed.solution.clone()).map_err(|error| error.to_string())?;
-        // A file may contain anything, and a problem may panic on solutions that its own `decode` never returns.
-        let evaluated = catch_unwind(AssertUnwindSafe(|| {
-            is_inside(problem, &solution).then(|| problem.fitness(&solution).f64())
-        }));
-        let fitness = evaluated
-            .ok()
-            .flatten()
-            .ok_or("a solution inside the space of the problem")?;
-        if seen.insert(solution, listed.evaluation, listed.seconds) {
+        let (solution, fitness) = evaluate(problem, &listed.solution)?;
+        if seen.insert(solution, fitness, listed.evaluation, listed.seconds) {
             Ok(fitness)
         } else {
             Err(LISTED_BEFORE.to_owned())
         }
     }));
+    mismatches.extend(best_by(report, |solution| {
+        evaluate(problem, solution).map(|(_, fitness)| fitness)
+    }));
     mismatches
+}
+
+/// The solution and its fitness, or what is expected instead.
+fn evaluate<P>(problem: &P, solution: &Value) -> Result<(P::Solution, f64), String>
+where
+    P: SatisficingProblem,
+    P::Solution: DeserializeOwned,
+{
+    let solution: P::Solution =
+        serde_json::from_value(solution.clone()).map_err(|error| error.to_string())?;
+    // A file may contain anything, and a problem may panic on solutions that its own `decode` never returns.
+    let evaluated = catch_unwind(AssertUnwindSafe(|| {
+        is_inside(problem, &solution).then(|| problem.fitness(&solution).f64())
+    }));
+    let fitness = evaluated
+        .ok()
+        .flatten()
+        .ok_or("a solution inside the space of the problem")?;
+    Ok((solution, fitness))
+}
+
+/// Checks that the best candidate of a report has the fitness listed and is no worse than any hit.
+pub fn best_by(report: &RunReport, evaluate: impl FnOnce(&Value) -> Result<f64, String>) -> Vec<Mismatch> {
+    let least = report.solutions.iter().map(|hit| hit.fitness);
+    let least = least.fold(f64::INFINITY, f64::min);
+    let Some(best) = &report.best else {
+        let missing =
+            (report.hits > 0).then(|| Mismatch::new("best", "null", format!("F = {least} or less")));
+        return missing.into_iter().collect();
+    };
+    let mut mismatches = Vec::new();
+    match evaluate(&best.solution) {
+        Err(expected) => mismatches.push(Mismatch::new("best.solution", &best.solution, expected)),
+        Ok(fitness) if !agree(fitness, best.fitness, report.threshold) => {
+            mismatches.push(Mismatch::new("best.fitness", best.fitness, fitness));
+        }
+        Ok(_) => {}
+    }
+    if best.fitness > least && !agree(best.fitness, least, report.threshold) {
+        let expected = format!("at most {least}, the fitness of a hit");
+        mismatches.push(Mismatch::new("best.fitness", best.fitness, expected));
+    }
+    if !(1..=report.counts.evaluations).contains(&best.evaluation) {
+        let expected = format!("from 1 to {}", report.counts.evaluations);
+        mismatches.push(Mismatch::new("best.evaluation", best.evaluation, expected));
+    }
+    mismatches
+}
+
+/// Whether two values of F differ only by rounding. NaN agrees with nothing.
+fn agree(a: f64, b: f64, threshold: Option<f64>) -> bool {
+    let scale = a.abs().max(threshold.map_or(0.0, f64::abs));
+    (a - b).abs() <= ROUNDING * scale
 }
 
 /// What is expected instead of a solution that a report lists for the second time.
@@ -81,14 +129,7 @@ pub fn solutions_by(
                 format!("F < {threshold}"),
             ));
         }
-        let scale = if threshold.is_finite() {
-            fitness.abs().max(threshold.abs())
-        } else {
-            fitness.abs()
-        };
-        // Written so that NaN fails.
-        let agrees = (fitness - listed.fitness).abs() <= ROUNDING * scale;
-        if !agrees {
+        if !agree(fitness, listed.fitness, report.threshold) {
             mismatches.push(Mismatch::new(place("fitness"), listed.fitness, fitness));
         }
     }
@@ -99,7 +140,9 @@ pub fn solutions_by(
 fn is_inside<P: SatisficingProblem>(problem: &P, solution: &P::Solution) -> bool {
     let axes = problem.space().axes();
     let mut values = vec![P::Scalar::default(); axes.len()];
-    !problem.encode(solution, &mut values)
+    !problem
+        .encoding()
+        .is_some_and(|encoding| encoding.encode(solution, &mut values))
         || axes.iter().zip(&values).all(|(axis, &value)| {
             (axis.lower()..=axis.upper()).contains(&value) && axis.value(value) == value
         })

@@ -187,6 +187,10 @@ impl Report {
                 world.fitness(&pair).map_err(|error| error.to_string())
             },
         ));
+        mismatches.extend(verify::best_by(&self.run, |solution| {
+            let pair = Pair::deserialize(solution).map_err(|error| error.to_string())?;
+            world.fitness(&pair).map_err(|error| error.to_string())
+        }));
         let solutions = self.run.solutions.iter();
         let listed: Vec<_> = solutions
             .filter_map(|solution| Found::new(solution, world).ok())

@@ -313,7 +313,9 @@ impl World {
         };
         let solution = (pair.a.feature, pair.b.feature);
         let mut values = [0.0; 2];
-        Ok(job.problem.canonical(solution) == solution && job.problem.encode(&solution, &mut values))
+        let encoding = job.problem.encoding();
+        let exists = encoding.is_some_and(|encoding| encoding.encode(&solution, &mut values));
+        Ok(exists && job.problem.canonical(&solution).is_none())
     }
 
     /// F of a pair that there is: its distance, or what a pair that counts as none has.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use anyhow::bail;
-use satisfice::{Cancel, StopReason};
+use satisfice::{Cancel, SatisficingProblem, StopReason};
 use satisfice_catalogue::{Limits, Progress, RunControl, RunReport, RunSpec, run};
 use satisfice_collision::broad::Method;
 use serde_json::json;
@@ -51,6 +51,16 @@ pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Re
             // As the exact methods give it: to the last digit, where F has ten.
             for contact in world.contacts(&[pair]) {
                 found.fitness = distance(&scene, contact, world.request.threshold)?;
+            }
+        }
+        if let Some(best) = &mut report.best {
+            let pair = serde_json::from_value(best.solution.take())?;
+            let pair = job.pair(job.problem.canonical(&pair).unwrap_or(pair));
+            best.solution = json!(pair);
+            if best.fitness < world.request.threshold {
+                for contact in world.contacts(&[pair]) {
+                    best.fitness = distance(&scene, contact, world.request.threshold)?;
+                }
             }
         }
         let stop = report.stop_reason;

@@ -2,6 +2,7 @@
 
 use satisfice::catalogue::Description;
 use satisfice::{Axis, Region, SatisficingProblem, Space};
+use satisfice::{Bounds, Encoding, Neighbourhood};
 
 use super::metric::{PointMetric, far};
 use super::ranges;
@@ -37,7 +38,7 @@ use crate::placement::Placement;
 /// let ball = generate::icosphere(1.0, 2)?;
 /// let other = Placement::from_translation([1.9, 0.0, 0.0])?.place(&ball)?;
 /// let problem = FeaturePairs::between(PairKind::TriangleTriangle, &ball, &other, 0.02)?;
-/// let report = Search::new(engine::build("branch-and-bound")?).run(&problem, &Budget::evaluations(1_000_000))?;
+/// let report = Search::with(engine::build("branch-and-bound")?).run(&problem, &Budget::evaluations(1_000_000))?;
 /// assert_eq!(report.hit_count(), problem.exact_pairs().len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -308,6 +309,36 @@ impl SatisficingProblem for FeaturePairs {
         self.threshold.get()
     }
 
+    fn canonical(&self, &hit: &(u32, u32)) -> Option<(u32, u32)> {
+        let ordered = self.ordered(hit.0, hit.1);
+        (ordered != hit).then_some(ordered)
+    }
+
+    fn description(&self) -> Description {
+        let own = if self.own.is_some() { "self-" } else { "" };
+        Description {
+            name: format!("{}-{own}pairs", self.kind),
+            parameters: vec![
+                ("delta".to_owned(), self.threshold.get().to_string()),
+                ("features-a".to_owned(), self.a.len().to_string()),
+                ("features-b".to_owned(), self.second().len().to_string()),
+                ("order".to_owned(), self.a.order.to_string()),
+            ],
+        }
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, (u32, u32)>> {
+        Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<(u32, u32)>> {
+        let has_some = !(self.a.neighbours.has_none() && self.second().neighbours.has_none());
+        has_some.then_some(self as _)
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, (u32, u32)> for FeaturePairs {
     fn encode(&self, &(i, j): &(u32, u32), values: &mut [f64]) -> bool {
         let (Some(p), Some(q)) = (self.a.position(i), self.second().position(j)) else {
             return false;
@@ -316,13 +347,12 @@ impl SatisficingProblem for FeaturePairs {
         values[1] = q;
         true
     }
+}
 
-    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        if self.a.neighbours.has_none() && self.second().neighbours.has_none() {
-            return false;
-        }
+impl Neighbourhood<(u32, u32)> for FeaturePairs {
+    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) {
         if !self.a.has(i) || !self.second().has(j) {
-            return true;
+            return;
         }
         let around_i = self.a.neighbours.neighbours(i);
         let around_j = self.second().neighbours.neighbours(j);
@@ -344,9 +374,10 @@ impl SatisficingProblem for FeaturePairs {
                 }
             }
         }
-        true
     }
+}
 
+impl Bounds<f64> for FeaturePairs {
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let a = self.a.around(region.lower[0], region.upper[0]);
         let b = self.second().around(region.lower[1], region.upper[1]);
@@ -356,22 +387,5 @@ impl SatisficingProblem for FeaturePairs {
             PairKind::VertexVertex => bound,
             _ => bound * (1.0 - measure::ACCURACY),
         })
-    }
-
-    fn canonical(&self, (i, j): (u32, u32)) -> (u32, u32) {
-        self.ordered(i, j)
-    }
-
-    fn description(&self) -> Description {
-        let own = if self.own.is_some() { "self-" } else { "" };
-        Description {
-            name: format!("{}-{own}pairs", self.kind),
-            parameters: vec![
-                ("delta".to_owned(), self.threshold.get().to_string()),
-                ("features-a".to_owned(), self.a.len().to_string()),
-                ("features-b".to_owned(), self.second().len().to_string()),
-                ("order".to_owned(), self.a.order.to_string()),
-            ],
-        }
     }
 }

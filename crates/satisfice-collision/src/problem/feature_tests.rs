@@ -65,7 +65,7 @@ fn the_tree_and_every_pair_decided_agree() {
 #[test]
 fn branch_and_bound_proves_the_exact_count() {
     for problem in scenes(0.12) {
-        let report = Search::new(engine::build("branch-and-bound").unwrap())
+        let report = Search::with(engine::build("branch-and-bound").unwrap())
             .run(&problem, &Budget::evaluations(10_000_000))
             .unwrap();
         let name = problem.description().name;
@@ -102,7 +102,7 @@ fn branch_and_bound_proves_vertex_pairs() {
         VertexPairs::within(&fold(), 0.12, 1).unwrap(),
         teapots.pairs().clone(),
     ] {
-        let report = Search::new(engine::build("branch-and-bound").unwrap())
+        let report = Search::with(engine::build("branch-and-bound").unwrap())
             .run(&problem, &Budget::evaluations(10_000_000))
             .unwrap();
         let found: BTreeSet<_> = report.hits().map(|hit| *hit.solution).collect();
@@ -119,7 +119,7 @@ fn branch_and_bound_proves_vertex_pairs() {
 #[test]
 fn engines_find_pairs_of_every_kind() {
     for problem in scenes(0.12) {
-        let report = Search::new(engine::build("descent-flood").unwrap())
+        let report = Search::with(engine::build("descent-flood").unwrap())
             .seed(1)
             .run(&problem, &Budget::evaluations(20_000))
             .unwrap();
@@ -147,7 +147,8 @@ fn a_feature_has_the_neighbours_that_share_a_vertex() {
     let mesh = Mesh::new(corners, vec![], vec![[0, 1, 2], [0, 2, 3], [2, 4, 5]]).unwrap();
     let visited = |problem: &FeaturePairs, of| {
         let mut all = Vec::new();
-        assert!(problem.neighbours(&of, &mut |pair| all.push(pair)));
+        let neighbourhood = problem.neighbourhood().unwrap();
+        neighbourhood.neighbours(&of, &mut |pair| all.push(pair));
         all
     };
     let coarse = FeaturePairs::between(PairKind::VertexTriangle, &mesh, &mesh, 9.0).unwrap();
@@ -175,15 +176,21 @@ fn frames_keep_positions_and_move_bounds() {
     let [a, b] = balls();
     let mut problem = FeaturePairs::between(PairKind::EdgeEdge, &a, &b, 0.05).unwrap();
     let (before, mut at, mut again) = (problem.exact_pairs(), [0.0; 2], [0.0; 2]);
-    assert!(problem.encode(&before[0], &mut at));
+    assert!(problem.encoding().unwrap().encode(&before[0], &mut at));
     let away = Placement::from_translation([0.0, 5.0, 0.0])
         .unwrap()
         .place(&b)
         .unwrap();
     problem.move_b(&away).unwrap();
-    assert!(problem.encode(&before[0], &mut again) && again == at);
+    assert!(problem.encoding().unwrap().encode(&before[0], &mut again) && again == at);
     assert!(
-        problem.exact_pairs().is_empty() && problem.lower_bound(&problem.space().region()).unwrap() > 1.0
+        problem.exact_pairs().is_empty()
+            && problem
+                .bounds()
+                .unwrap()
+                .lower_bound(&problem.space().region())
+                .unwrap()
+                > 1.0
     );
     assert!(problem.move_a(&fold()).is_err());
     let mut own = FeaturePairs::within(PairKind::VertexTriangle, &fold(), 0.12, 0).unwrap();
@@ -217,7 +224,8 @@ fn bodies_without_the_feature_and_bad_thresholds_are_refused() {
     }
     let problem = FeaturePairs::between(PairKind::TriangleTriangle, &ball, &ball, 0.1).unwrap();
     assert!(problem.fitness(&(0, 320)).is_nan() && problem.fitness(&(u32::MAX, 0)).is_nan());
-    assert!(!problem.encode(&(0, 320), &mut [0.0; 2]));
-    problem.neighbours(&(u32::MAX, 0), &mut |_| panic!("no feature has no neighbours"));
+    assert!(!problem.encoding().unwrap().encode(&(0, 320), &mut [0.0; 2]));
+    let neighbourhood = problem.neighbourhood().unwrap();
+    neighbourhood.neighbours(&(u32::MAX, 0), &mut |_| panic!("no feature has no neighbours"));
     assert!(problem.fitness(&(0, 0)) == 0.0 && measure::ACCURACY < 1e-9);
 }

@@ -1,7 +1,8 @@
 //! Problems of pairs that a catalogue makes from parameters: all that they have in common.
 
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
-use satisfice::{Error, Region, SatisficingProblem, Space};
+use satisfice::{Bounds, Encoding, Neighbourhood};
+use satisfice::{Error, SatisficingProblem, Space};
 
 /// How a scene is made from parameters, and what is asked of it. With it [`Prepared`] is the problem.
 pub trait Recipe {
@@ -98,19 +99,7 @@ impl<R: Recipe> SatisficingProblem for Prepared<R> {
     fn threshold(&self) -> f64 {
         self.pairs.threshold()
     }
-    fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
-        self.pairs.encode(solution, values)
-    }
-    fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        self.pairs.neighbours(of, visit)
-    }
-    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-        self.pairs.lower_bound(region)
-    }
-    fn covers(&self, hit: &(u32, u32), region: &Region<f64>) -> bool {
-        self.pairs.covers(hit, region)
-    }
-    fn canonical(&self, hit: (u32, u32)) -> (u32, u32) {
+    fn canonical(&self, hit: &(u32, u32)) -> Option<(u32, u32)> {
         self.pairs.canonical(hit)
     }
     fn description(&self) -> Description {
@@ -118,5 +107,14 @@ impl<R: Recipe> SatisficingProblem for Prepared<R> {
             name: R::NAME.to_owned(),
             parameters: self.parameters.clone(),
         }
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, (u32, u32)>> {
+        self.pairs.encoding()
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<(u32, u32)>> {
+        self.pairs.neighbourhood()
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        self.pairs.bounds()
     }
 }

@@ -1,6 +1,7 @@
 //! The vertex-vertex problem of Eq. 1: which pairs of vertices are closer than delta?
 
-use satisfice::{Region, SatisficingProblem, Space};
+use satisfice::{Bounds, Encoding, Neighbourhood};
+use satisfice::{SatisficingProblem, Space};
 
 use super::FeaturePairs;
 use super::side::Side;
@@ -34,7 +35,7 @@ use crate::order::VertexOrder;
 /// let ball = generate::icosphere(1.0, 2)?;
 /// let other = Placement::from_translation([1.9, 0.0, 0.0])?.place(&ball)?;
 /// let problem = VertexPairs::between(&ball, &other, 0.2)?;
-/// let report = Search::new(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(200_000))?;
+/// let report = Search::with(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(200_000))?;
 /// assert!(report.hit_count() <= problem.reference_pairs().len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -216,20 +217,7 @@ impl SatisficingProblem for VertexPairs {
         self.pairs.threshold()
     }
 
-    fn encode(&self, solution: &(u32, u32), values: &mut [f64]) -> bool {
-        self.pairs.encode(solution, values)
-    }
-
-    fn neighbours(&self, of: &(u32, u32), visit: &mut dyn FnMut((u32, u32))) -> bool {
-        self.pairs.neighbours(of, visit)
-    }
-
-    /// The distance of the boxes around the two ranges of vertices. O(log vertices).
-    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-        self.pairs.lower_bound(region)
-    }
-
-    fn canonical(&self, hit: (u32, u32)) -> (u32, u32) {
+    fn canonical(&self, hit: &(u32, u32)) -> Option<(u32, u32)> {
         self.pairs.canonical(hit)
     }
 
@@ -253,5 +241,14 @@ impl SatisficingProblem for VertexPairs {
             name: name.to_owned(),
             parameters,
         }
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, (u32, u32)>> {
+        self.pairs.encoding()
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<(u32, u32)>> {
+        self.pairs.neighbourhood()
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        self.pairs.bounds()
     }
 }

@@ -19,7 +19,7 @@ pub(crate) fn search<P: SatisficingProblem<Scalar = f64>>(
     hits: u64,
 ) -> Result<Report<P::Solution>, satisfice::Error> {
     let evaluations = if is_quick() { evaluations / 5 } else { evaluations };
-    let mut search = Search::new(engine::build("portfolio")?).seed(1);
+    let mut search = Search::with(engine::build("portfolio")?).seed(1);
     search.run(problem, &Budget::evaluations(evaluations).and_hits(hits))
 }
 

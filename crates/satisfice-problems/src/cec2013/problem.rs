@@ -1,5 +1,6 @@
 //! One problem of the suite as a satisficing problem.
 
+use satisfice::Encoding;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Axis, Error, Located, SatisficingProblem, Space};
 
@@ -258,15 +259,21 @@ impl SatisficingProblem for Cec2013 {
     fn threshold(&self) -> f64 {
         self.accuracy
     }
+    fn description(&self) -> Description {
+        self.description.clone()
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, Located<f64>>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, Located<f64>> for Cec2013 {
     fn encode(&self, solution: &Located<f64>, values: &mut [f64]) -> bool {
         let fits = solution.coordinates.len() == values.len() && self.space.contains(&solution.coordinates);
         if fits {
             values.copy_from_slice(&solution.coordinates);
         }
         fits
-    }
-    fn description(&self) -> Description {
-        self.description.clone()
     }
 }
 

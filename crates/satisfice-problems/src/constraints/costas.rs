@@ -3,7 +3,7 @@
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem};
 
-use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_methods, counted};
+use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_bounds, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
 
 const LARGEST: usize = 64;
@@ -93,6 +93,8 @@ impl Extendable for Costas {
 impl SatisficingProblem for Costas {
     constraint_methods!();
 }
+
+constraint_bounds!(Costas);
 
 impl Catalogued for Costas {
     const NAME: &'static str = "costas";

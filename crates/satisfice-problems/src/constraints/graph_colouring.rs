@@ -3,7 +3,7 @@
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem};
 
-use super::{Extendable, Violations, constraint_methods, counted, dimacs};
+use super::{Extendable, Violations, constraint_bounds, constraint_methods, counted, dimacs};
 use crate::lattice::{Lattice, description};
 
 /// Generalised Petersen graphs G(n, k): name, n, k.
@@ -137,6 +137,8 @@ impl Extendable for GraphColouring {
 impl SatisficingProblem for GraphColouring {
     constraint_methods!();
 }
+
+constraint_bounds!(GraphColouring);
 
 impl Catalogued for GraphColouring {
     const NAME: &'static str = "graph-colouring";

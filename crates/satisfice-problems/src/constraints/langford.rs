@@ -3,7 +3,7 @@
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem};
 
-use super::{Extendable, Violations, constraint_methods, counted};
+use super::{Extendable, Violations, constraint_bounds, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
 
 const LARGEST: usize = 60;
@@ -105,6 +105,8 @@ impl Extendable for Langford {
 impl SatisficingProblem for Langford {
     constraint_methods!();
 }
+
+constraint_bounds!(Langford);
 
 impl Catalogued for Langford {
     const NAME: &'static str = "langford";

@@ -3,7 +3,7 @@
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem};
 
-use super::{Extendable, Violations, constraint_methods, counted};
+use super::{Extendable, Violations, constraint_bounds, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
 
 const LARGEST: usize = 32;
@@ -84,6 +84,8 @@ impl Extendable for LatinSquare {
 impl SatisficingProblem for LatinSquare {
     constraint_methods!();
 }
+
+constraint_bounds!(LatinSquare);
 
 impl Catalogued for LatinSquare {
     const NAME: &'static str = "latin-square";

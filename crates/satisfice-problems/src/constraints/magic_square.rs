@@ -1,5 +1,6 @@
 //! Magic squares.
 
+use satisfice::Bounds;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, Region, SatisficingProblem};
 
@@ -99,11 +100,19 @@ impl SatisficingProblem for MagicSquare {
         }
         f64::from(violations)
     }
+    fn neighbourhood(&self) -> Option<&dyn satisfice::Neighbourhood<Vec<u32>>> {
+        Some(&self.lattice)
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        (!self.lattice.has_keys()).then_some(self as _)
+    }
+}
 
+impl Bounds<f64> for MagicSquare {
     /// How far the range of each line's sum is from the wanted one; sums of whole numbers are exact.
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let cells = self.n * self.n;
-        if self.lattice.has_keys() || region.lower.len() != cells || region.upper.len() != cells {
+        if region.lower.len() != cells || region.upper.len() != cells {
             return None;
         }
         let sum = |ends: &[f64], line: &[usize]| line.iter().map(|&cell| ends[cell]).sum::<f64>();
@@ -114,11 +123,6 @@ impl SatisficingProblem for MagicSquare {
                 .max(0.0)
         };
         Some(self.lines.iter().map(line).sum())
-    }
-
-    fn neighbours(&self, of: &Vec<u32>, visit: &mut dyn FnMut(Vec<u32>)) -> bool {
-        self.lattice.changes(of, visit);
-        true
     }
 }
 

@@ -65,7 +65,7 @@ trait Violations {
     fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32;
 }
 
-/// `fitness`, `lower_bound` and `neighbours` from `Violations`, beside `lattice_methods!`.
+/// The methods of `SatisficingProblem` from `Violations`, beside `lattice_methods!`; needs `constraint_bounds!`.
 macro_rules! constraint_methods {
     () => {
         $crate::lattice::lattice_methods!();
@@ -78,26 +78,37 @@ macro_rules! constraint_methods {
             f64::from(self.violations(|variable| Some(values[variable])))
         }
 
-        /// Violations among the variables that the region leaves no choice.
-        fn lower_bound(&self, region: &satisfice::Region<f64>) -> Option<f64> {
-            let n = self.lattice.space().dimension();
-            if self.lattice.has_keys() || region.lower.len() != n || region.upper.len() != n {
-                return None;
-            }
-            let fixed = |variable: usize| {
-                let value = region.lower[variable];
-                (value == region.upper[variable]).then_some(value as u32)
-            };
-            Some(f64::from(self.violations(fixed)))
+        fn neighbourhood(&self) -> Option<&dyn satisfice::Neighbourhood<Vec<u32>>> {
+            Some(&self.lattice)
         }
 
-        fn neighbours(&self, of: &Vec<u32>, visit: &mut dyn FnMut(Vec<u32>)) -> bool {
-            self.lattice.changes(of, visit);
-            true
+        fn bounds(&self) -> Option<&dyn satisfice::Bounds<f64>> {
+            (!self.lattice.has_keys()).then_some(self as _)
         }
     };
 }
 use constraint_methods;
+
+/// Lower bounds from `Violations`.
+macro_rules! constraint_bounds {
+    ($problem:ty) => {
+        impl satisfice::Bounds<f64> for $problem {
+            /// Violations among the variables that the region leaves no choice.
+            fn lower_bound(&self, region: &satisfice::Region<f64>) -> Option<f64> {
+                let n = self.lattice.space().dimension();
+                if region.lower.len() != n || region.upper.len() != n {
+                    return None;
+                }
+                let fixed = |variable: usize| {
+                    let value = region.lower[variable];
+                    (value == region.upper[variable]).then_some(value as u32)
+                };
+                Some(f64::from(self.violations(fixed)))
+            }
+        }
+    };
+}
+use constraint_bounds;
 
 /// Reference counts are made by backtracking within this many nodes: a second or two.
 const NODES: u64 = 30_000_000;

@@ -3,7 +3,7 @@
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem};
 
-use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_methods, counted};
+use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_bounds, constraint_methods, counted};
 use crate::lattice::{Lattice, description};
 
 const LARGEST: usize = 1000;
@@ -88,6 +88,8 @@ impl Extendable for Queens {
 impl SatisficingProblem for Queens {
     constraint_methods!();
 }
+
+constraint_bounds!(Queens);
 
 impl Catalogued for Queens {
     const NAME: &'static str = "queens";

@@ -5,7 +5,7 @@ use core::fmt::Write;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem, SearchRng};
 
-use super::{Extendable, Violations, constraint_methods, counted, dimacs};
+use super::{Extendable, Violations, constraint_bounds, constraint_methods, counted, dimacs};
 use crate::lattice::{Lattice, description};
 
 /// A formula in conjunctive normal form.
@@ -163,6 +163,8 @@ impl Extendable for Sat {
 impl SatisficingProblem for Sat {
     constraint_methods!();
 }
+
+constraint_bounds!(Sat);
 
 impl Catalogued for Sat {
     const NAME: &'static str = "sat";

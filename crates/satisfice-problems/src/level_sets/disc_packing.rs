@@ -1,5 +1,6 @@
 //! Discs that do not overlap.
 
+use satisfice::Encoding;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Axis, Error, SatisficingProblem, Space};
 
@@ -115,16 +116,6 @@ impl SatisficingProblem for DiscPacking {
         );
         cells.sort_unstable();
     }
-    fn encode(&self, cells: &Vec<u32>, values: &mut [f64]) -> bool {
-        if !self.holds(cells) || !cells.is_sorted() || values.len() != 2 * self.discs {
-            return false;
-        }
-        for (point, &cell) in values.chunks_exact_mut(2).zip(cells) {
-            point[0] = f64::from(cell % self.grid);
-            point[1] = f64::from(cell / self.grid);
-        }
-        true
-    }
     #[inline]
     fn fitness(&self, cells: &Vec<u32>) -> f64 {
         if !self.holds(cells) {
@@ -143,6 +134,22 @@ impl SatisficingProblem for DiscPacking {
     }
     fn description(&self) -> Description {
         self.description.clone()
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, Vec<u32>>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, Vec<u32>> for DiscPacking {
+    fn encode(&self, cells: &Vec<u32>, values: &mut [f64]) -> bool {
+        if !self.holds(cells) || !cells.is_sorted() || values.len() != 2 * self.discs {
+            return false;
+        }
+        for (point, &cell) in values.chunks_exact_mut(2).zip(cells) {
+            point[0] = f64::from(cell % self.grid);
+            point[1] = f64::from(cell / self.grid);
+        }
+        true
     }
 }
 

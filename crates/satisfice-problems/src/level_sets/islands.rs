@@ -1,5 +1,6 @@
 //! Eight balls in four dimensions.
 
+use satisfice::Bounds;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, Region, SatisficingProblem};
 
@@ -86,7 +87,12 @@ impl SatisficingProblem for Islands {
         }
         self.least(|axis, squares| squares.table()[cells[axis] as usize])
     }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
 
+impl Bounds<f64> for Islands {
     /// From the least parts along each axis; rounding is monotone and in the order of the fitness.
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         (region.lower.len() == DIMENSION && region.upper.len() == DIMENSION)

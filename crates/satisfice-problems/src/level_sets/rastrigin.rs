@@ -1,6 +1,7 @@
 //! The level set of Rastrigin's function.
 
 use core::f64::consts::TAU;
+use satisfice::Bounds;
 
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, Region, SatisficingProblem};
@@ -82,7 +83,12 @@ impl SatisficingProblem for Rastrigin {
         let terms = self.terms.table();
         cells.iter().fold(0.0, |sum, &cell| sum + terms[cell as usize])
     }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
 
+impl Bounds<f64> for Rastrigin {
     /// The sum of the least terms. Rounding is monotone and both sums run in the same order: no fitness is below it.
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let axes = region.lower.iter().zip(&region.upper);

@@ -1,5 +1,6 @@
 //! A thin spherical shell.
 
+use satisfice::Bounds;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, Region, SatisficingProblem};
 
@@ -72,7 +73,12 @@ impl SatisficingProblem for Shell {
         let square = cells.iter().fold(0.0, |sum, &cell| sum + squares[cell as usize]);
         (square.sqrt() - RADIUS).abs()
     }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
 
+impl Bounds<f64> for Shell {
     /// From the least and the greatest distance of the region. Sums, root and difference are rounded monotonely and in the
     /// order of the fitness: no fitness is below it.
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {

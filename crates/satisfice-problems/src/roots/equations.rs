@@ -2,6 +2,7 @@
 
 use satisfice::interval::{Interval, IntervalOps, lower_bound, side};
 use satisfice::{Axis, Error, Located, Region, Space};
+use satisfice::{Bounds, Encoding};
 
 use super::newton;
 use crate::number::{Dual, Number};
@@ -88,14 +89,6 @@ impl Equations {
         solution.separation = self.separation;
     }
 
-    pub(crate) fn encode(&self, solution: &Located<f64>, values: &mut [f64]) -> bool {
-        let fits = solution.coordinates.len() == values.len() && self.space.contains(&solution.coordinates);
-        if fits {
-            values.copy_from_slice(&solution.coordinates);
-        }
-        fits
-    }
-
     /// The sum of the squares of the equations.
     #[inline]
     pub(crate) fn fitness(&self, x: &[f64]) -> f64 {
@@ -108,8 +101,31 @@ impl Equations {
         residuals[..self.residuals].iter().fold(0.0, |sum, e| sum + e * e)
     }
 
+    /// The root that Newton's method finds from a hit; `None` if it finds none inside the box.
+    pub(crate) fn canonical(&self, hit: &Located<f64>) -> Option<Located<f64>> {
+        Some(Located {
+            coordinates: newton::polish(self, &hit.coordinates)?,
+            separation: hit.separation,
+        })
+    }
+}
+
+impl Encoding<f64, Located<f64>> for Equations {
+    fn encode(&self, solution: &Located<f64>, values: &mut [f64]) -> bool {
+        let fits = solution.coordinates.len() == values.len() && self.space.contains(&solution.coordinates);
+        if fits {
+            values.copy_from_slice(&solution.coordinates);
+        }
+        fits
+    }
+    fn covers(&self, hit: &Located<f64>, region: &Region<f64>) -> bool {
+        hit.covers(region)
+    }
+}
+
+impl Bounds<f64> for Equations {
     /// The same in interval arithmetic, which contains every rounding of `fitness`.
-    pub(crate) fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let n = self.space.dimension();
         if region.lower.len() != n || region.upper.len() != n {
             return None;
@@ -123,14 +139,6 @@ impl Equations {
         (self.functions.interval)(&x[..n], &mut residuals[..self.residuals]);
         let squares = residuals[..self.residuals].iter().map(|e| e.square());
         lower_bound(squares.fold(zero, |sum, square| sum + square))
-    }
-
-    /// The root that Newton's method finds from a hit; the hit itself where it finds none inside the box.
-    pub(crate) fn canonical(&self, mut hit: Located<f64>) -> Located<f64> {
-        if let Some(root) = newton::polish(self, &hit.coordinates) {
-            hit.coordinates = root;
-        }
-        hit
     }
 }
 
@@ -157,16 +165,13 @@ macro_rules! root_methods {
         fn threshold(&self) -> f64 {
             self.equations.threshold
         }
-        fn encode(&self, solution: &satisfice::Located<f64>, values: &mut [f64]) -> bool {
-            self.equations.encode(solution, values)
+        fn encoding(&self) -> Option<&dyn satisfice::Encoding<f64, satisfice::Located<f64>>> {
+            Some(&self.equations)
         }
-        fn lower_bound(&self, region: &satisfice::Region<f64>) -> Option<f64> {
-            self.equations.lower_bound(region)
+        fn bounds(&self) -> Option<&dyn satisfice::Bounds<f64>> {
+            Some(&self.equations)
         }
-        fn covers(&self, hit: &satisfice::Located<f64>, region: &satisfice::Region<f64>) -> bool {
-            hit.covers(region)
-        }
-        fn canonical(&self, hit: satisfice::Located<f64>) -> satisfice::Located<f64> {
+        fn canonical(&self, hit: &satisfice::Located<f64>) -> Option<satisfice::Located<f64>> {
             self.equations.canonical(hit)
         }
         fn description(&self) -> satisfice::catalogue::Description {

@@ -1,8 +1,7 @@
 //! Name and parameters, as reports show them.
 
 /// Name and parameters of a problem or an engine, as reports show them.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Description {
     /// Its name, `"unnamed"` by default.
     pub name: String,

@@ -163,7 +163,7 @@ impl<S: Real> ConfiguredEngine<S> {
     ///
     /// let problem = from_fn(Space::lattice(2, 50)?, 3.0, |x: &[f64]| x[0] + x[1]);
     /// let engine = ConfiguredEngine::custom("uniform", || Uniform);
-    /// let report = Search::new(engine).run(&problem, &Budget::evaluations(20_000))?;
+    /// let report = Search::with(engine).run(&problem, &Budget::evaluations(20_000))?;
     /// assert_eq!(report.hit_count(), 6);
     /// # Ok::<(), satisfice::Error>(())
     /// ```

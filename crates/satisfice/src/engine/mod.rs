@@ -41,8 +41,7 @@ pub enum Ask {
 }
 
 /// How a slice makes use of the hits of the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum WarmStart {
     /// Not at all.
     Cold,

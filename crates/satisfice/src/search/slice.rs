@@ -1,83 +1,72 @@
-//! What a slice holds between its beginning and its end.
+//! What a slice holds between its beginning and its end, and the stage it is at.
 
+use super::stage::{Pending, Source, Stage};
+use crate::accounting::{Ledger, Reached};
 use crate::archive::Archive;
 use crate::batch::Batch;
 use crate::budget::Budget;
 use crate::candidates::Candidates;
-use crate::engine::{Ask, Origin};
-use crate::evaluate::Ledger;
+use crate::engine::Ask;
 use crate::identity::Identity;
 use crate::probes::Probes;
 use crate::problem::SatisficingProblem;
+use crate::report::Counts;
 use crate::scalar::Real;
 use crate::view::{Calls, Scratches, View};
-
-use super::checkpoint::Pending;
 
 /// Hits of the slice before are verified in batches of this size.
 const VERIFY_BATCH: usize = 64;
 
 /// A slice that has begun.
 pub(super) struct Slice<S, T> {
-    pub(super) ledger: Ledger,
-    pub(super) archive: Archive<T>,
+    pub(super) ledger: Ledger<T>,
     pub(super) batch: Batch<S>,
     pub(super) candidates: Candidates<S, T>,
     pub(super) probes: Probes,
-    pub(super) origin: Origin,
-    /// How many hits of the slice before have been verified, or all of them where none is to be.
-    pub(super) verified: usize,
-    /// Where the verification of these ends, however many there are.
-    pub(super) verify_to: usize,
+    pub(super) stage: Stage<S>,
     /// What the engine's last `ask` said.
     pub(super) last: Ask,
-    pub(super) calls: Calls,
-    pub(super) scratches: Scratches<S, T>,
-    pub(super) outstanding: bool,
-    /// Whether a batch is proposed and not settled.
-    pub(super) pending: bool,
+    /// Which hits of the slice before are still to be verified, by index.
+    pub(super) to_verify: core::ops::Range<usize>,
     /// Evaluations after which nothing is proposed for the time being.
     pub(super) pause: u64,
-    /// A batch that was pending when the slice was saved.
-    pub(super) resumed: Option<Pending<S>>,
+    pub(super) calls: Calls,
+    pub(super) scratches: Scratches<S, T>,
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
-    /// A slice that begins now, in a space of so many axes, with an empty C.
-    pub(super) fn begin(budget: &Budget, dimension: usize, probes: Probes) -> Self {
+    /// A slice in a space of so many axes that begins now, or goes on from what it had reached.
+    pub(super) fn begin(
+        budget: &Budget,
+        dimension: usize,
+        probes: Probes,
+        to_verify: core::ops::Range<usize>,
+        reached: Reached<T>,
+    ) -> Self {
+        let calls = Calls::default();
+        calls.neighbours.set(reached.counts.neighbour_calls);
+        calls.bounds.set(reached.counts.bound_calls);
         Self {
-            ledger: Ledger::open(budget),
-            archive: Archive::default(),
+            ledger: Ledger::open(budget, reached),
             batch: Batch::new(dimension),
             candidates: Candidates::default(),
             probes,
-            origin: Origin::Engine,
-            verified: 0,
-            verify_to: usize::MAX,
+            stage: Stage::Propose,
             last: Ask::More,
-            calls: Calls::default(),
-            scratches: Scratches::default(),
-            outstanding: false,
-            pending: false,
+            to_verify,
             pause: u64::MAX,
-            resumed: None,
+            calls,
+            scratches: Scratches::default(),
         }
-    }
-
-    /// Whether hits of the slice before wait for their verification.
-    #[inline]
-    pub(super) fn is_verifying(&self, previous: &Archive<T>) -> bool {
-        self.verified < previous.len().min(self.verify_to)
     }
 
     #[inline]
     pub(super) fn view<'a, P>(&'a self, problem: &'a P, previous: &'a Archive<T>) -> View<'a, P>
     where
-        P: SatisficingProblem<Scalar = S, Solution = T>,
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
         View {
             problem,
-            archive: &self.archive,
             previous,
             ledger: &self.ledger,
             calls: &self.calls,
@@ -85,29 +74,42 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         }
     }
 
-    /// Prepares the candidates of the batch, as many as the budget has room for.
-    pub(super) fn prepare<P>(&mut self, problem: &P, deletes: bool)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T>,
-    {
-        let limit = self.ledger.remaining();
-        self.candidates
-            .prepare(problem, &self.archive, &mut self.batch, limit, deletes);
+    /// What was counted, calls of neighbours and bounds included.
+    pub(super) fn counts(&self) -> Counts {
+        Counts {
+            neighbour_calls: self.calls.neighbours.get(),
+            bound_calls: self.calls.bounds.get(),
+            ..self.ledger.counts
+        }
     }
 
-    /// The next hits of the slice before, to be evaluated anew.
-    pub(super) fn propose_previous<P>(&mut self, problem: &P, previous: &Archive<T>, limit: usize)
+    /// Prepares the candidates of the batch, as many as the budget has room for.
+    #[inline]
+    pub(super) fn prepare<P>(&mut self, problem: &P, from: Source, deletes: bool)
     where
-        P: SatisficingProblem<Scalar = S, Solution = T>,
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
-        let space = problem.space();
-        let next = &previous.solutions()[self.verified..previous.len().min(self.verify_to)];
+        let limit = self.ledger.remaining();
+        self.candidates.probing = from == Source::Probes;
+        self.candidates
+            .prepare(problem, &self.ledger.archive, &mut self.batch, limit, deletes);
+        self.stage = Stage::Settle(from);
+    }
+
+    /// Proposes the next hits of the slice before, to be evaluated again.
+    pub(super) fn propose_previous<P>(&mut self, problem: &P, previous: &Archive<T>)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let (space, limit) = (problem.space(), self.ledger.remaining());
+        let next = &previous.solutions()[self.to_verify.clone()];
         let next = &next[..next.len().min(VERIFY_BATCH).min(limit)];
+        let encoding = problem.encoding();
         self.batch.clear();
         for solution in next {
             let mut encoded = true;
             self.batch.push_with(|position| {
-                encoded = problem.encode(solution, position);
+                encoded = encoding.is_some_and(|encoding| encoding.encode(solution, position));
                 space.positions(position);
             });
             if !encoded {
@@ -115,9 +117,80 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
                 break;
             }
         }
-        self.origin = Origin::WarmStart;
-        self.verified += next.len();
+        self.to_verify.start += next.len();
+        self.candidates.probing = false;
         self.candidates
-            .prepare_solutions(next.iter(), &self.archive, limit);
+            .prepare_solutions(next.iter(), &self.ledger.archive, limit);
+        self.stage = Stage::Settle(Source::WarmStart);
+    }
+
+    /// Proposes the next uniform probes, at most so many.
+    pub(super) fn propose_probes<P>(&mut self, problem: &P, most: usize)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        self.probes.propose(problem, &mut self.batch);
+        self.batch.truncate(most);
+        self.prepare(problem, Source::Probes, true);
+    }
+
+    /// Prepares a batch again that was out when the slice was saved.
+    pub(super) fn propose_again<P>(
+        &mut self,
+        problem: &P,
+        previous: &Archive<T>,
+        pending: Pending<S>,
+        deletes: bool,
+    ) where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        if pending.from == Source::WarmStart {
+            self.propose_previous(problem, previous);
+        } else {
+            let dimension = self.batch.dimension();
+            if let Some(batch) = Batch::from_positions(pending.positions, dimension) {
+                self.batch = batch;
+            }
+            self.prepare(problem, pending.from, deletes || pending.from == Source::Probes);
+        }
+        self.candidates.resume(&pending.computed);
+    }
+
+    /// The batch that is out, to be saved.
+    pub(super) fn pending(&self) -> Option<Pending<S>> {
+        let from = match &self.stage {
+            Stage::Propose => return None,
+            Stage::Repeat(pending) => return Some(pending.clone()),
+            Stage::Settle(from) | Stage::Asked(from) => *from,
+        };
+        Some(Pending {
+            from,
+            positions: self.batch.positions().to_vec(),
+            computed: self.candidates.computed(),
+        })
+    }
+
+    /// Where the verification goes on once a pending batch is proposed again.
+    pub(super) fn verified_before_pending(&self) -> usize {
+        match self.stage {
+            Stage::Settle(Source::WarmStart) | Stage::Asked(Source::WarmStart) => {
+                self.to_verify.start - self.candidates.outcomes.len()
+            }
+            _ => self.to_verify.start,
+        }
+    }
+
+    /// Settles a batch of probes.
+    pub(super) fn settle_probes<P>(&mut self, problem: &P)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        self.probes.take(
+            problem,
+            &self.batch,
+            &self.candidates.outcomes,
+            &self.ledger.archive,
+        );
+        self.ledger.counts.probes = self.probes.count();
     }
 }

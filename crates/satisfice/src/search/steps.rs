@@ -1,20 +1,18 @@
 //! The search as seen by an engine that advances by itself, a point at a time.
 
-use crate::archive::Archive;
+use crate::accounting::Ledger;
 use crate::batch::Outcome;
 use crate::candidates::Candidates;
 use crate::engine::Steps;
-use crate::evaluate::Ledger;
 use crate::observer::Observer;
 use crate::probes::Probes;
 use crate::problem::SatisficingProblem;
 
 /// What a step needs of the slice.
-pub(super) struct SingleSteps<'a, P: SatisficingProblem> {
+pub(super) struct SingleSteps<'a, P: SatisficingProblem + ?Sized> {
     pub(super) problem: &'a P,
-    pub(super) ledger: &'a mut Ledger,
+    pub(super) ledger: &'a mut Ledger<P::Solution>,
     pub(super) candidates: &'a mut Candidates<P::Scalar, P::Solution>,
-    pub(super) archive: &'a mut Archive<P::Solution>,
     pub(super) probes: &'a Probes,
     pub(super) observer: &'a mut dyn Observer<P::Solution>,
     pub(super) deletes: bool,
@@ -24,7 +22,7 @@ pub(super) struct SingleSteps<'a, P: SatisficingProblem> {
     pub(super) over: bool,
 }
 
-impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
+impl<P: SatisficingProblem + ?Sized> Steps<P::Scalar> for SingleSteps<'_, P> {
     fn take(&mut self, position: &mut [P::Scalar]) -> (Outcome<P::Scalar>, bool) {
         if self.over {
             return (Outcome::NotEvaluated, false); // no budget is overrun by an engine that does not listen
@@ -39,7 +37,6 @@ impl<P: SatisficingProblem> Steps<P::Scalar> for SingleSteps<'_, P> {
             self.candidates,
             position,
             self.deletes,
-            self.archive,
             self.observer,
         );
         let evaluations = self.ledger.counts.evaluations;

@@ -3,6 +3,7 @@
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Mutex;
 
+use crate::capability::{Encoding, Neighbourhood};
 use crate::error::Error;
 use crate::identity::Located;
 use crate::problem::SatisficingProblem;
@@ -178,17 +179,24 @@ impl<S: Real> SatisficingProblem for Case<S> {
         self.radius + self.shift
     }
 
-    fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
-        if self.offers {
-            values.copy_from_slice(&solution.coordinates);
-        }
-        self.offers
+    fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
+        self.offers.then_some(self as _)
     }
 
-    fn neighbours(&self, of: &Located<S>, visit: &mut dyn FnMut(Located<S>)) -> bool {
-        if !self.offers {
-            return false;
-        }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<Located<S>>> {
+        self.offers.then_some(self as _)
+    }
+}
+
+impl<S: Real> Encoding<S, Located<S>> for Case<S> {
+    fn encode(&self, solution: &Located<S>, values: &mut [S]) -> bool {
+        values.copy_from_slice(&solution.coordinates);
+        true
+    }
+}
+
+impl<S: Real> Neighbourhood<Located<S>> for Case<S> {
+    fn neighbours(&self, of: &Located<S>, visit: &mut dyn FnMut(Located<S>)) {
         for (j, axis) in self.space.axes().iter().enumerate() {
             let step = if axis.is_integer() {
                 S::one()
@@ -203,7 +211,6 @@ impl<S: Real> SatisficingProblem for Case<S> {
                 }
             }
         }
-        true
     }
 }
 

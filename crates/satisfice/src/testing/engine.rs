@@ -127,8 +127,8 @@ impl<S: Real> Suite<'_, S> {
         }
     }
 
-    fn search(&mut self) -> Result<Search<S, Located<S>>, Error> {
-        Ok(Search::new(self.engine.clone()).seed(42))
+    fn search(&mut self) -> Result<Search<Case<S>>, Error> {
+        Ok(Search::with(self.engine.clone()).seed(42))
     }
 
     /// A run by the engine; its report is audited.
@@ -140,20 +140,20 @@ impl<S: Real> Suite<'_, S> {
     /// The same run, driven by hand.
     fn run_by_hand(&mut self, case: &Case<S>, budget: &Budget) -> Result<Report<Located<S>>, Error> {
         let mut search = self.search()?;
-        search.begin(case, budget)?;
+        let mut slice = search.start(case, budget)?;
         loop {
-            let fitness: Vec<S> = search.ask(case)?.iter().map(|c| case.fitness(c)).collect();
+            let fitness: Vec<S> = slice.ask()?.iter().map(|c| case.fitness(c)).collect();
             if fitness.is_empty() {
-                return search.finish(case);
+                return Ok(slice.finish());
             }
-            search.tell(case, &fitness)?;
+            slice.tell(&fitness)?;
         }
     }
 
     /// A slice of this search; its report is audited.
     fn run_by(
         &mut self,
-        search: &mut Search<S, Located<S>>,
+        search: &mut Search<Case<S>>,
         case: &Case<S>,
         budget: &Budget,
     ) -> Result<Report<Located<S>>, Error> {

@@ -29,8 +29,8 @@ pub enum Law {
     Fitness,
     /// What is encoded is inside the bounds, whole on integer axes, and decodes to the same solution.
     Encode,
-    /// Neighbours come in the same order each time; those that are encoded are inside and decode to themselves. Offered for
-    /// one solution, they are offered for all.
+    /// Neighbours are offered together with an encoding, and come in the same order each time; those that are encoded are
+    /// inside and decode to themselves.
     Neighbours,
     /// No F in a region is below its lower bound, which is no NaN.
     LowerBound,
@@ -214,7 +214,8 @@ impl<P: SatisficingProblem> Suite<'_, P> {
     /// Whether a solution that can be encoded decodes to itself.
     fn encodes_to_itself(&mut self, law: Law, point: &[P::Scalar], solution: &P::Solution) {
         let mut values = vec![P::Scalar::of(f64::NAN); point.len()];
-        if !self.problem.encode(solution, &mut values) {
+        let encoding = self.problem.encoding();
+        if !encoding.is_some_and(|encoding| encoding.encode(solution, &mut values)) {
             return;
         }
         if let Some(what) = self.outside(&values) {
@@ -229,27 +230,21 @@ impl<P: SatisficingProblem> Suite<'_, P> {
     }
 
     fn neighbours(&mut self, points: &[Point<P>]) {
-        let mut offered = None;
+        let Some(neighbourhood) = self.problem.neighbourhood() else {
+            return;
+        };
+        if self.problem.encoding().is_none() {
+            self.say(
+                Law::Neighbours,
+                &points[0],
+                "neighbours are offered without an encoding",
+            );
+        }
         for point in points {
             let solution = self.problem.decode(point);
             let [mut first, mut second] = [Vec::new(), Vec::new()];
-            let offers = self.problem.neighbours(&solution, &mut |n| first.push(n));
-            if self.problem.neighbours(&solution, &mut |n| second.push(n)) != offers
-                || *offered.get_or_insert(offers) != offers
-            {
-                self.say(
-                    Law::Neighbours,
-                    point,
-                    "neighbours are offered at times, at other times not",
-                );
-            }
-            if !offers && !first.is_empty() {
-                self.say(
-                    Law::Neighbours,
-                    point,
-                    "neighbours are visited and said not to be offered",
-                );
-            }
+            neighbourhood.neighbours(&solution, &mut |neighbour| first.push(neighbour));
+            neighbourhood.neighbours(&solution, &mut |neighbour| second.push(neighbour));
             if first.len() != second.len() || first.iter().zip(&second).any(|(a, b)| !a.same(b)) {
                 self.say(Law::Neighbours, point, "asked twice, there are other neighbours");
             }
@@ -260,9 +255,12 @@ impl<P: SatisficingProblem> Suite<'_, P> {
     }
 
     fn lower_bound(&mut self, points: &[Point<P>], rng: &mut SearchRng) {
+        let Some(bounds) = self.problem.bounds() else {
+            return;
+        };
         for i in 0..REGIONS {
             let region = region_between(&points[i % 3], &points[i]);
-            let bound = self.problem.lower_bound(&region);
+            let bound = bounds.lower_bound(&region);
             let Some(bound) = bound else { continue };
             if bound.is_nan() {
                 self.say(Law::LowerBound, &points[i], format!("it is NaN in {region:?}"));
@@ -282,7 +280,7 @@ impl<P: SatisficingProblem> Suite<'_, P> {
         for point in points {
             let region = region_between::<P::Scalar>(point, point);
             let fitness = self.problem.fitness(&self.problem.decode(point));
-            if let Some(bound) = self.problem.lower_bound(&region)
+            if let Some(bound) = bounds.lower_bound(&region)
                 && (fitness < bound || bound.is_nan())
             {
                 self.say(
@@ -301,10 +299,16 @@ impl<P: SatisficingProblem> Suite<'_, P> {
             if !is_hit(&solution) {
                 continue;
             }
-            let once = self.problem.canonical(solution);
+            let Some(once) = self.problem.canonical(&solution) else {
+                continue;
+            };
             if !is_hit(&once) {
                 self.say(Law::Canonical, point, "the representative of a hit is no hit");
-            } else if !self.problem.canonical(once.clone()).same(&once) {
+            } else if self
+                .problem
+                .canonical(&once)
+                .is_some_and(|twice| !twice.same(&once))
+            {
                 self.say(
                     Law::Canonical,
                     point,

@@ -133,7 +133,7 @@ mod tests {
         let budget = Budget::evaluations(20_000);
         let hits = |exhaust| {
             let engine = find("random").unwrap().configure([("exhaust", exhaust)]).unwrap();
-            let report = Search::new(engine).seed(1).run(&problem, &budget).unwrap();
+            let report = Search::with(engine).seed(1).run(&problem, &budget).unwrap();
             report.hit_count()
         };
         let all = (0..1_000_000)
@@ -148,7 +148,7 @@ mod tests {
         // Everything is a hit: the neighbourhoods never end.
         let problem = from_fn(Space::lattice(2, 1000).unwrap(), 2.0, |_: &[f64]| 1.0);
         let engine = build("random").unwrap().flood_fill();
-        let report = Search::new(engine)
+        let report = Search::with(engine)
             .seed(1)
             .run(&problem, &Budget::evaluations(4000))
             .unwrap();

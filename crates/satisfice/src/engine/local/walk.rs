@@ -108,7 +108,7 @@ mod tests {
             ..Walk::default()
         };
         let budget = Budget::evaluations(20_000);
-        Search::new(settings).probes(0.0).run(&problem, &budget).unwrap();
+        Search::with(settings).probes(0.0).run(&problem, &budget).unwrap();
         let visited = visited.into_inner().unwrap();
         let logarithm = 1e-4_f64.ln();
         for t in [1e-3_f64, 1e-2, 1e-1] {

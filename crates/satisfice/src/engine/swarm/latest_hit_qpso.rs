@@ -37,7 +37,7 @@ engine_settings! {
     /// use satisfice::{Budget, Search, Space, engine::LatestHitQpso, from_fn};
     /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
     /// let engine = LatestHitQpso { particles: 60, ..Default::default() };
-    /// let report = Search::new(engine).run(&problem, &Budget::evaluations(5_000))?;
+    /// let report = Search::with(engine).run(&problem, &Budget::evaluations(5_000))?;
     /// assert!(report.hit_count() > 15);
     /// # Ok::<(), satisfice::Error>(())
     /// ```

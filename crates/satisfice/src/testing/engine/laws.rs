@@ -23,7 +23,7 @@ impl<S: Real> Suite<'_, S> {
         let by_hand = self.run_by_hand(case, &budget)?;
         self.say_if(Law::ByHand, &case.name, difference(&report, &by_hand));
         let (probe, findings) = Probe::around(self.engine);
-        let probed = Search::new(probe).seed(42).run(case, &budget)?;
+        let probed = Search::with(probe).seed(42).run(case, &budget)?;
         self.say_if(Law::Proposals, &case.name, findings.first());
         self.say_if(
             Law::SameSeed,
@@ -94,7 +94,7 @@ impl<S: Real> Suite<'_, S> {
                 for value in values {
                     let case = spaces()?.swap_remove(index).poisoned(poison(value));
                     let (probe, findings) = Probe::around(self.engine);
-                    let mut search = Search::new(probe).seed(42);
+                    let mut search = Search::with(probe).seed(42);
                     let report = self.run_by(&mut search, &case, &Budget::evaluations(RUN))?;
                     self.say_if(Law::Proposals, &case.name, findings.first());
                     // Who has covered the space, which the audit has looked at, has not given up.
@@ -137,7 +137,7 @@ impl<S: Real> Suite<'_, S> {
             let straight = self.search()?.run(&case, &budget)?;
             for every in [1, 7] {
                 let (restored, findings) = Restored::around(self.engine, every);
-                let report = Search::new(restored).seed(42).run(&case, &budget)?;
+                let report = Search::with(restored).seed(42).run(&case, &budget)?;
                 self.say_if(Law::Restore, &case.name, findings.first());
                 self.say_if(
                     Law::Restore,

@@ -1,5 +1,6 @@
 //! What is kept from evaluation has no hits, and sparing it pays.
 
+use crate::Bounds;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::engine::{all, build, find};
@@ -46,6 +47,12 @@ impl SatisficingProblem for Shell {
     fn threshold(&self) -> f64 {
         0.5
     }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
+
+impl Bounds<f64> for Shell {
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let ends = || region.lower.iter().zip(&region.upper);
         let c = self.centre();
@@ -64,7 +71,7 @@ impl SatisficingProblem for Shell {
 fn run(problem: &Shell, engine: &str, pruned: bool, evaluations: u64) -> Report<Vec<u32>> {
     let engine = find(engine).unwrap().configure([]).unwrap();
     let engine = if pruned { engine.pruned() } else { engine };
-    let mut search = Search::new(engine).seed(4);
+    let mut search = Search::with(engine).seed(4);
     search.run(problem, &Budget::evaluations(evaluations)).unwrap()
 }
 
@@ -121,24 +128,24 @@ fn resumed_it_goes_on() {
     for name in ["random", "latest-hit-qpso", "descent-flood"] {
         let problem = Shell::new(3, 60, 9.0);
         let make = || find(name).unwrap().configure::<f64>([]).unwrap().pruned();
-        let mut search = Search::new(make()).seed(2);
-        search.begin(&problem, &Budget::evaluations(3000)).unwrap();
+        let mut search = Search::with(make()).seed(2);
+        let mut slice = search.start(&problem, &Budget::evaluations(3000)).unwrap();
         let mut resumed = None;
         for batch in 0.. {
-            let candidates = search.ask(&problem).unwrap().to_vec();
+            let candidates = slice.ask().unwrap().to_vec();
             if candidates.is_empty() {
                 break;
             }
             if batch == 40 {
-                resumed = Some(Search::resume(search.checkpoint(), make()).unwrap());
+                resumed = Some(Search::resume(slice.checkpoint(), make()).unwrap());
             }
             let fitness: Vec<f64> = candidates.iter().map(|c| problem.fitness(c)).collect();
-            search.tell(&problem, &fitness).unwrap();
+            slice.tell(&fitness).unwrap();
         }
-        let expected = search.finish(&problem).unwrap();
+        let expected = slice.finish();
         let report = resumed
             .unwrap()
-            .run_resumed(&problem, None, &mut (), None)
+            .run_resumed(&problem, crate::RunOptions::new())
             .unwrap();
         assert!(expected.counts.bound_calls > 20);
         assert_eq!(report.counts, expected.counts);
@@ -159,8 +166,8 @@ fn without_bounds_nothing_changes() {
     let problem = crate::from_fn(Space::lattice(2, 50).unwrap(), 60.0, |x: &[f64]| x[0] * x[1]);
     let budget = Budget::evaluations(2000);
     let make = || find("latest-hit-qpso").unwrap().configure::<f64>([]).unwrap();
-    let one = Search::new(make()).run(&problem, &budget).unwrap();
-    let two = Search::new(make().pruned()).run(&problem, &budget).unwrap();
+    let one = Search::with(make()).run(&problem, &budget).unwrap();
+    let two = Search::with(make().pruned()).run(&problem, &budget).unwrap();
     assert_eq!(one.counts, two.counts);
     assert!(
         one.hits()

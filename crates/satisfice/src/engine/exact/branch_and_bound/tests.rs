@@ -1,5 +1,6 @@
 //! What is proved is checked by enumeration, or by sampling the space anew.
 
+use crate::{Bounds, Encoding};
 use std::collections::BTreeSet;
 
 use crate::engine::find;
@@ -59,18 +60,31 @@ impl<S: Real> SatisficingProblem for Shell<S> {
     fn threshold(&self) -> S {
         self.width
     }
+    fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
+        Some(self)
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<S>> {
+        self.bounded.then_some(self as _)
+    }
+}
+
+impl<S: Real> Encoding<S, Located<S>> for Shell<S> {
+    fn encode(&self, hit: &Located<S>, values: &mut [S]) -> bool {
+        values.copy_from_slice(&hit.coordinates);
+        true
+    }
+    fn covers(&self, hit: &Located<S>, region: &Region<S>) -> bool {
+        self.covers && hit.covers(region)
+    }
+}
+
+impl<S: Real> Bounds<S> for Shell<S> {
     fn lower_bound(&self, region: &Region<S>) -> Option<S> {
-        if !self.bounded {
-            return None;
-        }
         let ends = || region.lower.iter().zip(&region.upper).zip(&self.centre);
         // Every operation is monotone, rounded or not.
         let nearest = self.distance(ends().map(|((&l, &u), &c)| c.max(l).min(u)));
         let farthest = self.distance(ends().map(|((&l, &u), &c)| if c - l > u - c { l } else { u }));
         Some((nearest - self.radius).max(self.radius - farthest).max(S::zero()) - self.slack)
-    }
-    fn covers(&self, hit: &Located<S>, region: &Region<S>) -> bool {
-        self.covers && hit.covers(region)
     }
 }
 
@@ -83,7 +97,7 @@ fn run<P: SatisficingProblem>(
         .unwrap()
         .configure(settings.iter().copied())
         .unwrap();
-    Search::new(engine)
+    Search::with(engine)
         .run(problem, &Budget::evaluations(evaluations))
         .unwrap()
 }
@@ -306,7 +320,7 @@ fn bounds_use_up_the_budget() {
     problem.slack = 1e9;
     let cancel = crate::Cancel::new();
     let budget = Budget::until(&cancel).and_time(core::time::Duration::from_millis(20));
-    let mut search = Search::new(find("branch-and-bound").unwrap().configure([]).unwrap());
+    let mut search = Search::with(find("branch-and-bound").unwrap().configure([]).unwrap());
     assert_eq!(
         search.run(&problem, &budget).unwrap().stop_reason,
         StopReason::Time
@@ -349,12 +363,28 @@ fn the_four_roots_of_himmelblau_are_all() {
         fn threshold(&self) -> f64 {
             1e-6
         }
-        fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-            let [x, y] = sides(region)?;
-            lower_bound((x.sqr() + y - 11.0).sqr() + (x + y.sqr() - 7.0).sqr())
+        fn encoding(&self) -> Option<&dyn Encoding<f64, Located<f64>>> {
+            Some(self)
+        }
+        fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+            Some(self)
+        }
+    }
+
+    impl Encoding<f64, Located<f64>> for Himmelblau {
+        fn encode(&self, hit: &Located<f64>, values: &mut [f64]) -> bool {
+            values.copy_from_slice(&hit.coordinates);
+            true
         }
         fn covers(&self, hit: &Located<f64>, region: &Region<f64>) -> bool {
             hit.covers(region)
+        }
+    }
+
+    impl Bounds<f64> for Himmelblau {
+        fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+            let [x, y] = sides(region)?;
+            lower_bound((x.sqr() + y - 11.0).sqr() + (x + y.sqr() - 7.0).sqr())
         }
     }
     let report = run(&Himmelblau(Space::cube(2, -6.0, 6.0).unwrap()), &[], 100_000);

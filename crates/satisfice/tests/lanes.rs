@@ -1,20 +1,24 @@
+//! Several lanes of one search: what they find together, and that threads change nothing.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
 use core::ops::ControlFlow;
 
-use super::Islands;
-use crate::engine::{self, WarmStart};
-use crate::{Budget, Completeness, Error, Hit, SatisficingProblem, Search, Space, StopReason, from_fn};
+use satisfice::engine::WarmStart;
+use satisfice::{
+    Budget, Cancel, Completeness, Error, Hit, Located, RunOptions, SatisficingProblem, Search, Space,
+    StopReason, from_fn,
+};
 
 /// The lattice points of a disc, in a space of a million.
-fn disc(radius: f64) -> impl SatisficingProblem<Scalar = f64, Solution = crate::Located<f64>> {
+fn disc(radius: f64) -> impl SatisficingProblem<Scalar = f64, Solution = Located<f64>> {
     from_fn(Space::lattice(2, 1000).unwrap(), radius, |x: &[f64]| {
         (x[0] - 700.0).hypot(x[1] - 300.0)
     })
 }
 
-fn islands(count: usize) -> Islands<f64, crate::Located<f64>> {
-    Islands::new(count, || engine::build("portfolio"))
-        .unwrap()
-        .seed(3)
+fn islands<P: SatisficingProblem>(count: usize) -> Search<P> {
+    Search::named("portfolio").unwrap().islands(count).seed(3)
 }
 
 #[test]
@@ -22,10 +26,7 @@ fn threads_change_nothing() {
     let problem = disc(40.0);
     for name in ["portfolio", "latest-hit-qpso", "random", "descent-flood"] {
         let run = |threads| {
-            let mut islands = Islands::new(5, || engine::build(name))
-                .unwrap()
-                .seed(3)
-                .threads(threads);
+            let mut islands = Search::named(name).unwrap().islands(5).seed(3).threads(threads);
             let mut seen = Vec::new();
             for _ in 0..2 {
                 let report = islands.run(&problem, &Budget::evaluations(10_007)).unwrap();
@@ -74,19 +75,22 @@ fn every_hit_is_a_hit_and_listed_once() {
     assert_eq!(report.counts.probes, 800);
 }
 
+/// One lane after the other, by hand: the same report.
 #[test]
-fn one_island_without_probes_is_a_search() {
+fn by_hand_they_are_the_same() {
     let problem = disc(40.0);
-    let budget = Budget::evaluations(20_000);
-    let build = || engine::build("portfolio");
-    let mut alone = Search::new(build().unwrap()).seed(3).probes(0.0);
-    let mut island = Islands::new(1, build).unwrap().seed(3).probes(0.0);
-    let (alone, island) = (
-        alone.run(&problem, &budget).unwrap(),
-        island.run(&problem, &budget).unwrap(),
-    );
-    assert_eq!(alone.counts, island.counts);
-    assert!(alone.archive.solutions().iter().eq(island.archive.solutions()));
+    let budget = Budget::evaluations(5_003);
+    let report = islands(4).run(&problem, &budget).unwrap();
+    let mut search = islands(4);
+    let mut slice = search.start(&problem, &budget).unwrap();
+    loop {
+        let fitness: Vec<f64> = slice.ask().unwrap().iter().map(|c| problem.fitness(c)).collect();
+        if fitness.is_empty() {
+            break;
+        }
+        slice.tell(&fitness).unwrap();
+    }
+    assert_eq!(satisfice::testing::difference(&report, &slice.finish()), None);
 }
 
 #[test]
@@ -97,7 +101,7 @@ fn limits_end_all_of_them() {
         .unwrap();
     assert_eq!((report.hit_count(), report.stop_reason), (100, StopReason::Hits));
     let mut seen = 0;
-    let mut stop = |_: Hit<'_, crate::Located<f64>>, count: usize| {
+    let mut stop = |_: Hit<'_, Located<f64>>, count: usize| {
         seen = count;
         if count == 7 {
             ControlFlow::Break(())
@@ -106,14 +110,18 @@ fn limits_end_all_of_them() {
         }
     };
     let report = islands(3)
-        .run_observed(&problem, &Budget::evaluations(100_000), &mut stop)
+        .run_with(
+            &problem,
+            &Budget::evaluations(100_000),
+            RunOptions::new().observer(&mut stop),
+        )
         .unwrap();
     assert_eq!(
         (report.hit_count(), report.stop_reason),
         (7, StopReason::Observer)
     );
     assert_eq!(seen, 7);
-    let cancel = crate::Cancel::new();
+    let cancel = Cancel::new();
     cancel.cancel();
     let report = islands(3).run(&problem, &Budget::until(&cancel)).unwrap();
     assert_eq!(report.stop_reason, StopReason::Cancelled);
@@ -125,7 +133,7 @@ fn limits_end_all_of_them() {
     let report = islands(8).run(&problem, &Budget::evaluations(3)).unwrap();
     assert_eq!(report.counts.evaluations, 3);
     assert!(matches!(
-        Islands::<f64, crate::Located<f64>>::new(0, || engine::build("random")),
+        islands(0).run(&problem, &Budget::evaluations(3)),
         Err(Error::Parameter { .. })
     ));
 }

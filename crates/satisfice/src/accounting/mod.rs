@@ -1,0 +1,253 @@
+//! The accounting of one slice: what was counted, what was found, when it has to stop.
+//!
+//! [`evaluate`](Ledger::evaluate) computes the fitness of a batch on any number of threads;
+//! [`settle`](Ledger::settle) enters the results in order. So the number of threads changes nothing but the time.
+
+mod evaluate;
+mod settle;
+
+use core::time::Duration;
+
+use crate::archive::Archive;
+use crate::best::BestSoFar;
+use crate::budget::{Budget, StopReason};
+use crate::clock::{Alarm, Clock};
+use crate::observer::Observer;
+use crate::report::{Counts, TracePoint};
+
+/// Observers are told of progress at most this often.
+const PROGRESS_EVERY: Duration = Duration::from_millis(10);
+
+/// The accounts of one slice.
+#[derive(Debug)]
+pub(crate) struct Ledger<T> {
+    pub(crate) budget: Budget,
+    pub(crate) counts: Counts,
+    pub(crate) archive: Archive<T>,
+    pub(crate) best: BestSoFar<T>,
+    pub(crate) trace: Vec<TracePoint>,
+    pub(crate) stop: Option<StopReason>,
+    pub(crate) clock: Clock,
+    /// Nanoseconds that a call of the fitness took lately; `None` before the first.
+    #[cfg(feature = "rayon")]
+    fitness_cost: Option<u64>,
+    /// Whether the last batch was shared among threads.
+    shared: bool,
+    alarm: Option<Alarm>,
+    /// Time since the start at which an evaluation of a batch returns early, so that it can be saved.
+    pub(crate) hold: Option<Duration>,
+    /// When the next points of the trace are due, by evaluations and by time.
+    next_count: u64,
+    next_time: Duration,
+    next_progress: Duration,
+    /// Whether `next_time` or `next_progress` has come, as of the last look at the clock.
+    tick_is_due: bool,
+    /// The hit that was found again last.
+    recent: usize,
+}
+
+/// What a saved slice had reached.
+#[derive(Debug)]
+pub(crate) struct Reached<T> {
+    pub(crate) counts: Counts,
+    pub(crate) archive: Archive<T>,
+    pub(crate) best: BestSoFar<T>,
+    pub(crate) trace: Vec<TracePoint>,
+    pub(crate) stop: Option<StopReason>,
+    pub(crate) elapsed: Duration,
+}
+
+impl<T> Default for Reached<T> {
+    fn default() -> Self {
+        Self {
+            counts: Counts::default(),
+            archive: Archive::default(),
+            best: BestSoFar::default(),
+            trace: Vec::new(),
+            stop: None,
+            elapsed: Duration::ZERO,
+        }
+    }
+}
+
+impl<T> Ledger<T> {
+    /// Opens the accounts of a slice that begins or goes on now.
+    pub(crate) fn open(budget: &Budget, reached: Reached<T>) -> Self {
+        let Reached { counts, elapsed, .. } = reached;
+        let mut next = 1;
+        while next <= counts.evaluations {
+            next = next_count(next);
+        }
+        Self {
+            budget: budget.clone(),
+            counts,
+            archive: reached.archive,
+            best: reached.best,
+            trace: reached.trace,
+            stop: reached.stop,
+            clock: Clock::start(elapsed),
+            #[cfg(feature = "rayon")]
+            fitness_cost: None,
+            shared: false,
+            alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
+            hold: None,
+            next_count: next,
+            next_time: next_time(budget, elapsed),
+            next_progress: elapsed.saturating_add(PROGRESS_EVERY),
+            tick_is_due: false,
+            recent: 0,
+        }
+    }
+
+    /// How many more evaluations the budget allows; calls of bounds count as such.
+    #[inline]
+    pub(crate) fn remaining(&self) -> usize {
+        let limit = self.budget.evaluations.unwrap_or(u64::MAX);
+        usize::try_from(limit.saturating_sub(self.spent())).unwrap_or(usize::MAX)
+    }
+
+    #[inline]
+    fn spent(&self) -> u64 {
+        self.counts.evaluations.saturating_add(self.counts.bound_calls)
+    }
+
+    /// Enters the calls of bounds so far: each counts like an evaluation, and takes time.
+    #[inline]
+    pub(crate) fn count_bounds(&mut self, calls: u64) {
+        let new = calls.saturating_sub(self.counts.bound_calls);
+        if new > 0 {
+            self.counts.bound_calls = calls;
+            self.pass(usize::try_from(new).unwrap_or(usize::MAX));
+        }
+    }
+
+    /// Whether nothing more may be proposed.
+    #[inline]
+    pub(crate) fn is_over(&mut self) -> bool {
+        if self.stop.is_none() && !self.interrupted() && self.remaining() == 0 {
+            self.stop = Some(StopReason::Evaluations);
+        }
+        self.stop.is_some()
+    }
+
+    /// [`Ledger::is_over`] right after an evaluation, which has checked the budget.
+    #[inline]
+    pub(crate) fn has_stopped(&mut self) -> bool {
+        self.stop.is_some() || self.interrupted()
+    }
+
+    /// Share of the budget used, as of the last look at the clock.
+    #[inline]
+    pub(crate) fn share(&self) -> f64 {
+        self.budget.share(self.spent(), self.clock.seen())
+    }
+
+    /// Whether the slice has been ended from outside, by its alarm or its cancellation, or has ended before.
+    #[inline]
+    fn interrupted(&mut self) -> bool {
+        if self.alarm.as_ref().is_some_and(Alarm::has_rung) {
+            self.stop = Some(StopReason::Time);
+        } else if self
+            .budget
+            .cancel
+            .as_ref()
+            .is_some_and(crate::Cancel::is_cancelled)
+        {
+            self.stop = Some(StopReason::Cancelled);
+        }
+        self.stop.is_some()
+    }
+
+    #[inline]
+    fn pass(&mut self, evaluations: usize) {
+        if let Some(elapsed) = self.clock.pass(evaluations as u64) {
+            self.tick_is_due |= elapsed >= self.next_time || elapsed >= self.next_progress;
+            if self.budget.time.is_some_and(|limit| elapsed >= limit) {
+                self.stop = Some(StopReason::Time);
+            }
+        }
+    }
+
+    /// Checks the limits after evaluations that happened elsewhere.
+    pub(crate) fn evaluated_elsewhere(&mut self, evaluations: usize) {
+        self.pass(evaluations);
+        let _ = self.interrupted();
+    }
+
+    #[inline]
+    fn trace_if_due(&mut self) {
+        if self.counts.evaluations == self.next_count {
+            self.record();
+            self.next_count = next_count(self.next_count);
+        }
+    }
+
+    /// Checks the limits that are checked once a batch.
+    #[inline]
+    fn look_at_limits(&mut self, observer: &mut dyn Observer<T>) {
+        if self.remaining() == 0 && self.stop.is_none() {
+            self.stop = Some(StopReason::Evaluations);
+        }
+        if self.tick_is_due {
+            self.tick_is_due = false;
+            self.tick(self.clock.seen(), observer);
+        }
+    }
+
+    #[cold]
+    fn tick(&mut self, seen: Duration, observer: &mut dyn Observer<T>) {
+        if seen >= self.next_time {
+            self.record();
+            self.next_time = next_time(&self.budget, seen);
+        }
+        if seen >= self.next_progress {
+            self.next_progress = seen.saturating_add(PROGRESS_EVERY);
+            let now = self.point(seen);
+            if observer.progress(now, self.share()).is_break() {
+                self.stop.get_or_insert(StopReason::Observer);
+            }
+        }
+    }
+
+    fn point(&self, elapsed: Duration) -> TracePoint {
+        TracePoint {
+            evaluations: self.counts.evaluations,
+            elapsed_seconds: elapsed.as_secs_f64(),
+            hits: self.archive.len() as u64,
+        }
+    }
+
+    #[cold]
+    fn record(&mut self) {
+        let point = self.point(self.clock.elapsed());
+        self.trace.push(point);
+    }
+
+    /// Closes the accounts with a last point of the trace; returns the time taken and the overshoot.
+    pub(crate) fn close(&mut self) -> (Duration, Duration) {
+        self.alarm = None;
+        let elapsed = self.clock.elapsed();
+        let traced = self.trace.last().map(|last| last.evaluations);
+        if traced.is_none_or(|traced| traced < self.counts.evaluations) {
+            let point = self.point(elapsed);
+            self.trace.push(point);
+        }
+        let limit = self.budget.time.unwrap_or(Duration::MAX);
+        (elapsed, elapsed.saturating_sub(limit))
+    }
+}
+
+/// The next evaluation count of the trace: 1, 2, 3, …, 10, 12, 15, 19, 24, …: about ten a decade, the same in every run.
+fn next_count(count: u64) -> u64 {
+    count.saturating_add((count / 4).max(1))
+}
+
+/// The first hundredth of the time budget after `elapsed`.
+fn next_time(budget: &Budget, elapsed: Duration) -> Duration {
+    let Some(time) = budget.time else {
+        return Duration::MAX;
+    };
+    let step = (time / 100).max(Duration::from_nanos(1));
+    let passed = u32::try_from(elapsed.as_nanos() / step.as_nanos()).unwrap_or(u32::MAX);
+    step.saturating_mul(passed.saturating_add(1))
+}

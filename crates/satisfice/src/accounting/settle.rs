@@ -1,0 +1,255 @@
+//! Settling evaluated candidates in order: counts, hits, the best, the trace.
+
+use num_traits::Float;
+
+use super::{Ledger, next_count};
+use crate::archive::{Entered, Hit};
+use crate::batch::Outcome;
+use crate::best::Best;
+use crate::budget::StopReason;
+use crate::candidates::Candidates;
+use crate::identity::Identity;
+use crate::observer::Observer;
+use crate::problem::SatisficingProblem;
+use crate::report::Counts;
+use crate::scalar::Real;
+
+/// How a batch is judged.
+#[derive(Debug, Clone, Copy)]
+struct Rules {
+    /// Whether found solutions are deleted from the space, as far as the engine is concerned.
+    deletes: bool,
+    /// Whether the batch holds uniform probes, whose hits the engine does not see.
+    probing: bool,
+}
+
+impl<T: Identity + Clone + Send + Sync> Ledger<T> {
+    /// Settles what was evaluated, in order.
+    pub(crate) fn settle<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, T>,
+        observer: &mut dyn Observer<T>,
+    ) {
+        let threshold = problem.threshold();
+        let rules = Rules {
+            deletes: candidates.deletes,
+            probing: candidates.probing,
+        };
+        let mut next = 0; // of the live ones
+        for i in 0..candidates.outcomes.len() {
+            let before = candidates.outcomes[i];
+            let is_live = before != Outcome::Deleted;
+            let slot = next;
+            next += usize::from(is_live);
+            if is_live && slot >= candidates.live {
+                continue; // beyond the budget
+            }
+            if self.stops_before_more() || (is_live && !candidates.is_done(slot)) {
+                candidates.outcomes[i] = Outcome::NotEvaluated;
+                continue;
+            }
+            self.counts.evaluations += 1;
+            if is_live {
+                let (solution, fitness) = (&candidates.solutions[slot], candidates.fitness[slot]);
+                candidates.outcomes[i] = self.judge(problem, solution, fitness, threshold, rules, observer);
+            } else {
+                self.counts.duplicates += 1;
+            }
+            self.trace_if_due();
+        }
+        self.look_at_limits(observer);
+    }
+
+    /// [`Candidates::prepare`], [`Ledger::evaluate`] and [`Ledger::settle`] for one point in one go, for engines that move
+    /// one point at a time: lists would cost as much as everything else. Only for a slice that is not over.
+    #[inline]
+    pub(crate) fn evaluate_one<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        candidates: &mut Candidates<P::Scalar, T>,
+        point: &mut [P::Scalar],
+        deletes: bool,
+        observer: &mut dyn Observer<T>,
+    ) -> Outcome<P::Scalar> {
+        let rules = Rules {
+            deletes,
+            probing: false,
+        };
+        let outcome = candidates.with_one(problem, point, |solution| {
+            if deletes && self.archive.contains(solution) {
+                self.pass(1);
+                self.counts.evaluations += 1;
+                self.counts.duplicates += 1;
+                return Outcome::Deleted;
+            }
+            let fitness = problem.fitness(solution);
+            self.pass(1);
+            self.counts.evaluations += 1;
+            self.judge(problem, solution, fitness, problem.threshold(), rules, observer)
+        });
+        self.trace_if_due();
+        self.look_at_limits(observer);
+        outcome
+    }
+
+    /// Whether no later candidate of the batch is settled: there are enough hits, or an observer has stopped the slice. Time
+    /// that runs out in the middle of a batch loses nothing that was computed.
+    pub(crate) fn stops_before_more(&self) -> bool {
+        matches!(self.stop, Some(StopReason::Hits | StopReason::Observer))
+    }
+
+    /// Judges an evaluated solution. Only one below the threshold is looked up in the archive.
+    #[inline]
+    fn judge<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        solution: &T,
+        fitness: P::Scalar,
+        threshold: P::Scalar,
+        rules: Rules,
+        observer: &mut dyn Observer<T>,
+    ) -> Outcome<P::Scalar> {
+        self.counts.fitness_calls += 1;
+        if !fitness.is_finite() {
+            self.counts.non_finite += 1;
+            return Outcome::NonFinite;
+        }
+        self.best.offer(solution, fitness.f64(), self.counts.evaluations);
+        if fitness < threshold {
+            if self.archive.is_again(solution, self.recent) {
+                return self.known(fitness, rules);
+            }
+            self.insert_hit(problem, solution, fitness, rules, observer)
+        } else {
+            Outcome::Miss(fitness)
+        }
+    }
+
+    /// Inserts a solution below the threshold into the archive, unless the same one is there.
+    #[inline(never)]
+    fn insert_hit<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        solution: &T,
+        fitness: P::Scalar,
+        rules: Rules,
+        observer: &mut dyn Observer<T>,
+    ) -> Outcome<P::Scalar> {
+        if self.archive.contains_again(solution, &mut self.recent) {
+            return self.known(fitness, rules);
+        }
+        let evaluation = self.counts.evaluations;
+        let (listed, its_fitness) = match self.representative(problem, solution) {
+            Representative::Itself => (solution.clone(), fitness),
+            Representative::Other(other, its_fitness) => (other, its_fitness),
+            Representative::Known => return self.known(fitness, rules),
+        };
+        let seconds = self.clock.elapsed().as_secs_f64();
+        let its_fitness = its_fitness.f64();
+        self.best.offer(&listed, its_fitness, evaluation);
+        match self
+            .archive
+            .enter(listed, its_fitness, evaluation, seconds, rules.probing)
+        {
+            Entered::New => self.notify_hit(observer),
+            // New to the engine only.
+            Entered::Promoted => self.counts.duplicates += 1,
+            Entered::Known => return self.known(fitness, rules),
+        }
+        Outcome::Hit(fitness)
+    }
+
+    /// What is listed for a hit. A representative that is no hit breaks the problem's law and is not used.
+    fn representative<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &self,
+        problem: &P,
+        solution: &T,
+    ) -> Representative<P::Scalar, T> {
+        let Some(other) = problem.canonical(solution) else {
+            return Representative::Itself;
+        };
+        if self.archive.contains(&other) {
+            return Representative::Known;
+        }
+        let fitness = problem.fitness(&other);
+        if fitness.is_finite() && fitness < problem.threshold() {
+            Representative::Other(other, fitness)
+        } else {
+            Representative::Itself
+        }
+    }
+
+    /// Counts a solution that was found before.
+    #[inline]
+    fn known<S>(&mut self, fitness: S, rules: Rules) -> Outcome<S> {
+        self.counts.duplicates += 1;
+        if rules.deletes {
+            Outcome::Deleted
+        } else {
+            Outcome::Known(fitness)
+        }
+    }
+
+    /// Replaces the counts by those of several lanes, and accounts for the time that has passed meanwhile.
+    pub(crate) fn sync_counts(&mut self, counts: Counts, observer: &mut dyn Observer<T>) {
+        let new = counts.evaluations.saturating_sub(self.counts.evaluations);
+        self.counts = counts;
+        self.pass(usize::try_from(new).unwrap_or(usize::MAX));
+        if self.counts.evaluations >= self.next_count {
+            self.record();
+            while self.next_count <= self.counts.evaluations {
+                self.next_count = next_count(self.next_count);
+            }
+        }
+        self.look_at_limits(observer);
+    }
+
+    /// Inserts a hit of a lane, as of now; returns whether it was new.
+    pub(crate) fn insert_from_lane(&mut self, hit: Hit<'_, T>, observer: &mut dyn Observer<T>) -> bool {
+        let seconds = self.clock.elapsed().as_secs_f64();
+        let entered = self.archive.enter(
+            hit.solution.clone(),
+            hit.fitness,
+            self.counts.evaluations,
+            seconds,
+            false,
+        );
+        if entered == Entered::New {
+            self.notify_hit(observer);
+        } else {
+            self.counts.duplicates += 1;
+        }
+        entered == Entered::New
+    }
+
+    /// Takes the best of a lane, as of now.
+    pub(crate) fn offer_from_lane(&mut self, best: &Best<T>) {
+        self.best
+            .offer(&best.solution, best.fitness, self.counts.evaluations);
+    }
+
+    /// Tells the observer of the latest hit, and stops the slice if there are enough.
+    #[cold]
+    fn notify_hit(&mut self, observer: &mut dyn Observer<T>) {
+        let count = self.archive.len();
+        if let Some(hit) = self.archive.get(count - 1)
+            && observer.hit(hit, count).is_break()
+        {
+            self.stop = Some(StopReason::Observer);
+        }
+        if self.budget.hits.is_some_and(|limit| count as u64 >= limit) {
+            self.stop = Some(StopReason::Hits);
+        }
+    }
+}
+
+/// What is listed for a hit.
+enum Representative<S, T> {
+    /// The hit itself.
+    Itself,
+    /// Another solution, with its fitness.
+    Other(T, S),
+    /// Another solution, which is in the archive.
+    Known,
+}

@@ -1,0 +1,81 @@
+//! What a problem may offer beyond its fitness. Engines run without any of it, and faster with it.
+//!
+//! A problem declares each capability by returning an object: often itself, or one of its fields.
+//!
+//! ```
+//! use satisfice::{Bounds, Encoding, Neighbourhood, Region, SatisficingProblem, Space};
+//!
+//! /// Pairs of numbers below 100 whose sum is less than 5.
+//! struct SmallSums(Space<f64>);
+//!
+//! impl SatisficingProblem for SmallSums {
+//!     type Scalar = f64;
+//!     type Solution = [u32; 2];
+//!     fn space(&self) -> &Space<f64> { &self.0 }
+//!     fn decode(&self, values: &[f64]) -> [u32; 2] { [values[0] as u32, values[1] as u32] }
+//!     fn fitness(&self, &[a, b]: &[u32; 2]) -> f64 { f64::from(a + b) }
+//!     fn threshold(&self) -> f64 { 5.0 }
+//!     fn encoding(&self) -> Option<&dyn Encoding<f64, [u32; 2]>> { Some(self) }
+//!     fn neighbourhood(&self) -> Option<&dyn Neighbourhood<[u32; 2]>> { Some(self) }
+//!     fn bounds(&self) -> Option<&dyn Bounds<f64>> { Some(self) }
+//! }
+//!
+//! impl Encoding<f64, [u32; 2]> for SmallSums {
+//!     fn encode(&self, &[a, b]: &[u32; 2], values: &mut [f64]) -> bool {
+//!         values.copy_from_slice(&[f64::from(a), f64::from(b)]);
+//!         true
+//!     }
+//! }
+//!
+//! impl Neighbourhood<[u32; 2]> for SmallSums {
+//!     fn neighbours(&self, &[a, b]: &[u32; 2], visit: &mut dyn FnMut([u32; 2])) {
+//!         if a > 0 && b < 99 { visit([a - 1, b + 1]); }
+//!         if a < 99 && b > 0 { visit([a + 1, b - 1]); }
+//!     }
+//! }
+//!
+//! impl Bounds<f64> for SmallSums {
+//!     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+//!         Some(region.lower[0] + region.lower[1])
+//!     }
+//! }
+//!
+//! let problem = SmallSums(Space::lattice(2, 100)?);
+//! assert_eq!(satisfice::testing::problem::check(&problem, 1), []);
+//! let report = satisfice::Search::with(satisfice::engine::build("branch-and-bound")?)
+//!     .run(&problem, &satisfice::Budget::evaluations(10_000))?;
+//! assert_eq!((report.hit_count(), report.completeness), (15, satisfice::Completeness::Proved));
+//! # Ok::<(), satisfice::Error>(())
+//! ```
+
+use crate::space::Region;
+
+/// The inverse of [`decode`](crate::SatisficingProblem::decode): at which values a solution is.
+///
+/// Warm starts, neighbourhoods and estimates of unseen hits use it.
+pub trait Encoding<S, T> {
+    /// Writes values that decode to `solution`, one per axis; `false`, with any values, if there are none.
+    fn encode(&self, solution: &T, values: &mut [S]) -> bool;
+
+    /// Whether every point of `region` decodes to a solution that is the same as `hit`; `false`, the default, if not or if
+    /// unknown. With it, and with [`Bounds`], a search of continuous axes can prove that no hit is missing. For solutions
+    /// [`Located`](crate::Located) at the values themselves: [`Located::covers`](crate::Located::covers).
+    fn covers(&self, _hit: &T, _region: &Region<S>) -> bool {
+        false
+    }
+}
+
+/// The solutions next to a solution, which engines look at once it is good. Needs an [`Encoding`].
+///
+/// For a problem without one, engines use the next lattice points on integer axes and shrinking steps on continuous ones.
+pub trait Neighbourhood<T> {
+    /// Visits the neighbours of a solution, in a fixed order.
+    fn neighbours(&self, of: &T, visit: &mut dyn FnMut(T));
+}
+
+/// Lower bounds of the fitness, by which engines exclude regions and prove that no hit is missing.
+pub trait Bounds<S> {
+    /// A value that F equals or exceeds at every point of `region`; `None` if no bound is known there. It must be sound: a
+    /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation.
+    fn lower_bound(&self, region: &Region<S>) -> Option<S>;
+}

@@ -1,0 +1,266 @@
+//! Several lanes: how they share the budget, exchange their hits, and end together.
+//!
+//! A hit enters the archive when the lanes exchange, after 256 evaluations of each of them, then 512, then every 1,024. Between
+//! two exchanges lanes know nothing of each other, so the number of threads they run on changes nothing.
+
+use core::ops::Range;
+use core::time::Duration;
+
+use super::lane::RunningLane;
+use super::slice::Slice;
+use super::stage::{Source, Stage};
+use crate::budget::{Budget, StopReason};
+use crate::identity::Identity;
+use crate::observer::Observer;
+use crate::problem::SatisficingProblem;
+use crate::report::Counts;
+use crate::scalar::Real;
+use crate::threads::Threads;
+
+/// Evaluations of a lane before the first exchange; then twice as many, and so on.
+const FIRST_ROUND: u64 = 256;
+/// The most of them: enough that threads spend their time searching, few enough that little is found twice.
+const LONGEST_ROUND: u64 = 1024;
+
+/// What several lanes have in common.
+pub(super) struct Exchange<S, T> {
+    /// The accounts and the archive of all lanes; probes are made here, after the lanes.
+    pub(super) common: Slice<S, T>,
+    pub(super) progress: Progress,
+}
+
+/// How far the lanes are.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(super) struct Progress {
+    /// Evaluations of each lane before the next exchange, and in the round after it.
+    until: u64,
+    next_round: u64,
+    /// How many of the hits in each lane's own archive are known to all.
+    told: Vec<usize>,
+    /// Duplicates counted by the lanes themselves, as of the last exchange.
+    duplicates: u64,
+    /// Why the lanes have ended, once they have.
+    ended: Option<StopReason>,
+}
+
+impl Progress {
+    pub(super) fn new(lanes: usize) -> Self {
+        Self {
+            until: FIRST_ROUND,
+            next_round: 2 * FIRST_ROUND,
+            told: vec![0; lanes],
+            duplicates: 0,
+            ended: None,
+        }
+    }
+
+    pub(super) fn until(&self) -> u64 {
+        self.until
+    }
+
+    /// Whether it fits a search of so many lanes.
+    pub(super) fn fits(&self, lanes: usize) -> bool {
+        self.told.len() == lanes
+    }
+}
+
+/// The budget of lane `lane` of `count`, under a share of probes.
+pub(super) fn share_of(budget: &Budget, lane: usize, count: usize, probes: f64) -> Budget {
+    let (lane, count) = (lane as u64, count as u64);
+    let mut own = budget.clone();
+    own.evaluations = budget.evaluations.map(|all| {
+        let engines = all - probes_of(all, probes).min(all.saturating_sub(1));
+        engines / count + u64::from(lane < engines % count)
+    });
+    own.horizon = budget.horizon.map(|all| all.div_ceil(count));
+    own.time = budget
+        .time
+        .map(|time| time.mul_f64(1.0 - probes).max(Duration::from_nanos(1)));
+    own
+}
+
+/// The hits of the slice before, of so many, that lane `lane` of `count` verifies.
+pub(super) fn verified_by(lane: usize, count: usize, hits: usize) -> Range<usize> {
+    lane * hits / count..(lane + 1) * hits / count
+}
+
+impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
+    /// Whether the lanes are still at work.
+    pub(super) fn is_searching(&self) -> bool {
+        self.progress.ended.is_none()
+    }
+
+    /// Runs the lanes, side by side on the threads, up to the next exchange, or until `keep` has passed.
+    pub(super) fn run_round<P>(
+        &self,
+        lanes: &mut [RunningLane<S, T>],
+        problem: &P,
+        previous: &crate::archive::Archive<T>,
+        threads: &Threads,
+        keep: Option<Duration>,
+    ) where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        threads.for_each(lanes.iter_mut(), |lane| lane.advance(problem, previous, keep));
+    }
+
+    /// Whether all lanes have reached the exchange.
+    pub(super) fn is_due(&self, lanes: &[RunningLane<S, T>]) -> bool {
+        lanes.iter().all(|lane| {
+            let slice = &lane.slice;
+            matches!(slice.stage, Stage::Propose)
+                && (slice.ledger.stop.is_some() || slice.ledger.counts.evaluations >= slice.pause)
+        })
+    }
+
+    /// Exchanges hits, and begins the next round or ends the search of the lanes.
+    pub(super) fn between_rounds(&mut self, lanes: &mut [RunningLane<S, T>], observer: &mut dyn Observer<T>) {
+        let over = self.exchange(lanes, observer);
+        let stops = || lanes.iter().map(|lane| lane.slice.ledger.stop);
+        let covered = stops().any(|stop| stop == Some(StopReason::Covered));
+        if over || covered || stops().all(|stop| stop.is_some()) {
+            self.progress.ended = Some(self.end(lanes));
+            return;
+        }
+        self.progress.until = self.progress.until.saturating_add(self.progress.next_round);
+        self.progress.next_round = (2 * self.progress.next_round).min(LONGEST_ROUND);
+        for lane in lanes {
+            lane.slice.pause = self.progress.until;
+        }
+    }
+
+    /// Moves the lanes' new hits into the common archive, in the order of the lanes, and from there into those of the other
+    /// lanes. Returns whether that was the last exchange, by the common limits or by an observer.
+    fn exchange(&mut self, lanes: &mut [RunningLane<S, T>], observer: &mut dyn Observer<T>) -> bool {
+        let (common, progress) = (&mut self.common, &mut self.progress);
+        // Hits that two lanes have found at the same time count as found twice.
+        let twice = common
+            .ledger
+            .counts
+            .duplicates
+            .saturating_sub(progress.duplicates);
+        let mut counts = total(lanes.iter().map(|lane| lane.slice.ledger.counts));
+        progress.duplicates = counts.duplicates;
+        counts.duplicates += twice;
+        common.ledger.sync_counts(counts, observer);
+        let known = common.ledger.archive.len();
+        let mut finders = Vec::new();
+        for (i, lane) in lanes.iter().enumerate() {
+            let ledger = &lane.slice.ledger;
+            if let Some(best) = ledger.best.get() {
+                common.ledger.offer_from_lane(best);
+            }
+            for hit in ledger.archive.iter().skip(progress.told[i]) {
+                if common.ledger.stops_before_more() {
+                    return true;
+                }
+                if common.ledger.insert_from_lane(hit, observer) {
+                    finders.push(i);
+                }
+            }
+        }
+        // The engines are not told, but hits of other lanes are deleted for them: the lane that finds a cluster searches it.
+        // When engines were told, each lane searched around the hits of all.
+        for (i, lane) in lanes.iter_mut().enumerate() {
+            let ledger = &mut lane.slice.ledger;
+            let (now, seconds) = (ledger.counts.evaluations, ledger.clock.seen().as_secs_f64());
+            for (hit, &finder) in common.ledger.archive.iter().skip(known).zip(&finders) {
+                if finder != i {
+                    ledger
+                        .archive
+                        .insert(hit.solution.clone(), hit.fitness, now, seconds);
+                }
+            }
+            progress.told[i] = ledger.archive.len();
+        }
+        common.ledger.stops_before_more()
+    }
+
+    /// Ends the lanes; returns why.
+    fn end(&mut self, lanes: &[RunningLane<S, T>]) -> StopReason {
+        use StopReason::{Cancelled, Covered, Evaluations, Hits, Observer, Panicked, Time};
+        let sum = total(lanes.iter().map(|lane| lane.slice.counts()));
+        let common = &mut self.common;
+        common.calls.neighbours.set(sum.neighbour_calls);
+        common.calls.bounds.set(sum.bound_calls);
+        common.ledger.counts.bound_calls = sum.bound_calls;
+        if let Some(reason @ (Hits | Observer)) = common.ledger.stop {
+            return reason;
+        }
+        // A lane that has covered the space has covered it for all.
+        let order = [Covered, Panicked, Cancelled, Time, Evaluations, Hits];
+        let has = |reason| lanes.iter().any(|lane| lane.slice.ledger.stop == Some(reason));
+        let reason = order.into_iter().find(|&reason| has(reason));
+        reason.unwrap_or(StopReason::Exhausted)
+    }
+
+    /// Proposes the next probes in the common archive; `false`, with the reason in the accounts, if the slice is over.
+    pub(super) fn propose_probes<P>(&mut self, problem: &P) -> bool
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let Some(reason) = self.progress.ended else {
+            return false;
+        };
+        let common = &mut self.common;
+        if let Stage::Repeat(pending) = core::mem::replace(&mut common.stage, Stage::Propose) {
+            common.propose_again(problem, &crate::archive::Archive::default(), pending, true);
+            return true;
+        }
+        let share = common.probes.share();
+        let made = common.probes.count();
+        let searched = common.ledger.counts.evaluations - made;
+        let wanted = match reason {
+            StopReason::Evaluations if share > 0.0 => u64::MAX, // all that was kept for them
+            StopReason::Evaluations | StopReason::Time | StopReason::Exhausted => {
+                probes_of(searched, share / (1.0 - share))
+            }
+            _ => 0,
+        };
+        common.ledger.stop = None;
+        if made >= wanted || common.ledger.is_over() {
+            // Cancelled, the slice can be resumed; all other limits come too late to change the reason.
+            if common.ledger.stop != Some(StopReason::Cancelled) {
+                common.ledger.stop = Some(reason);
+            }
+            return false;
+        }
+        let most = usize::try_from(wanted - made).unwrap_or(usize::MAX);
+        common.propose_probes(problem, most);
+        true
+    }
+
+    /// Settles a batch of probes.
+    pub(super) fn settle_probes<P>(&mut self, problem: &P, observer: &mut dyn Observer<T>)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let common = &mut self.common;
+        if matches!(
+            common.stage,
+            Stage::Settle(Source::Probes) | Stage::Asked(Source::Probes)
+        ) {
+            common.stage = Stage::Propose;
+            common.ledger.settle(problem, &mut common.candidates, observer);
+            common.settle_probes(problem);
+        }
+    }
+}
+
+fn total(counts: impl Iterator<Item = Counts>) -> Counts {
+    counts.fold(Counts::default(), |mut sum, counts| {
+        sum += counts;
+        sum
+    })
+}
+
+/// This share of so many evaluations, rounded up.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "not negative, and a conversion from float saturates"
+)]
+fn probes_of(evaluations: u64, share: f64) -> u64 {
+    (evaluations as f64 * share).ceil() as u64
+}

@@ -1,0 +1,446 @@
+//! The search: engines, settings and hits, slice after slice.
+
+mod checkpoint;
+mod lane;
+mod lanes;
+mod options;
+mod resume;
+mod running;
+mod slice;
+mod stage;
+mod stepper;
+mod steps;
+
+use std::sync::Arc;
+
+use num_traits::Float;
+
+use crate::accounting::Reached;
+use crate::archive::Archive;
+use crate::budget::{Budget, StopReason};
+use crate::catalogue::Description;
+use crate::engine::{ConfiguredEngine, WarmStart};
+use crate::error::Error;
+use crate::probes::Probes;
+use crate::problem::SatisficingProblem;
+use crate::report::{Completeness, Report};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::threads::Threads;
+use crate::unseen::Unseen;
+
+pub use checkpoint::{Checkpoint, Contents, Fingerprint, Unfinished};
+pub use options::RunOptions;
+pub use stepper::Stepper;
+
+use lane::{Lane, RunningLane};
+use lanes::{Exchange, Progress};
+use running::Running;
+use slice::Slice;
+
+/// The most lanes of a search.
+const MOST_LANES: usize = 65_536;
+
+/// A search: engine, settings and hits, for one problem or for one that moves from slice to slice.
+///
+/// It holds no problem: [`Search::run`] is given one for each time slice. A second call runs the next slice, warm from the
+/// hits of the last one, and replaces them.
+///
+/// ```
+/// use satisfice::{engine, from_fn, Budget, Search, Space};
+///
+/// // All x in [-2, 2]^2 near the unit circle, a new answer every 0.2.
+/// let problem = from_fn(Space::cube(2, -2.0, 2.0)?, 0.01, |x: &[f64]| (x[0].hypot(x[1]) - 1.0).abs())
+///     .separation(0.2);
+/// let mut search = Search::with(engine::LatestHitQpso { particles: 60, ..Default::default() }).seed(7);
+/// let report = search.run(&problem, &Budget::evaluations(20_000))?;
+/// println!("{report}");
+/// assert!(report.hit_count() >= 15);
+/// for hit in report.hits().take(3) {
+///     println!("{:?}: F = {} at evaluation {}", hit.solution.coordinates, hit.fitness, hit.evaluation);
+/// }
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+///
+/// # Panics of the problem
+/// A panic of the problem's methods leaves [`Search::run`] like any other, on any number of threads, and the hits of that
+/// slice are lost, unless [`RunOptions::catch_panics`] is set. The search can be used afterwards: the next slice is warm from
+/// the last one that ended, with engines and random numbers as new.
+///
+/// # Problems behind a pointer
+/// `P` may be unsized: `Search::<dyn SatisficingProblem<Scalar = f64, Solution = T>>::new()` runs on
+/// `&dyn SatisficingProblem<Scalar = f64, Solution = T>`.
+pub struct Search<P: SatisficingProblem + ?Sized> {
+    engine: ConfiguredEngine<P::Scalar>,
+    seed: u64,
+    threads: usize,
+    islands: usize,
+    warm_start: Option<WarmStart>,
+    probes: Option<f64>,
+    slices: u64,
+    /// Number of axes, once a slice has begun.
+    dimension: Option<usize>,
+    /// The hits of the slice that ended last.
+    previous: Arc<Archive<P::Solution>>,
+    /// Engines and random numbers; none before the first slice and after a panic.
+    lanes: Vec<Lane<P::Scalar>>,
+    pool: Option<Threads>,
+    /// The slice that had begun when the search was saved.
+    unfinished: Option<Running<P::Scalar, P::Solution>>,
+    /// The problem of the slice that began last.
+    problem: Option<Fingerprint>,
+    /// Whether that problem is the one of a checkpoint, and no slice has begun since.
+    resumed: bool,
+}
+
+/// A search by the default engine, as [`Search::new`].
+impl<P: SatisficingProblem + ?Sized> Default for Search<P> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<P: SatisficingProblem + ?Sized> core::fmt::Debug for Search<P> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Search")
+            .field("engine", &self.engine)
+            .field("seed", &self.seed)
+            .field("threads", &self.threads)
+            .field("islands", &self.islands)
+            .field("slices", &self.slices)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<P: SatisficingProblem + ?Sized> Search<P> {
+    /// A search by the [default engine](crate::engine::default), which uses whatever the problem offers.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with(crate::engine::default())
+    }
+
+    /// A search by this engine: its settings, or [your own](ConfiguredEngine::custom). Settings are checked when a slice
+    /// begins.
+    #[must_use]
+    pub fn with(engine: impl Into<ConfiguredEngine<P::Scalar>>) -> Self {
+        Self {
+            engine: engine.into(),
+            seed: 0,
+            threads: 1,
+            islands: 1,
+            warm_start: None,
+            probes: None,
+            slices: 0,
+            dimension: None,
+            previous: Arc::default(),
+            lanes: Vec::new(),
+            pool: None,
+            unfinished: None,
+            problem: None,
+            resumed: false,
+        }
+    }
+
+    /// A search by the engine with this name, for command lines; its parameters are [`set`](Search::set) by name.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        Ok(Self::with(ConfiguredEngine::named(name)?))
+    }
+
+    /// Sets a parameter of the engine by its name. Engines are built anew for the next slice.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Budget, Search, Space};
+    /// let problem = from_fn(Space::lattice(2, 50)?, 3.0, |x: &[f64]| x[0] + x[1]);
+    /// let report = Search::named("latest-hit-qpso")?
+    ///     .set("particles", "60")?
+    ///     .run(&problem, &Budget::evaluations(20_000))?;
+    /// assert_eq!(report.hit_count(), 6);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ConfiguredEngine::set`].
+    pub fn set(mut self, name: &str, text: &str) -> Result<Self, Error> {
+        self.engine = self.engine.set(name, text)?;
+        self.lanes.clear();
+        Ok(self)
+    }
+
+    /// The seed, 0 by default. Setting it begins the sequence of random numbers anew.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        for (stream, lane) in (0..).zip(&mut self.lanes) {
+            lane.rng = SearchRng::stream(seed, stream);
+        }
+        self
+    }
+
+    /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. Needs the feature `rayon`;
+    /// without it one thread works. Reports under a budget of evaluations do not depend on it.
+    ///
+    /// With one lane, threads share each batch that is worth it; an engine that proposes one point at a time keeps one of
+    /// them busy. With several [islands](Search::islands), threads share the lanes.
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = threads;
+        self.pool = None;
+        self
+    }
+
+    /// The number of lanes, from 1 (the default) to 65,536: engines side by side, each with an equal share of the
+    /// evaluations, which share the hits they find. For a fitness so cheap that one engine cannot keep several threads busy.
+    ///
+    /// The number of lanes is part of the search, like a seed. A hit is listed when the lanes exchange: after 256
+    /// evaluations of each, then 512, then every 1,024. It carries the evaluation count and the time of the exchange. Each
+    /// lane has an archive of its own, so memory grows with their number. Random numbers are streams of one seed; the first
+    /// lane's is that of a search with one lane. Uniform probes come at the end, after the engines.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Budget, Search, Space};
+    ///
+    /// // The 1,245 lattice points of a disc, among a million.
+    /// let problem = from_fn(Space::lattice(2, 1000)?, 20.0, |x: &[f64]| (x[0] - 700.0).hypot(x[1] - 300.0));
+    /// let report = Search::new().islands(4).threads(2).seed(7).run(&problem, &Budget::evaluations(40_000))?;
+    /// assert_eq!(report.hit_count(), 1_245);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn islands(mut self, islands: usize) -> Self {
+        self.islands = islands;
+        self.lanes.clear();
+        self
+    }
+
+    /// How slices after the first use the hits before; by default as the engine prefers.
+    #[must_use]
+    pub fn warm_start(mut self, rule: WarmStart) -> Self {
+        self.warm_start = Some(rule);
+        self
+    }
+
+    /// The share of the evaluations to spend on uniform probes, from 0 (none) to 0.5; by default as the engine prefers,
+    /// which is 0 for every engine from the literature.
+    ///
+    /// From the probes the report [estimates the hits not seen](crate::Report::unseen), with an interval. Their hits are
+    /// listed, but the engine is not told of them: its own sequence of points is the same as without probes.
+    ///
+    /// ```
+    /// use satisfice::{engine, from_fn, Budget, Search, Space};
+    /// // 21 lattice points of a disc, in a space of 10^4.
+    /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let mut search = Search::named("random")?.seed(1).probes(0.2);
+    /// let report = search.run(&problem, &Budget::evaluations(5_000))?;
+    /// let unseen = report.unseen.expect("1,000 probes were made");
+    /// let (lower, upper) = unseen.interval;
+    /// let truth = 21.0 - report.hit_count() as f64;
+    /// assert!(lower <= truth && truth <= upper.expect("a lattice is finite"), "{unseen}");
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn probes(mut self, share: f64) -> Self {
+        self.probes = Some(share);
+        self
+    }
+
+    /// Forgets the hits so far: the next slice starts cold.
+    pub fn clear(&mut self) {
+        self.previous = Arc::default();
+    }
+
+    /// Runs one time slice on `problem`.
+    ///
+    /// # Errors
+    /// [`Error::Budget`] for a budget that is empty or zero, [`Error::Threshold`] for a threshold of NaN,
+    /// [`Error::Parameter`] for a setting out of range, [`Error::SpaceChanged`] if the number of axes differs from that of
+    /// the slice before, [`Error::Threads`].
+    pub fn run(&mut self, problem: &P, budget: &Budget) -> Result<Report<P::Solution>, Error> {
+        self.run_with(problem, budget, RunOptions::new())
+    }
+
+    /// Runs one time slice on `problem`, with an observer, with checkpoints, or catching panics.
+    ///
+    /// # Errors
+    /// As [`Search::run`].
+    pub fn run_with(
+        &mut self,
+        problem: &P,
+        budget: &Budget,
+        options: RunOptions<'_, P::Solution>,
+    ) -> Result<Report<P::Solution>, Error> {
+        let mut budget = budget.clone();
+        if options.cancel.is_some() {
+            budget.cancel.clone_from(&options.cancel);
+        }
+        self.start(problem, &budget)?.drive(options)
+    }
+
+    /// Begins a slice that is driven by hand. A slice that was saved unfinished is forgotten.
+    ///
+    /// # Errors
+    /// As [`Search::run`].
+    pub fn start<'a>(&'a mut self, problem: &'a P, budget: &Budget) -> Result<Stepper<'a, P>, Error> {
+        budget.check()?;
+        let now = self.check(problem)?;
+        self.check_resumed(problem)?;
+        self.resumed = false;
+        self.unfinished = None;
+        self.build_lanes()?;
+        let first = &self.lanes[0].engine;
+        let rule = self.warm_start.unwrap_or_else(|| first.warm_start());
+        let share = self.probes.unwrap_or_else(|| first.probes());
+        let probes = Probes::new(share, self.seed, self.slices)?;
+        if rule == WarmStart::Cold {
+            self.clear();
+        }
+        self.dimension = Some(now);
+        self.problem = Some(Fingerprint::of(problem));
+        let running = self.begin(problem, budget, probes, rule)?;
+        Ok(Stepper::new(self, problem, running))
+    }
+
+    /// Checks what does not depend on the budget; returns the number of axes.
+    fn check(&self, problem: &P) -> Result<usize, Error> {
+        self.engine.check()?;
+        if !(1..=MOST_LANES).contains(&self.islands) {
+            return Err(Error::parameter(
+                "islands",
+                self.islands,
+                "a number from 1 to 65536",
+            ));
+        }
+        if problem.threshold().is_nan() {
+            return Err(Error::Threshold);
+        }
+        let now = problem.space().dimension();
+        match self.dimension {
+            Some(before) if before != now => Err(Error::SpaceChanged { before, now }),
+            _ => Ok(now),
+        }
+    }
+
+    /// Builds the engines, unless they are there.
+    fn build_lanes(&mut self) -> Result<(), Error> {
+        if self.lanes.len() != self.islands {
+            self.lanes = (0..self.islands as u64)
+                .map(|stream| {
+                    Ok(Lane {
+                        engine: self.engine.build()?,
+                        rng: SearchRng::stream(self.seed, stream),
+                    })
+                })
+                .collect::<Result<_, Error>>()?;
+        }
+        Ok(())
+    }
+
+    /// Begins the slice in every lane.
+    fn begin(
+        &mut self,
+        problem: &P,
+        budget: &Budget,
+        probes: Probes,
+        rule: WarmStart,
+    ) -> Result<Running<P::Scalar, P::Solution>, Error> {
+        let (dimension, count) = (problem.space().dimension(), self.lanes.len());
+        let hits = self.previous.len();
+        let to_verify = |lane: usize| match rule {
+            WarmStart::Verify => lanes::verified_by(lane, count, hits),
+            WarmStart::Cold | WarmStart::Engine => hits..hits,
+        };
+        let exchange = if count > 1 {
+            let common = Slice::begin(budget, dimension, probes.clone(), 0..0, Reached::default());
+            Some(Exchange {
+                common,
+                progress: Progress::new(count),
+            })
+        } else {
+            None
+        };
+        let mut running = Running {
+            lanes: Vec::with_capacity(count),
+            exchange,
+        };
+        for (number, mut lane) in core::mem::take(&mut self.lanes).into_iter().enumerate() {
+            let (own_budget, own_probes) = match &running.exchange {
+                Some(_) => (
+                    lanes::share_of(budget, number, count, probes.share()),
+                    Probes::new(0.0, self.seed, self.slices)?,
+                ),
+                None => (budget.clone(), probes.clone()),
+            };
+            let mut slice = Slice::begin(
+                &own_budget,
+                dimension,
+                own_probes,
+                to_verify(number),
+                Reached::default(),
+            );
+            if own_budget.evaluations == Some(0) {
+                slice.ledger.stop = Some(StopReason::Evaluations); // fewer evaluations than lanes
+            } else {
+                lane.engine.begin(&slice.view(problem, &self.previous));
+            }
+            running.lanes.push(RunningLane { lane, slice });
+        }
+        running.pause_for_exchange();
+        Ok(running)
+    }
+
+    /// Name and parameters of the engine, and the number of lanes if there are several.
+    fn description(&self) -> Description {
+        let mut parameters = self.engine.parameters();
+        if self.islands > 1 {
+            parameters.push(("islands".to_owned(), self.islands.to_string()));
+        }
+        Description {
+            name: self.engine.name().to_owned(),
+            parameters,
+        }
+    }
+
+    /// Ends the slice and writes the report.
+    fn report(&mut self, problem: &P, running: Running<P::Scalar, P::Solution>) -> Report<P::Solution> {
+        let (mut slice, lanes) = running.into_parts();
+        self.lanes = lanes;
+        let (elapsed, overshoot) = slice.ledger.close();
+        let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
+        let counts = slice.counts();
+        // A hit that only a probe found contradicts an engine that says it has covered everything.
+        let proved = stop_reason == StopReason::Covered && slice.ledger.archive.probe_only() == 0;
+        let unseen = if proved {
+            Some(Unseen::nothing(slice.probes.count()))
+        } else {
+            slice.probes.estimate(problem, &slice.ledger.archive)
+        };
+        slice.ledger.archive.rest();
+        self.previous = Arc::new(slice.ledger.archive);
+        self.slices += 1;
+        Report {
+            problem: problem.description(),
+            engine: self.description(),
+            scalar: P::Scalar::NAME.to_owned(),
+            seed: self.seed,
+            slice: self.slices - 1,
+            budget: slice.ledger.budget,
+            probe_share: slice.probes.share(),
+            stop_reason,
+            counts,
+            elapsed,
+            overshoot,
+            completeness: if proved {
+                Completeness::Proved
+            } else {
+                Completeness::Unknown
+            },
+            unseen,
+            best: slice.ledger.best.into_best(),
+            trace: slice.ledger.trace,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            archive: Arc::clone(&self.previous),
+        }
+    }
+}

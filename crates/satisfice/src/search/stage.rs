@@ -1,0 +1,35 @@
+//! The stages of a slice.
+
+/// At which stage a slice is, between two batches or within one.
+#[derive(Debug, Clone)]
+pub(super) enum Stage<S> {
+    /// The next batch is to be proposed.
+    Propose,
+    /// A batch is proposed, to be evaluated and settled.
+    Settle(Source),
+    /// A batch was handed out; its fitness is to be told.
+    Asked(Source),
+    /// A batch was out when the slice was saved: it is to be proposed again.
+    Repeat(Pending<S>),
+}
+
+/// Where a batch comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(super) enum Source {
+    /// The engine.
+    Engine,
+    /// The hits of the slice before.
+    WarmStart,
+    /// The uniform probes.
+    Probes,
+}
+
+/// A batch that is proposed and not settled.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pending<S> {
+    pub(super) from: Source,
+    /// The points, one after the other.
+    pub(super) positions: Vec<S>,
+    /// The fitness of what has to be evaluated, as far as it is computed.
+    pub(super) computed: Vec<Option<S>>,
+}

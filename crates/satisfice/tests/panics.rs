@@ -1,0 +1,76 @@
+//! A problem that panics: what a run makes of it, and what holds afterwards.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use satisfice::engine::WarmStart;
+use satisfice::{
+    Budget, Completeness, Located, RunOptions, SatisficingProblem, Search, Space, StopReason, from_fn,
+};
+
+/// Sums of coordinates below 40; the call `fatal` panics. Slow enough for threads to be used.
+fn mortal(calls: &AtomicU64, fatal: u64) -> impl SatisficingProblem<Scalar = f64, Solution = Located<f64>> {
+    from_fn(Space::lattice(2, 60).unwrap(), 40.0, move |x: &[f64]| {
+        let call = calls.fetch_add(1, Ordering::Relaxed) + 1;
+        assert!(call != fatal, "call {call} is fatal");
+        (0..5_000).fold(x[0] + x[1], |sum: f64, i| {
+            core::hint::black_box(sum + f64::from(i) * 1e-300)
+        })
+    })
+}
+
+#[test]
+fn what_was_found_is_reported() {
+    for (islands, threads) in [(1, 1), (1, 3), (4, 1), (4, 3)] {
+        for name in ["random", "walk", "latest-hit-qpso"] {
+            let calls = AtomicU64::new(0);
+            let problem = mortal(&calls, 1_500);
+            let mut search = Search::named(name)
+                .unwrap()
+                .islands(islands)
+                .threads(threads)
+                .warm_start(WarmStart::Verify);
+            let budget = Budget::evaluations(4_000);
+            let report = search
+                .run_with(&problem, &budget, RunOptions::new().catch_panics())
+                .unwrap();
+            // Beside a lane that panics, others go on to the next exchange.
+            let alone = islands > 1 && threads > 1;
+            let case = format!("{name}, {islands} lanes on {threads} threads: {report}");
+            assert_eq!(report.stop_reason, StopReason::Panicked, "{case}");
+            assert_eq!(report.completeness, Completeness::Unknown, "{case}");
+            assert!(
+                report.hit_count() > 0 && (alone || report.counts.fitness_calls < 1_500),
+                "{case}"
+            );
+            for hit in report.hits() {
+                assert_eq!(hit.fitness, problem.fitness(hit.solution), "{case}");
+            }
+            // The search goes on, warm from these hits.
+            let next = search.run(&problem, &budget).unwrap();
+            assert_eq!(next.counts.verified, report.hit_count() as u64, "{case}");
+            assert!(next.hit_count() >= report.hit_count(), "{case}");
+        }
+    }
+}
+
+#[test]
+fn a_panic_that_is_passed_on_leaves_a_search_that_works() {
+    for threads in [1, 3] {
+        let calls = AtomicU64::new(0);
+        let problem = mortal(&calls, 700);
+        let mut search = Search::named("random").unwrap().seed(4).threads(threads);
+        let budget = Budget::evaluations(2_000);
+        let run = catch_unwind(AssertUnwindSafe(|| search.run(&problem, &budget)));
+        assert!(run.is_err());
+        let after = search.run(&problem, &budget).unwrap();
+        let fresh = Search::named("random")
+            .unwrap()
+            .seed(4)
+            .run(&problem, &budget)
+            .unwrap();
+        assert_eq!(satisfice::testing::difference(&after, &fresh), None);
+    }
+}
