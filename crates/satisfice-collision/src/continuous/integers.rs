@@ -24,7 +24,7 @@ impl Part {
     /// The least part in steps of `2^-shift` that contains `from..=to`, both in `[0, 1]`.
     pub(super) fn around(from: f64, to: f64, shift: u32) -> Self {
         let unit = (1_u64 << shift) as f64;
-        let from = (from * unit).floor() as u64;
+        let from = ((from * unit).floor() as u64).min((1 << shift) - 1);
         Self {
             from,
             to: ((to * unit).ceil() as u64).max(from + 1),

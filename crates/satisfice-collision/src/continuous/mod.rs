@@ -22,23 +22,35 @@
 //! ```
 
 mod advance;
+mod cubic;
 mod divisors;
+mod earliest;
 mod exact;
 mod form;
+mod hits;
 mod hull;
 mod integers;
 mod motion;
 mod nearest;
 mod pairs;
+mod problem;
 mod query;
 mod resolve;
+mod rigid;
 mod separation;
+mod step;
 mod swept;
 mod system;
+mod tree;
 mod vector;
 
 pub use crate::distance::DecidedBy;
+pub use earliest::Earliest;
+pub use hits::Hits;
 pub use motion::Moving;
 pub use pairs::Against;
+pub use problem::MovingPairs;
 pub use query::{Decided, Impact, decide, impact, is_hit, touches};
+pub use rigid::{RigidHits, RigidMotion, rigid_hits};
 pub use separation::Separation;
+pub use step::{FeatureOf, MovingContact, Step};

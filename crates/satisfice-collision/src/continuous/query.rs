@@ -34,7 +34,18 @@ pub struct Impact {
 /// Cost: about 100 ns; tens of microseconds where rounding decides nothing.
 #[inline]
 pub fn decide<A: Against<B>, B: Copy>(a: &Moving<A>, b: &Moving<B>, separation: Separation) -> Decided {
-    let solved = A::solve(a, b, separation.get(), Goal::DECISION);
+    decide_during(a, b, separation, Goal::DECISION)
+}
+
+/// The same for a part of the step.
+#[inline]
+pub(super) fn decide_during<A: Against<B>, B: Copy>(
+    a: &Moving<A>,
+    b: &Moving<B>,
+    separation: Separation,
+    goal: Goal,
+) -> Decided {
+    let solved = A::solve(a, b, separation.get(), goal);
     Decision {
         within: solved.time.is_some(),
         by: solved.by,
@@ -99,8 +110,8 @@ pub fn impact<A: Against<B>, B: Copy>(
         ));
     }
     let goal = Goal {
-        until: 1.0,
         tolerance: tolerance.min(1.0),
+        ..Goal::DECISION
     };
     Ok(within(a, b, separation, goal))
 }

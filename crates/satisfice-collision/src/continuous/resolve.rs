@@ -16,7 +16,7 @@ const FINEST: u32 = 50;
 /// The answer to a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
-    /// Bounds of the first time of a hit, if there is one.
+    /// Bounds of the first time of a hit, if there is one; for a decision only its presence counts.
     pub(super) time: Option<[f64; 2]>,
     pub(super) by: DecidedBy,
 }
@@ -30,7 +30,7 @@ pub(super) fn solve<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
 ) -> Solved {
     let reached = match Swept::<K>::new(motion, delta) {
         Some(swept) => advance::<H, K>(&swept, goal),
-        None if motion.coordinates().all(f64::is_finite) => Reached::NOTHING,
+        None if motion.coordinates().all(f64::is_finite) => Reached::nothing(goal),
         None => {
             return Solved {
                 time: None,

@@ -23,7 +23,8 @@
 //! is a matter of cross products of two corners along an axis. These are quadratic in the time, so their coefficients
 //! in Bernstein's form bound them; each is off by less than `4 e W + 4 u W^2 < 100 u W^2`; we use `256 u`.
 
-use super::hull::Hull;
+use super::cubic::Volumes;
+use super::hull::{Face, Hull};
 use super::motion::Motion;
 use super::nearest::Nearest;
 use super::vector::{along, cross, dot, largest, sub};
@@ -35,6 +36,8 @@ const U: f64 = f64::EPSILON / 2.0;
 const TINY: f64 = 1e-300;
 /// Sizes outside `[1 / RANGE, RANGE]` are left to integers.
 const RANGE: f64 = 1e250;
+/// How far on each side of a computed root of the volume its sign is looked at.
+const WIDTHS: [f64; 7] = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 
 /// The differences of a pair at both ends of the step, and delta, in one unit.
 #[derive(Debug, Clone, Copy)]
@@ -137,24 +140,39 @@ impl<const K: usize> Swept<K> {
         room > 0.0 && dot(nearest.point, nearest.point) * (1.0 + 8.0 * U) < room * room * (1.0 - 2.0 * U)
     }
 
-    /// Whether the hull, one with a face, provably contains the origin at some time in `first..=last`.
-    pub(super) fn crosses<H: Hull<K>>(&self, first: f64, last: f64) -> bool {
-        let Some(face) = H::PARTS.face else { return false };
+    /// A time by which the hull, one with a face, provably contains the origin, at or after the first time that it does so
+    /// between `first` and `last`, as far as the roots of the volume can be told apart from misses.
+    pub(super) fn crossing<H: Hull<K>>(&self, first: f64, last: f64) -> Option<f64> {
+        let volumes = self.volumes(H::PARTS.face?, first, last);
+        let length = last - first;
+        volumes.sign_changes().into_iter().flatten().find_map(|part| {
+            let root = first + length * volumes.root(part);
+            WIDTHS.iter().find_map(|width| {
+                let (low, high) = ((root - width).max(first), (root + width).min(last));
+                self.crosses::<H>(low, high)?.then_some(high)
+            })
+        })
+    }
+
+    /// Whether the hull provably contains the origin at some time in `first..=last`; `None` if the volume does not provably
+    /// change its sign.
+    fn crosses<H: Hull<K>>(&self, first: f64, last: f64) -> Option<bool> {
+        let face = H::PARTS.face?;
         let (p, q) = (self.at(first), self.at(last));
         let [i, j, k] = face.corners;
         let (before, after) = (self.volume([p[i], p[j], p[k]]), self.volume([q[i], q[j], q[k]]));
         if before * after >= 0.0 {
-            return false;
+            return None;
         }
         let normal = cross(sub(p[j], p[i]), sub(p[k], p[i])).map(f64::abs);
         let axis = (0..3).fold(0, |best, k| if normal[k] > normal[best] { k } else { best });
         let sides = |side: usize| self.side(&p, &q, H::SIDES[side], axis);
-        if face.is_parallelogram {
+        Some(if face.is_parallelogram {
             sides(0) * sides(1) < 0 && sides(2) * sides(3) < 0
         } else {
             let first = sides(0);
             first != 0 && sides(1) == first && sides(2) == first
-        }
+        })
     }
 
     /// The volume of the corners `w`, `w + x`, `w + y`: a number of its sign, or 0 if that is not certain.
@@ -192,28 +210,36 @@ impl<const K: usize> Swept<K> {
     }
 
     /// Whether the volume provably has one sign from `first` to `last`: the hull never contains the origin.
+    #[inline(always)]
     pub(super) fn is_never_flat<H: Hull<K>>(&self, first: f64, last: f64) -> bool {
-        let Some(face) = H::PARTS.face else { return false };
-        let (p, q) = (self.at(first), self.at(last));
+        H::PARTS
+            .face
+            .is_some_and(|face| self.volumes(face, first, last).have_one_sign())
+    }
+
+    /// The volume from `first` to `last`.
+    #[inline(always)]
+    fn volumes(&self, face: Face, first: f64, last: f64) -> Volumes {
         let corners = |p: &[Point; K]| {
             let [i, j, k] = face.corners;
             (p[i], sub(p[j], p[i]), sub(p[k], p[i]))
         };
-        let ((w0, x0, y0), (w1, x1, y1)) = (corners(&p), corners(&q));
+        let ((w0, x0, y0), (w1, x1, y1)) = (corners(&self.at(first)), corners(&self.at(last)));
         let error = 20.0 * U * self.size;
         let bound = |a: Point, b: Point| largest(a).max(largest(b)) + error;
         let (w, x, y) = (bound(w0, w1), bound(x0, x1), bound(y0, y1));
-        let bound = 16.0 * (error * (x * y + w * x + w * y) + 6.0 * U * w * x * y);
         let (n00, n11) = (cross(x0, y0), cross(x1, y1));
         let (m, n) = (cross(x0, y1), cross(x1, y0));
         let n01 = [m[0] + n[0], m[1] + n[1], m[2] + n[2]];
-        let coefficients = [
-            dot(w0, n00),
-            (dot(w1, n00) + dot(w0, n01)) / 3.0,
-            (dot(w0, n11) + dot(w1, n01)) / 3.0,
-            dot(w1, n11),
-        ];
-        coefficients.iter().all(|&c| c > bound) || coefficients.iter().all(|&c| c < -bound)
+        Volumes {
+            coefficients: [
+                dot(w0, n00),
+                (dot(w1, n00) + dot(w0, n01)) / 3.0,
+                (dot(w0, n11) + dot(w1, n01)) / 3.0,
+                dot(w1, n11),
+            ],
+            error: 16.0 * (error * (x * y + w * x + w * y) + 6.0 * U * w * x * y),
+        }
     }
 }
 

@@ -1,0 +1,360 @@
+//! The first impact of a step, at any time: best first, between a rising lower and a falling upper bound.
+//!
+//! Pairs of groups of boxes wait in the order of the first time at which their boxes meet, a lower bound of the times of their
+//! impacts. The first impact found so far is an upper bound, and each pair of features is asked about the time before it only. When the
+//! least lower bound is not below the upper one, the answer is proved.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::Separation;
+use super::advance::Goal;
+use super::query::{Impact, within};
+use super::step::{List, MovingContact, Step};
+use super::tree::{LANES, MovingBox, MovingTree};
+use crate::Error;
+use crate::distance::PairKind;
+
+/// The kinds in which surfaces, wires and points first meet.
+const KINDS: [PairKind; 4] = [
+    PairKind::VertexTriangle,
+    PairKind::EdgeEdge,
+    PairKind::VertexEdge,
+    PairKind::VertexVertex,
+];
+
+/// What is known about the first impact of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Earliest {
+    /// A lower and an upper bound of the first time of a hit; `[1, 1]` if there is none, `[_, 1]` if none has been found.
+    pub time: [f64; 2],
+    /// The pair that hits first as far as known, of which kind, and where.
+    pub first: Option<(PairKind, MovingContact, Impact)>,
+    /// Whether the bounds are within the tolerance, or no pair hits.
+    pub is_proved: bool,
+    /// Pairs of groups of features not looked into because the run was stopped.
+    pub undecided: u64,
+    /// Pairs of features asked about.
+    pub queries: u64,
+}
+
+/// Two groups of boxes that wait.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Waiting {
+    /// When their boxes first meet.
+    time: f64,
+    kind: u8,
+    a: Node,
+    b: Node,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Node {
+    level: u8,
+    group: u32,
+}
+
+impl Eq for Waiting {}
+
+impl Ord for Waiting {
+    /// The earliest is the greatest; among equals the lowest in the tree.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let depth = |waiting: &Self| waiting.a.level + waiting.b.level;
+        let place = |waiting: &Self| (waiting.kind, waiting.a.group, waiting.b.group);
+        other
+            .time
+            .total_cmp(&self.time)
+            .then_with(|| depth(other).cmp(&depth(self)))
+            .then_with(|| place(other).cmp(&place(self)))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The state of a search.
+struct Descent<'s> {
+    step: &'s Step,
+    separation: Separation,
+    tolerance: f64,
+    margin: f32,
+    waiting: BinaryHeap<Waiting>,
+    best: Earliest,
+}
+
+impl Step {
+    /// The first impact of any pair of features, its time within `tolerance` (a part of the step).
+    ///
+    /// For a delta of 0 vertex-triangle and edge-edge pairs cover surfaces; pairs with a vertex are searched too, for points and
+    /// wires that belong to no triangle.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a tolerance that is not a number of at least 1e-12.
+    pub fn earliest(&self, separation: Separation, tolerance: f64) -> Result<Earliest, Error> {
+        self.earliest_until(separation, tolerance, &mut || false)
+    }
+
+    /// The same, until `stop` says so, which is asked after every few pairs of groups. The bounds are proved whenever it stops.
+    ///
+    /// # Errors
+    /// As [`earliest`](Self::earliest).
+    pub fn earliest_until(
+        &self,
+        separation: Separation,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<Earliest, Error> {
+        if !(tolerance >= 1e-12) {
+            return Err(Error::parameter(
+                "tolerance",
+                tolerance,
+                "a part of the step, at least 1e-12",
+            ));
+        }
+        let mut descent = Descent {
+            step: self,
+            separation,
+            tolerance: tolerance.min(1.0),
+            margin: self.margin(separation.get()),
+            waiting: BinaryHeap::new(),
+            best: Earliest {
+                time: [1.0, 1.0],
+                first: None,
+                is_proved: false,
+                undecided: 0,
+                queries: 0,
+            },
+        };
+        for (number, kind) in (0..).zip(KINDS) {
+            descent.start(number, kind)?;
+        }
+        descent.run(stop)
+    }
+
+    /// A time up to which the step is proved free of hits; above 0 whenever the start is free. 1 if the whole step is free.
+    ///
+    /// # Errors
+    /// None for a step that has bodies; see [`earliest`](Self::earliest).
+    pub fn free_step(&self, separation: Separation) -> Result<f64, Error> {
+        let mut free = 0.0;
+        for tolerance in [1e-6, 1e-9, 1e-12] {
+            let earliest = self.earliest(separation, tolerance)?;
+            free = earliest.time[0];
+            if free > 0.0 || earliest.first.is_some_and(|(_, _, impact)| impact.at_start) {
+                break;
+            }
+        }
+        Ok(free)
+    }
+
+    /// Whether a vertex list needs pairs of this kind beside those of surfaces.
+    fn asks_for(&self, kind: PairKind) -> bool {
+        match kind {
+            PairKind::VertexTriangle => !self.triangles.is_empty(),
+            PairKind::EdgeEdge => !self.edges.is_empty(),
+            // Of closed features the nearest points of two surfaces are those of vertex and triangle or edge and edge.
+            _ => !self.is_covered_by_triangles(),
+        }
+    }
+
+    fn is_covered_by_triangles(&self) -> bool {
+        let mut covered = vec![false; self.from.len()];
+        for &v in self.triangles.iter().flatten() {
+            covered[v as usize] = true;
+        }
+        covered.into_iter().all(|covered| covered)
+    }
+}
+
+impl<'s> Descent<'s> {
+    fn start(&mut self, number: u8, kind: PairKind) -> Result<(), Error> {
+        if self.step.asks_for(kind) {
+            let [a, b] = self.trees(number)?;
+            let root = |tree: &MovingTree| Node {
+                level: tree.levels.len() as u8 - 1,
+                group: 0,
+            };
+            let (a, b) = (root(a), root(b));
+            self.waiting.push(Waiting {
+                time: 0.0,
+                kind: number,
+                a,
+                b,
+            });
+        }
+        Ok(())
+    }
+
+    fn trees(&self, number: u8) -> Result<[&'s MovingTree; 2], Error> {
+        let step: &'s Step = self.step;
+        Ok(Step::lists(KINDS[number as usize])?.map(|list| step.tree(list)))
+    }
+
+    fn run(mut self, stop: &mut dyn FnMut() -> bool) -> Result<Earliest, Error> {
+        let mut rounds = 0_u32;
+        while let Some(next) = self.waiting.peek().copied() {
+            if next.time >= self.best.time[1] {
+                break;
+            }
+            rounds = rounds.wrapping_add(1);
+            if rounds.is_multiple_of(16) && stop() {
+                self.best.undecided = self.waiting.len() as u64;
+                self.best.time[0] = self.best.time[0].min(next.time);
+                return Ok(self.best);
+            }
+            self.waiting.pop();
+            let lists = Step::lists(KINDS[next.kind as usize])?;
+            let trees = self.trees(next.kind)?;
+            match (next.a.level, next.b.level) {
+                (0, 0) => self.ask(&next, lists, trees),
+                (a, b) if a > b => self.open_first(&next, trees),
+                (a, b) if b > a => self.open_second(&next, trees),
+                _ => self.open_both(&next, trees, lists[0] == lists[1]),
+            }
+        }
+        self.best.is_proved = true;
+        Ok(self.best)
+    }
+
+    fn wait(&mut self, kind: u8, time: f64, a: Node, b: Node) {
+        if time < self.best.time[1] {
+            self.waiting.push(Waiting { time, kind, a, b });
+        }
+    }
+
+    /// Replaces the first of two groups, the one of a higher level, by its groups.
+    fn open_first(&mut self, of: &Waiting, trees: [&MovingTree; 2]) {
+        let other = trees[1]
+            .box_around(of.b.level as usize, of.b.group)
+            .grown(self.margin);
+        for child in meeting(trees[0], of.a, &other) {
+            self.wait(of.kind, child.time, child.node, of.b);
+        }
+    }
+
+    fn open_second(&mut self, of: &Waiting, trees: [&MovingTree; 2]) {
+        let other = trees[0]
+            .box_around(of.a.level as usize, of.a.group)
+            .grown(self.margin);
+        for child in meeting(trees[1], of.b, &other) {
+            self.wait(of.kind, child.time, of.a, child.node);
+        }
+    }
+
+    /// Replaces both groups; each pair of groups of one list once.
+    fn open_both(&mut self, of: &Waiting, trees: [&MovingTree; 2], is_one_list: bool) {
+        for lane in 0..trees[0].lanes(of.a.level as usize, of.a.group) as u32 {
+            let group = of.a.group * LANES as u32 + lane;
+            let a = Node {
+                level: of.a.level - 1,
+                group,
+            };
+            let around = trees[0].box_of(of.a.level as usize, group).grown(self.margin);
+            for child in meeting(trees[1], of.b, &around) {
+                if !(is_one_list && of.a == of.b && child.node.group < group) {
+                    self.wait(of.kind, child.time, a, child.node);
+                }
+            }
+        }
+    }
+
+    /// Asks about the features of two groups.
+    fn ask(&mut self, of: &Waiting, lists: [List; 2], trees: [&MovingTree; 2]) {
+        let is_one_list = lists[0] == lists[1];
+        let boxes = &trees[1].levels[0][of.b.group as usize];
+        for lane in 0..trees[0].lanes(0, of.a.group) {
+            let first = of.a.group * LANES as u32 + lane as u32;
+            let around = trees[0].box_of(0, first).grown(self.margin);
+            let mut mask = boxes.candidates(&around);
+            if is_one_list && of.a == of.b {
+                mask &= !0 << (lane + 1);
+            }
+            while mask != 0 {
+                let other = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                let Some([time, last]) = boxes.lane(other).meeting(&around) else {
+                    continue;
+                };
+                if time < self.best.time[1] {
+                    let a = trees[0].order[first as usize];
+                    let b = trees[1].order[of.b.group as usize * LANES + other];
+                    let [a, b] = if is_one_list && a > b { [b, a] } else { [a, b] };
+                    self.ask_pair(KINDS[of.kind as usize], lists, [a, b], [time, last]);
+                }
+            }
+        }
+    }
+
+    fn ask_pair(&mut self, kind: PairKind, lists: [List; 2], [a, b]: [u32; 2], during: [f64; 2]) {
+        if !self.step.may_pair(lists, a, b) {
+            return;
+        }
+        self.best.queries += 1;
+        let goal = Goal {
+            from: during[0],
+            until: during[1].min(self.best.time[1]),
+            tolerance: self.tolerance,
+        };
+        let Some(impact) = self.step.impact(kind, a, b, self.separation, goal) else {
+            return;
+        };
+        self.best.time[0] = self.best.time[0].min(impact.time[0]);
+        if impact.time[1] <= self.best.time[1] {
+            self.best.time[1] = impact.time[1];
+            let contact = MovingContact {
+                a: self.step.feature(lists[0], a),
+                b: self.step.feature(lists[1], b),
+            };
+            self.best.first = Some((kind, contact, impact));
+        }
+    }
+}
+
+/// A group within an opened one, and when its box first meets another box.
+struct Child {
+    node: Node,
+    time: f64,
+}
+
+fn meeting(tree: &MovingTree, of: Node, other: &MovingBox) -> impl Iterator<Item = Child> {
+    let boxes = &tree.levels[of.level as usize][of.group as usize];
+    let mut mask = boxes.candidates(other);
+    std::iter::from_fn(move || {
+        while mask != 0 {
+            let lane = mask.trailing_zeros();
+            mask &= mask - 1;
+            if let Some([time, _]) = boxes.lane(lane as usize).meeting(other) {
+                let node = Node {
+                    level: of.level - 1,
+                    group: of.group * LANES as u32 + lane,
+                };
+                return Some(Child { node, time });
+            }
+        }
+        None
+    })
+}
+
+impl Step {
+    /// The first hit of a pair during a part of the step.
+    pub(super) fn impact(
+        &self,
+        kind: PairKind,
+        a: u32,
+        b: u32,
+        separation: Separation,
+        goal: Goal,
+    ) -> Option<Impact> {
+        match kind {
+            PairKind::VertexVertex => within(&self.vertex(a), &self.vertex(b), separation, goal),
+            PairKind::VertexEdge => within(&self.vertex(a), &self.edge(b), separation, goal),
+            PairKind::VertexTriangle | PairKind::EdgeTriangle | PairKind::TriangleTriangle => {
+                within(&self.vertex(a), &self.triangle(b), separation, goal)
+            }
+            PairKind::EdgeEdge => within(&self.edge(a), &self.edge(b), separation, goal),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! The bodies of a scene at the start and at the end of a step.
+
+use std::sync::OnceLock;
+
+use super::Moving;
+use super::tree::{Frame, MovingTree};
+use crate::distance::{PairKind, Point, Segment, Triangle};
+use crate::{Error, Mesh};
+
+/// Meshes that move from one frame to the next, every vertex along a straight line at constant speed.
+///
+/// ```
+/// use satisfice_collision::continuous::{Separation, Step};
+/// use satisfice_collision::distance::PairKind;
+/// use satisfice_collision::{Placement, generate};
+/// let sheet = generate::cloth(2.0, 2.0, 9, 9)?;
+/// let above = Placement::from_translation([0.0, 0.0, 1.0])?.place(&generate::icosphere(0.1, 1)?)?;
+/// let below = Placement::from_translation([0.0, 0.0, -2.0])?.place(&above)?;
+/// let mut step = Step::new();
+/// step.add_rigid(&above, below.vertices())?;
+/// step.add_deforming(&sheet, sheet.vertices())?;
+/// let hits = step.hits(PairKind::EdgeEdge, Separation::TOUCHING)?;
+/// assert!(!hits.pairs.is_empty() && hits.undecided == 0);
+/// let first = step.earliest(Separation::TOUCHING, 1e-6)?;
+/// assert!(first.is_proved && first.time[0] <= 0.45 && 0.45 <= first.time[1] + 1e-6);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct Step {
+    bodies: Vec<Body>,
+    pub(super) from: Vec<Point>,
+    pub(super) to: Vec<Point>,
+    pub(super) edges: Vec<[u32; 2]>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    frame: OnceLock<Frame>,
+    trees: [OnceLock<MovingTree>; 3],
+}
+
+/// Where the features of a body begin in the common lists.
+#[derive(Debug, Clone, Copy)]
+struct Body {
+    first: [u32; 3],
+    collides_with_itself: bool,
+}
+
+/// A vertex, an edge or a triangle of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FeatureOf {
+    /// The body, in the order of adding.
+    pub body: u32,
+    /// The feature in the order of its mesh.
+    pub index: u32,
+}
+
+/// Two features that are tested against each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MovingContact {
+    /// The first feature; the vertex of a vertex-triangle pair.
+    pub a: FeatureOf,
+    /// The second feature.
+    pub b: FeatureOf,
+}
+
+/// Which list a feature is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum List {
+    Vertices,
+    Edges,
+    Triangles,
+}
+
+impl Step {
+    /// A step without bodies.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a body that also collides with itself, features that share a vertex excepted. Returns its number.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if `to` has another number of vertices than the mesh, [`Error::NonFiniteVertex`],
+    /// [`Error::TooManyVertices`] if there are more than 2^32 features in all.
+    pub fn add_deforming(&mut self, mesh: &Mesh, to: &[Point]) -> Result<usize, Error> {
+        self.add(mesh, to, true)
+    }
+
+    /// Adds a body that collides with other bodies only. Returns its number.
+    ///
+    /// # Errors
+    /// As [`add_deforming`](Self::add_deforming).
+    pub fn add_rigid(&mut self, mesh: &Mesh, to: &[Point]) -> Result<usize, Error> {
+        self.add(mesh, to, false)
+    }
+
+    fn add(&mut self, mesh: &Mesh, to: &[Point], collides_with_itself: bool) -> Result<usize, Error> {
+        if to.len() != mesh.vertices().len() {
+            return Err(Error::parameter(
+                "vertices at the end of the step",
+                to.len(),
+                "as many as at its start; both frames need the same topology",
+            ));
+        }
+        for (vertex, point) in to.iter().enumerate() {
+            if let Some(k) = point.iter().position(|x| !x.is_finite()) {
+                return Err(Error::NonFiniteVertex {
+                    vertex,
+                    axis: ['x', 'y', 'z'][k],
+                    value: point[k],
+                });
+            }
+        }
+        let all = self.from.len() + to.len();
+        if u32::try_from(
+            all.max(self.edges.len() + mesh.edges().len())
+                .max(self.triangles.len() + mesh.triangles().len()),
+        )
+        .is_err()
+        {
+            return Err(Error::TooManyVertices { vertices: all });
+        }
+        let first = [
+            self.from.len() as u32,
+            self.edges.len() as u32,
+            self.triangles.len() as u32,
+        ];
+        let offset = first[0];
+        self.bodies.push(Body {
+            first,
+            collides_with_itself,
+        });
+        self.from.extend_from_slice(mesh.vertices());
+        self.to.extend_from_slice(to);
+        self.edges
+            .extend(mesh.edges().iter().map(|e| e.map(|v| v + offset)));
+        self.triangles
+            .extend(mesh.triangles().iter().map(|t| t.map(|v| v + offset)));
+        self.frame = OnceLock::new();
+        self.trees = Default::default();
+        Ok(self.bodies.len() - 1)
+    }
+
+    /// The number of bodies.
+    #[must_use]
+    pub fn bodies(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// A vertex in motion, by its number in the common list.
+    #[inline]
+    pub(super) fn vertex(&self, v: u32) -> Moving<Point> {
+        Moving::new(self.from[v as usize], self.to[v as usize])
+    }
+
+    #[inline]
+    pub(super) fn edge(&self, e: u32) -> Moving<Segment> {
+        let corners = self.edges[e as usize];
+        Moving::new(
+            corners.map(|v| self.from[v as usize]),
+            corners.map(|v| self.to[v as usize]),
+        )
+    }
+
+    #[inline]
+    pub(super) fn triangle(&self, t: u32) -> Moving<Triangle> {
+        let corners = self.triangles[t as usize];
+        Moving::new(
+            corners.map(|v| self.from[v as usize]),
+            corners.map(|v| self.to[v as usize]),
+        )
+    }
+
+    /// The body and the number within it of a feature of a list.
+    pub(super) fn feature(&self, list: List, number: u32) -> FeatureOf {
+        let body = self
+            .bodies
+            .partition_point(|body| body.first[list as usize] <= number)
+            - 1;
+        FeatureOf {
+            body: body as u32,
+            index: number - self.bodies[body].first[list as usize],
+        }
+    }
+
+    /// The numbers of two features in the common lists, or `None` if there are none such.
+    pub(super) fn numbers(&self, lists: [List; 2], contact: &MovingContact) -> Option<[u32; 2]> {
+        let number = |list: List, feature: FeatureOf| {
+            let count = match list {
+                List::Vertices => self.from.len(),
+                List::Edges => self.edges.len(),
+                List::Triangles => self.triangles.len(),
+            };
+            let end = self
+                .bodies
+                .get(feature.body as usize + 1)
+                .map_or(count as u32, |next| next.first[list as usize]);
+            let number =
+                self.bodies.get(feature.body as usize)?.first[list as usize].checked_add(feature.index)?;
+            (number < end).then_some(number)
+        };
+        Some([number(lists[0], contact.a)?, number(lists[1], contact.b)?])
+    }
+
+    /// The lists that the features of a kind of pairs come from.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for kinds whose motion is not decided: edge-triangle and triangle-triangle.
+    pub(super) fn lists(kind: PairKind) -> Result<[List; 2], Error> {
+        match kind {
+            PairKind::VertexVertex => Ok([List::Vertices, List::Vertices]),
+            PairKind::VertexEdge => Ok([List::Vertices, List::Edges]),
+            PairKind::VertexTriangle => Ok([List::Vertices, List::Triangles]),
+            PairKind::EdgeEdge => Ok([List::Edges, List::Edges]),
+            PairKind::EdgeTriangle | PairKind::TriangleTriangle => Err(Error::parameter(
+                "pairs",
+                kind,
+                "in motion vertex-vertex, vertex-edge, vertex-triangle or edge-edge; surfaces that meet do so in one of these",
+            )),
+        }
+    }
+
+    /// Whether two features, of different bodies or of one that collides with itself, can be a pair: they share no vertex,
+    /// and two vertices are not joined by an edge.
+    pub(super) fn may_pair(&self, lists: [List; 2], a: u32, b: u32) -> bool {
+        if self.is_one_deforming_body() {
+            return !self.share_a_vertex(lists, a, b);
+        }
+        let (body_a, body_b) = (self.feature(lists[0], a).body, self.feature(lists[1], b).body);
+        if body_a != body_b {
+            return true;
+        }
+        self.bodies[body_a as usize].collides_with_itself && !self.share_a_vertex(lists, a, b)
+    }
+
+    fn share_a_vertex(&self, lists: [List; 2], a: u32, b: u32) -> bool {
+        match lists {
+            [List::Vertices, List::Triangles] => self.triangles[b as usize].contains(&a),
+            [List::Vertices, List::Edges] => self.edges[b as usize].contains(&a),
+            [List::Edges, List::Edges] => {
+                let [p, q] = self.edges[a as usize];
+                let [r, s] = self.edges[b as usize];
+                p == r || p == s || q == r || q == s
+            }
+            _ => {
+                let edge = [a.min(b), a.max(b)];
+                a == b || self.edges.binary_search(&edge).is_ok()
+            }
+        }
+    }
+
+    /// Whether all features belong to one body that collides with itself.
+    fn is_one_deforming_body(&self) -> bool {
+        matches!(self.bodies.as_slice(), [body] if body.collides_with_itself)
+    }
+
+    fn frame(&self) -> &Frame {
+        self.frame.get_or_init(|| Frame::around(&self.from, &self.to))
+    }
+
+    /// The tree over the features of a list; built when it is first asked for.
+    pub(super) fn tree(&self, list: List) -> &MovingTree {
+        self.trees[list as usize].get_or_init(|| {
+            let frame = self.frame();
+            match list {
+                List::Vertices => MovingTree::new(frame, self.from.len(), |v| {
+                    let vertex = self.vertex(v);
+                    ([vertex.from], [vertex.to])
+                }),
+                List::Edges => MovingTree::new(frame, self.edges.len(), |e| {
+                    let edge = self.edge(e);
+                    (edge.from, edge.to)
+                }),
+                List::Triangles => MovingTree::new(frame, self.triangles.len(), |t| {
+                    let triangle = self.triangle(t);
+                    (triangle.from, triangle.to)
+                }),
+            }
+        })
+    }
+
+    /// Delta in the unit of the trees, rounded up.
+    pub(super) fn margin(&self, delta: f64) -> f32 {
+        self.frame().margin(delta)
+    }
+}

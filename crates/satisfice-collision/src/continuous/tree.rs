@@ -1,0 +1,322 @@
+//! A tree of moving boxes: eight to a group, each box given at both ends of the step.
+//!
+//! A box that moves linearly from the one to the other contains its features all the time, so two features are apart all the
+//! time if their boxes are, on one axis, apart in the same order at both ends. Two bodies that fall side by side are thus
+//! apart, while the space that they sweep is shared.
+//!
+//! Boxes are in single precision, rounded outwards, in a frame centred on the scene and scaled to its size.
+
+use crate::distance::Point;
+use crate::order::morton_key;
+
+/// Boxes of a group.
+pub(super) const LANES: usize = 8;
+type Lanes = [f32; LANES];
+
+/// Bits of a cell of the curve by which features are sorted, an axis.
+const BITS: u32 = 16;
+
+/// Where the frame of the boxes lies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    centre: Point,
+    scale: f64,
+}
+
+/// A box at both ends of the step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MovingBox {
+    /// At time 0 and at time 1.
+    pub(super) min: [[f32; 3]; 2],
+    pub(super) max: [[f32; 3]; 2],
+}
+
+/// Eight boxes, a lane each. Unused lanes are empty boxes, apart from all others.
+#[derive(Debug, Clone)]
+pub(super) struct Group {
+    min: [[Lanes; 3]; 2],
+    max: [[Lanes; 3]; 2],
+}
+
+/// The boxes of a list of features.
+#[derive(Debug)]
+pub(super) struct MovingTree {
+    /// The features in the order of the lowest level's lanes.
+    pub(super) order: Vec<u32>,
+    /// From the groups of features to the root. A group's number is the number of its box one level higher.
+    pub(super) levels: Vec<Vec<Group>>,
+}
+
+impl Frame {
+    pub(super) fn around(from: &[Point], to: &[Point]) -> Self {
+        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for p in from.iter().chain(to) {
+            for k in 0..3 {
+                min[k] = min[k].min(p[k]);
+                max[k] = max[k].max(p[k]);
+            }
+        }
+        // Halves first, so that nothing overflows.
+        let size = (0..3).fold(0.0_f64, |size, k| size.max(0.5 * max[k] - 0.5 * min[k]));
+        Self {
+            centre: std::array::from_fn(|k| 0.5 * min[k] + 0.5 * max[k]),
+            scale: if size > 1e-300 { 1.0 / size } else { 1.0 },
+        }
+    }
+
+    /// A coordinate in the frame: the exact value lies within one step of single precision of it, or two.
+    fn local(&self, x: f64, axis: usize) -> f32 {
+        ((0.5 * x - 0.5 * self.centre[axis]) * self.scale) as f32
+    }
+
+    /// A distance in the frame, rounded up.
+    pub(super) fn margin(&self, delta: f64) -> f32 {
+        if delta == 0.0 {
+            return 0.0;
+        }
+        ((0.5 * delta * self.scale * (1.0 + 1e-12)) as f32).next_up()
+    }
+}
+
+/// At most a coordinate whose rounded value in the frame is `x`, which is at most 1/2.
+fn below(x: f32) -> f32 {
+    x - (x.abs() * 4.0 * f32::EPSILON + 1e-12)
+}
+
+fn above(x: f32) -> f32 {
+    x + (x.abs() * 4.0 * f32::EPSILON + 1e-12)
+}
+
+impl MovingBox {
+    const EMPTY: Self = Self {
+        min: [[f32::INFINITY; 3]; 2],
+        max: [[f32::NEG_INFINITY; 3]; 2],
+    };
+
+    fn of<const N: usize>(frame: &Frame, ends: [[Point; N]; 2]) -> Self {
+        let mut all = Self::EMPTY;
+        for (end, points) in ends.into_iter().enumerate() {
+            for p in points {
+                for (k, &x) in p.iter().enumerate() {
+                    let x = frame.local(x, k);
+                    all.min[end][k] = all.min[end][k].min(below(x));
+                    all.max[end][k] = all.max[end][k].max(above(x));
+                }
+            }
+        }
+        all
+    }
+
+    fn include(&mut self, other: &Self) {
+        for end in 0..2 {
+            for k in 0..3 {
+                self.min[end][k] = self.min[end][k].min(other.min[end][k]);
+                self.max[end][k] = self.max[end][k].max(other.max[end][k]);
+            }
+        }
+    }
+
+    /// The box grown by a margin on every side.
+    pub(super) fn grown(&self, margin: f32) -> Self {
+        if margin == 0.0 {
+            return *self;
+        }
+        Self {
+            min: self.min.map(|p| p.map(|x| (x - margin).next_down())),
+            max: self.max.map(|p| p.map(|x| (x + margin).next_up())),
+        }
+    }
+
+    fn middle(&self) -> Point {
+        std::array::from_fn(|k| {
+            let sum = |end: usize| f64::from(self.min[end][k]) + f64::from(self.max[end][k]);
+            0.25 * (sum(0) + sum(1))
+        })
+    }
+
+    /// Bounds of the times at which two boxes meet, or `None` if they are apart all the time.
+    pub(super) fn meeting(&self, other: &Self) -> Option<[f64; 2]> {
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for (p, q) in [(self, other), (other, self)] {
+            for k in 0..3 {
+                // The gap between them, linear in the time. The differences have at most one rounding.
+                let [from, to] = [0, 1].map(|end| f64::from(p.min[end][k]) - f64::from(q.max[end][k]));
+                if from > 0.0 {
+                    if to > 0.0 {
+                        return None;
+                    }
+                    first = first.max(from / (from - to) * (1.0 - 1e-15));
+                } else if to > 0.0 {
+                    last = last.min(from / (from - to) * (1.0 + 1e-15));
+                }
+            }
+        }
+        (first <= last).then_some([first, last])
+    }
+}
+
+impl Group {
+    const EMPTY: Self = Self {
+        min: [[[f32::INFINITY; LANES]; 3]; 2],
+        max: [[[f32::NEG_INFINITY; LANES]; 3]; 2],
+    };
+
+    fn set(&mut self, lane: usize, of: &MovingBox) {
+        for end in 0..2 {
+            for k in 0..3 {
+                self.min[end][k][lane] = of.min[end][k];
+                self.max[end][k][lane] = of.max[end][k];
+            }
+        }
+    }
+
+    pub(super) fn lane(&self, lane: usize) -> MovingBox {
+        MovingBox {
+            min: std::array::from_fn(|end| std::array::from_fn(|k| self.min[end][k][lane])),
+            max: std::array::from_fn(|end| std::array::from_fn(|k| self.max[end][k][lane])),
+        }
+    }
+
+    fn union(&self) -> MovingBox {
+        let least = |lanes: &Lanes| lanes.iter().copied().fold(f32::INFINITY, f32::min);
+        let most = |lanes: &Lanes| lanes.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        MovingBox {
+            min: std::array::from_fn(|end| std::array::from_fn(|k| least(&self.min[end][k]))),
+            max: std::array::from_fn(|end| std::array::from_fn(|k| most(&self.max[end][k]))),
+        }
+    }
+
+    /// The lanes that are not apart from a box in the same order at both ends, a bit each.
+    #[inline]
+    pub(super) fn candidates(&self, of: &MovingBox) -> u32 {
+        let mut apart = [false; LANES];
+        for k in 0..3 {
+            let (min, max) = ([of.min[0][k], of.min[1][k]], [of.max[0][k], of.max[1][k]]);
+            for (lane, apart) in apart.iter_mut().enumerate() {
+                *apart |= (self.min[0][k][lane] > max[0]) & (self.min[1][k][lane] > max[1])
+                    | (min[0] > self.max[0][k][lane]) & (min[1] > self.max[1][k][lane]);
+            }
+        }
+        (0..)
+            .zip(apart)
+            .fold(0, |mask, (lane, apart)| mask | u32::from(!apart) << lane)
+    }
+}
+
+impl MovingTree {
+    /// The tree over `count` features whose vertices at both ends `at` gives.
+    pub(super) fn new<const N: usize>(
+        frame: &Frame,
+        count: usize,
+        at: impl Fn(u32) -> ([Point; N], [Point; N]),
+    ) -> Self {
+        let boxes: Vec<MovingBox> = (0..count as u32)
+            .map(|feature| {
+                let (from, to) = at(feature);
+                MovingBox::of(frame, [from, to])
+            })
+            .collect();
+        let cell =
+            |x: f64| ((x + 0.5) * f64::from(1_u32 << BITS)).clamp(0.0, f64::from((1_u32 << BITS) - 1)) as u32;
+        let mut keyed: Vec<(u64, u32)> = (0..)
+            .zip(&boxes)
+            .map(|(feature, of)| (morton_key(of.middle().map(cell), BITS), feature))
+            .collect();
+        keyed.sort_unstable();
+        let order: Vec<u32> = keyed.into_iter().map(|(_, feature)| feature).collect();
+        let sorted = order.iter().map(|&feature| boxes[feature as usize]);
+        let mut levels = vec![groups(sorted)];
+        while levels[levels.len() - 1].len() > 1 {
+            let next = groups(levels[levels.len() - 1].iter().map(Group::union));
+            levels.push(next);
+        }
+        Self { order, levels }
+    }
+
+    /// A box of a level.
+    pub(super) fn box_of(&self, level: usize, number: u32) -> MovingBox {
+        self.levels[level][number as usize / LANES].lane(number as usize % LANES)
+    }
+
+    /// The box around the features at these places of the order, both included.
+    pub(super) fn box_of_range(&self, from: u32, to: u32) -> MovingBox {
+        let mut around = MovingBox::EMPTY;
+        let (mut from, mut end) = (from, to + 1);
+        // What fills no group of this level, then the groups as the boxes of the next one.
+        for level in 0..self.levels.len() {
+            while from < end && from % LANES as u32 != 0 {
+                around.include(&self.box_of(level, from));
+                from += 1;
+            }
+            while from < end && (end % LANES as u32 != 0 || level + 1 == self.levels.len()) {
+                end -= 1;
+                around.include(&self.box_of(level, end));
+            }
+            from /= LANES as u32;
+            end /= LANES as u32;
+        }
+        around
+    }
+
+    /// The box around a group of a level.
+    pub(super) fn box_around(&self, level: usize, group: u32) -> MovingBox {
+        if level + 1 < self.levels.len() {
+            self.box_of(level + 1, group)
+        } else {
+            self.levels[level][group as usize].union()
+        }
+    }
+
+    /// The number of boxes in a group.
+    pub(super) fn lanes(&self, level: usize, group: u32) -> usize {
+        let below = match level {
+            0 => self.order.len(),
+            _ => self.levels[level - 1].len(),
+        };
+        below.saturating_sub(group as usize * LANES).min(LANES)
+    }
+
+    /// Visits the groups of features, from number `least` on, whose box is not apart from `of`.
+    pub(super) fn visit(
+        &self,
+        of: &MovingBox,
+        least: u32,
+        stack: &mut Vec<(u8, u32)>,
+        visit: &mut impl FnMut(u32),
+    ) {
+        stack.clear();
+        stack.push((self.levels.len() as u8 - 1, 0));
+        while let Some((level, group)) = stack.pop() {
+            if level == 0 {
+                visit(group);
+                continue;
+            }
+            let mut mask = self.levels[level as usize][group as usize].candidates(of);
+            while mask != 0 {
+                let child = group * LANES as u32 + mask.trailing_zeros();
+                mask &= mask - 1;
+                // The last group of features below the child.
+                let last = ((u64::from(child) + 1) << (3 * (u32::from(level) - 1))) - 1;
+                if last >= u64::from(least) {
+                    stack.push((level - 1, child));
+                }
+            }
+        }
+    }
+}
+
+fn groups(boxes: impl Iterator<Item = MovingBox>) -> Vec<Group> {
+    let mut groups = Vec::new();
+    for (number, of) in boxes.enumerate() {
+        if number % LANES == 0 {
+            groups.push(Group::EMPTY);
+        }
+        if let Some(group) = groups.last_mut() {
+            group.set(number % LANES, &of);
+        }
+    }
+    if groups.is_empty() {
+        groups.push(Group::EMPTY);
+    }
+    groups
+}
