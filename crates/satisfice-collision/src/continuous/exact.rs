@@ -80,11 +80,11 @@ impl Conditions {
     /// all parts.
     fn any(&self, parts: Parts, solve: Solver<'_>) -> Option<()> {
         if let Some(face) = parts.face {
-            let system = self.face(face);
-            if system.equation.as_ref().is_some_and(is_never_zero) {
+            let height = self.height(face);
+            if self.delta_squared.is_none() && is_never_zero(&height) {
                 return None;
             }
-            if let Some(()) = solve(&system) {
+            if let Some(()) = solve(&self.face(face, height)) {
                 return Some(());
             }
         }
@@ -126,7 +126,13 @@ impl Conditions {
         System { equation, positive }
     }
 
-    fn face(&self, face: Face) -> System {
+    /// The volume that the corners of a face span with the origin.
+    fn height(&self, face: Face) -> Form {
+        let [w, p, q] = face.corners.map(|corner| &self.corners[corner]);
+        dot(w, &cross(&difference(p, w), &difference(q, w)))
+    }
+
+    fn face(&self, face: Face, height: Form) -> System {
         let [w, p, q] = face.corners.map(|corner| &self.corners[corner]);
         let (x, y) = (difference(p, w), difference(q, w));
         let (xx, yy, xy) = (dot(&x, &x), dot(&y, &y), dot(&x, &y));
@@ -134,7 +140,6 @@ impl Conditions {
         let gram = &(&xx * &yy) - &(&xy * &xy);
         let u = &(&xy * &wy) - &(&yy * &wx);
         let v = &(&xy * &wx) - &(&xx * &wy);
-        let height = dot(w, &cross(&x, &y));
         let mut positive = if face.is_parallelogram {
             vec![&gram - &u, &gram - &v]
         } else {

@@ -1,15 +1,17 @@
 //! Whether a polynomial equation and strict inequalities of the time have a common solution: exact, and always decided.
 //!
 //! The step is halved. A piece is discarded if the signs of a form's coefficients exclude a solution, and accepted if they
-//! prove one. What is left after [`PLAIN_HALVINGS`] pieces of repeated or common roots is prepared first: roots are made
+//! prove one. What is left after a few halvings has repeated or common roots, as a rule. It is prepared: roots are made
 //! simple and roots that violate an inequality are divided out. The halving of what remains ends, because close to a simple
 //! root the signs of the coefficients change exactly once (Vincent's theorem; Collins and Akritas 1976).
 
 use super::divisors::{squarefree, without_roots_of};
 use super::form::Form;
 
-/// Halvings before roots are made simple.
-const PLAIN_HALVINGS: u32 = 12;
+/// Halvings before roots are made simple: few where an equation leaves only its roots to look at, more where the boundaries of
+/// every inequality would have to be prepared.
+const HALVINGS_WITH_EQUATION: u32 = 3;
+const HALVINGS_WITHOUT: u32 = 12;
 
 /// `equation = 0` (if there is one) and `positive > 0` for all of these, with `0 <= t <= 1`.
 #[derive(Debug, Clone)]
@@ -29,7 +31,7 @@ enum Sight {
 impl System {
     /// Whether there is a solution.
     pub(super) fn is_solvable(&self) -> bool {
-        self.holds_at_start() || self.holds_at_end() || self.is_solvable_inside(PLAIN_HALVINGS)
+        self.holds_at_start() || self.holds_at_end() || self.is_solvable_inside(self.plain_halvings())
     }
 
     /// The first piece of the step cut into `2^levels` pieces that contains the infimum of the solutions, as its number.
@@ -50,7 +52,7 @@ impl System {
             Sight::Solvable | Sight::Unclear => {}
         }
         if levels == 0 {
-            return self.is_solvable_inside(PLAIN_HALVINGS).then_some(number);
+            return self.is_solvable_inside(self.plain_halvings()).then_some(number);
         }
         let (first, second) = self.halves();
         first.earliest_inside(levels - 1, 2 * number).or_else(|| {
@@ -72,6 +74,14 @@ impl System {
     fn holds_at_end(&self) -> bool {
         self.equation.as_ref().is_none_or(|form| form.sign_at_end() == 0)
             && self.positive.iter().all(|form| form.sign_at_end() > 0)
+    }
+
+    fn plain_halvings(&self) -> u32 {
+        if self.equation.is_some() {
+            HALVINGS_WITH_EQUATION
+        } else {
+            HALVINGS_WITHOUT
+        }
     }
 
     /// Whether there is a solution with `0 < t < 1`.
@@ -129,12 +139,10 @@ impl System {
                 .fold(squarefree(equation), |roots, form| without_roots_of(&roots, form));
             has_accepted_root(&roots, &self.positive)
         } else {
-            let boundaries = self
-                .positive
-                .iter()
-                .map(squarefree)
-                .reduce(|product, form| &product * &form)
-                .map(|product| squarefree(&product));
+            let boundaries = self.positive.iter().map(squarefree).reduce(|all, form| {
+                let others = without_roots_of(&form, &all);
+                &all * &others
+            });
             boundaries.is_some_and(|boundaries| has_accepted_gap(&boundaries, &self.positive))
         }
     }
