@@ -11,7 +11,7 @@ use super::Separation;
 use super::advance::Goal;
 use super::query::{Impact, within};
 use super::step::{List, MovingContact, Step};
-use super::tree::{LANES, MovingBox, MovingTree};
+use super::tree::{LANES, MIXED, MovingBox, MovingTree};
 use crate::Error;
 use crate::distance::PairKind;
 
@@ -220,9 +220,16 @@ impl<'s> Descent<'s> {
     }
 
     fn wait(&mut self, kind: u8, time: f64, a: Node, b: Node) {
-        if time < self.best.time[1] {
+        if time < self.best.time[1] && !self.is_one_rigid_body(kind, a, b) {
             self.waiting.push(Waiting { time, kind, a, b });
         }
+    }
+
+    fn is_one_rigid_body(&self, kind: u8, a: Node, b: Node) -> bool {
+        self.trees(kind).is_ok_and(|[first, second]| {
+            let body = first.rigid_body(a.level as usize, a.group);
+            body != MIXED && body == second.rigid_body(b.level as usize, b.group)
+        })
     }
 
     /// Replaces the first of two groups, the one of a higher level, by its groups.

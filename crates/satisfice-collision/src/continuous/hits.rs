@@ -146,7 +146,8 @@ impl Search<'_> {
                 })
                 .collect();
             let least = if self.is_one_list() { row } else { 0 };
-            self.trees[1].visit(&around, least, &mut stack, &mut |group| {
+            let own = self.trees[0].rigid_body(0, row);
+            self.trees[1].visit(&around, least, own, &mut stack, &mut |group| {
                 self.groups(row, &lanes, group, &mut found);
             });
         }

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::Moving;
-use super::tree::{Frame, MovingTree};
+use super::tree::{Frame, MIXED, MovingTree};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::{Error, Mesh};
 
@@ -261,16 +261,21 @@ impl Step {
     pub(super) fn tree(&self, list: List) -> &MovingTree {
         self.trees[list as usize].get_or_init(|| {
             let frame = self.frame();
+            let body = |number: u32| {
+                let body = self.feature(list, number).body;
+                let is_rigid = !self.bodies[body as usize].collides_with_itself;
+                (body, if is_rigid { body } else { MIXED })
+            };
             match list {
-                List::Vertices => MovingTree::new(frame, self.from.len(), |v| {
+                List::Vertices => MovingTree::new(frame, self.from.len(), body, |v| {
                     let vertex = self.vertex(v);
                     ([vertex.from], [vertex.to])
                 }),
-                List::Edges => MovingTree::new(frame, self.edges.len(), |e| {
+                List::Edges => MovingTree::new(frame, self.edges.len(), body, |e| {
                     let edge = self.edge(e);
                     (edge.from, edge.to)
                 }),
-                List::Triangles => MovingTree::new(frame, self.triangles.len(), |t| {
+                List::Triangles => MovingTree::new(frame, self.triangles.len(), body, |t| {
                     let triangle = self.triangle(t);
                     (triangle.from, triangle.to)
                 }),

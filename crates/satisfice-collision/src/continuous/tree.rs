@@ -45,7 +45,12 @@ pub(super) struct MovingTree {
     pub(super) order: Vec<u32>,
     /// From the groups of features to the root. A group's number is the number of its box one level higher.
     pub(super) levels: Vec<Vec<Group>>,
+    /// For every group the rigid body that all its features belong to, or [`MIXED`].
+    rigid: Vec<Vec<u32>>,
 }
+
+/// No rigid body: features of several bodies, or of one that collides with itself.
+pub(super) const MIXED: u32 = u32::MAX;
 
 impl Frame {
     pub(super) fn around(from: &[Point], to: &[Point]) -> Self {
@@ -204,10 +209,12 @@ impl Group {
 }
 
 impl MovingTree {
-    /// The tree over `count` features whose vertices at both ends `at` gives.
+    /// The tree over `count` features: `body` gives the body of each, and again if it is rigid or [`MIXED`]; `at` gives its
+    /// vertices at both ends. Features of a body stay together.
     pub(super) fn new<const N: usize>(
         frame: &Frame,
         count: usize,
+        body: impl Fn(u32) -> (u32, u32),
         at: impl Fn(u32) -> ([Point; N], [Point; N]),
     ) -> Self {
         let boxes: Vec<MovingBox> = (0..count as u32)
@@ -218,19 +225,26 @@ impl MovingTree {
             .collect();
         let cell =
             |x: f64| ((x + 0.5) * f64::from(1_u32 << BITS)).clamp(0.0, f64::from((1_u32 << BITS) - 1)) as u32;
-        let mut keyed: Vec<(u64, u32)> = (0..)
+        let mut keyed: Vec<(u32, u64, u32)> = (0..)
             .zip(&boxes)
-            .map(|(feature, of)| (morton_key(of.middle().map(cell), BITS), feature))
+            .map(|(feature, of)| (body(feature).0, morton_key(of.middle().map(cell), BITS), feature))
             .collect();
         keyed.sort_unstable();
-        let order: Vec<u32> = keyed.into_iter().map(|(_, feature)| feature).collect();
+        let order: Vec<u32> = keyed.into_iter().map(|(_, _, feature)| feature).collect();
+        let mut rigid = vec![common(order.iter().map(|&feature| body(feature).1))];
         let sorted = order.iter().map(|&feature| boxes[feature as usize]);
         let mut levels = vec![groups(sorted)];
         while levels[levels.len() - 1].len() > 1 {
             let next = groups(levels[levels.len() - 1].iter().map(Group::union));
             levels.push(next);
+            rigid.push(common(rigid[rigid.len() - 1].iter().copied()));
         }
-        Self { order, levels }
+        Self { order, levels, rigid }
+    }
+
+    /// The rigid body that all features of a group belong to, or [`MIXED`].
+    pub(super) fn rigid_body(&self, level: usize, group: u32) -> u32 {
+        self.rigid[level].get(group as usize).copied().unwrap_or(MIXED)
     }
 
     /// A box of a level.
@@ -276,11 +290,13 @@ impl MovingTree {
         below.saturating_sub(group as usize * LANES).min(LANES)
     }
 
-    /// Visits the groups of features, from number `least` on, whose box is not apart from `of`.
+    /// Visits the groups of features, from number `least` on, whose box is not apart from `of`, leaving out those of the
+    /// rigid body `without`.
     pub(super) fn visit(
         &self,
         of: &MovingBox,
         least: u32,
+        without: u32,
         stack: &mut Vec<(u8, u32)>,
         visit: &mut impl FnMut(u32),
     ) {
@@ -297,12 +313,23 @@ impl MovingTree {
                 mask &= mask - 1;
                 // The last group of features below the child.
                 let last = ((u64::from(child) + 1) << (3 * (u32::from(level) - 1))) - 1;
-                if last >= u64::from(least) {
+                let is_own = without != MIXED && self.rigid_body(usize::from(level) - 1, child) == without;
+                if last >= u64::from(least) && !is_own {
                     stack.push((level - 1, child));
                 }
             }
         }
     }
+}
+
+/// What all of eight have in common, or [`MIXED`].
+fn common(bodies: impl Iterator<Item = u32>) -> Vec<u32> {
+    let bodies: Vec<u32> = bodies.collect();
+    let of_eight = |eight: &[u32]| {
+        let all_the_same = eight.iter().all(|&body| body == eight[0]);
+        if all_the_same { eight[0] } else { MIXED }
+    };
+    bodies.chunks(LANES).map(of_eight).collect()
 }
 
 fn groups(boxes: impl Iterator<Item = MovingBox>) -> Vec<Group> {
