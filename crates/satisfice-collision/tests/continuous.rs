@@ -6,7 +6,7 @@ mod stress;
 
 use motions::{Case, Kind, Query};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rand_xoshiro::rand_core::SeedableRng;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use satisfice_collision::continuous::{DecidedBy, Moving, Separation, decide, impact, is_hit, touches};
 use satisfice_collision::distance::Threshold;
 
@@ -253,4 +253,17 @@ fn huge_and_tiny_coordinates_are_decided() {
             Threshold::new(size).unwrap()
         ));
     }
+}
+
+/// The fuzz target on fixed seeds, so that it keeps compiling and holding without a fuzzer.
+#[test]
+fn motions_of_arbitrary_bit_patterns() {
+    let mut rng = rng(6);
+    for round in 0..300_u32 {
+        let mut data = vec![0; 1 + stress::below(&mut rng, 220) as usize];
+        rng.fill_bytes(&mut data);
+        data[0] = round as u8;
+        motions::fuzzing::check(&data);
+    }
+    motions::fuzzing::check(&[]);
 }

@@ -1,6 +1,8 @@
 //! Motions with known answers, and a referee for those without.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod fuzzing;
+
 use rand_xoshiro::Xoshiro256PlusPlus;
 use satisfice_collision::continuous::{Impact, Moving, Separation, impact, is_hit, touches};
 use satisfice_collision::distance::Threshold;
