@@ -82,6 +82,10 @@ struct Descent<'s> {
     tolerance: f64,
     margin: f32,
     waiting: BinaryHeap<Waiting>,
+    /// Pairs of groups no later than `now`, which need no order.
+    at_once: Vec<Waiting>,
+    /// The time of the pair that is being opened.
+    now: f64,
     best: Earliest,
 }
 
@@ -120,6 +124,8 @@ impl Step {
             tolerance: tolerance.min(1.0),
             margin: self.margin(separation.get()),
             waiting: BinaryHeap::new(),
+            at_once: Vec::new(),
+            now: 0.0,
             best: Earliest {
                 time: [1.0, 1.0],
                 first: None,
@@ -195,17 +201,17 @@ impl<'s> Descent<'s> {
 
     fn run(mut self, stop: &mut dyn FnMut() -> bool) -> Result<Earliest, Error> {
         let mut rounds = 0_u32;
-        while let Some(next) = self.waiting.peek().copied() {
+        while let Some(next) = self.at_once.pop().or_else(|| self.waiting.pop()) {
             if next.time >= self.best.time[1] {
                 break;
             }
             rounds = rounds.wrapping_add(1);
             if rounds.is_multiple_of(16) && stop() {
-                self.best.undecided = self.waiting.len() as u64;
+                self.best.undecided = (self.waiting.len() + self.at_once.len()) as u64 + 1;
                 self.best.time[0] = self.best.time[0].min(next.time);
                 return Ok(self.best);
             }
-            self.waiting.pop();
+            self.now = next.time;
             let lists = Step::lists(KINDS[next.kind as usize])?;
             let trees = self.trees(next.kind)?;
             match (next.a.level, next.b.level) {
@@ -221,7 +227,12 @@ impl<'s> Descent<'s> {
 
     fn wait(&mut self, kind: u8, time: f64, a: Node, b: Node) {
         if time < self.best.time[1] && !self.is_one_rigid_body(kind, a, b) {
-            self.waiting.push(Waiting { time, kind, a, b });
+            let waiting = Waiting { time, kind, a, b };
+            if time <= self.now {
+                self.at_once.push(waiting);
+            } else {
+                self.waiting.push(waiting);
+            }
         }
     }
 

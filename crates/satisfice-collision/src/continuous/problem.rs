@@ -1,7 +1,7 @@
 //! The candidates of a step as a problem for the search engines: which pairs hit, the earliest first.
 
 use satisfice::catalogue::Description;
-use satisfice::{Axis, Region, SatisficingProblem, Space};
+use satisfice::{Axis, Bounds, Region, SatisficingProblem, Space};
 
 use super::Separation;
 use super::advance::Goal;
@@ -141,13 +141,8 @@ impl SatisficingProblem for MovingPairs<'_> {
         HIT
     }
 
-    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
-        let [a, b] = [0, 1].map(|side| self.around(side, region.lower[side], region.upper[side]));
-        Some(
-            a.grown(self.margin)
-                .meeting(&b)
-                .map_or(NEVER, |[first, _]| (first - TOLERANCE).max(0.0)),
-        )
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
     }
 
     fn description(&self) -> Description {
@@ -159,5 +154,16 @@ impl SatisficingProblem for MovingPairs<'_> {
                 ("features-b".to_owned(), self.positions[1].to_string()),
             ],
         }
+    }
+}
+
+impl Bounds<f64> for MovingPairs<'_> {
+    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+        let [a, b] = [0, 1].map(|side| self.around(side, region.lower[side], region.upper[side]));
+        Some(
+            a.grown(self.margin)
+                .meeting(&b)
+                .map_or(NEVER, |[first, _]| (first - TOLERANCE).max(0.0)),
+        )
     }
 }

@@ -194,17 +194,22 @@ impl Group {
     /// The lanes that are not apart from a box in the same order at both ends, a bit each.
     #[inline]
     pub(super) fn candidates(&self, of: &MovingBox) -> u32 {
-        let mut apart = [false; LANES];
+        let mut apart = [0_u32; LANES];
         for k in 0..3 {
             let (min, max) = ([of.min[0][k], of.min[1][k]], [of.max[0][k], of.max[1][k]]);
-            for (lane, apart) in apart.iter_mut().enumerate() {
-                *apart |= (self.min[0][k][lane] > max[0]) & (self.min[1][k][lane] > max[1])
-                    | (min[0] > self.max[0][k][lane]) & (min[1] > self.max[1][k][lane]);
+            let (lower, upper) = ([&self.min[0][k], &self.min[1][k]], [&self.max[0][k], &self.max[1][k]]);
+            // Without branches, so that lanes become those of vector instructions.
+            for lane in 0..LANES {
+                let after = u32::from(lower[0][lane] > max[0]) & u32::from(lower[1][lane] > max[1]);
+                let before = u32::from(min[0] > upper[0][lane]) & u32::from(min[1] > upper[1][lane]);
+                apart[lane] |= after | before;
             }
         }
-        (0..)
-            .zip(apart)
-            .fold(0, |mask, (lane, apart)| mask | u32::from(!apart) << lane)
+        let mut mask = 0;
+        for (lane, apart) in apart.into_iter().enumerate() {
+            mask |= (apart ^ 1) << lane;
+        }
+        mask
     }
 }
 
