@@ -1,0 +1,85 @@
+//! Reports are equal to the byte on any number of threads, for every engine; of islands too.
+
+use serde_json::Value;
+
+use crate::extent::{figure, is_full};
+use crate::process::command;
+
+fn report(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let done = command(folder.path(), arguments).output().unwrap();
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(
+        done.status.code().is_some_and(|code| code < 2),
+        "{arguments:?}: {said}"
+    );
+    let mut value: Value = serde_json::from_slice(&done.stdout).unwrap();
+    strip(&mut value);
+    value.to_string()
+}
+
+fn strip(value: &mut Value) {
+    match value {
+        Value::Object(map) => {
+            map.retain(|key, _| !key.ends_with("seconds"));
+            map.values_mut().for_each(strip);
+        }
+        Value::Array(list) => list.iter_mut().for_each(strip),
+        _ => {}
+    }
+}
+
+#[test]
+fn threads_change_no_report() {
+    let problems: &[&str] = if is_full() {
+        &[
+            "queens",
+            "rastrigin",
+            "sallen-key",
+            "islands",
+            "costas",
+            "himmelblau",
+            "arm",
+        ]
+    } else {
+        &["sallen-key"]
+    };
+    let mut runs = 0;
+    let names: Vec<&str> = satisfice::engine::all()
+        .iter()
+        .map(|engine| engine.name)
+        .collect();
+    for problem in problems {
+        for engine in &names {
+            for islands in ["1", "4"] {
+                let run = |threads| {
+                    report(&[
+                        "run",
+                        problem,
+                        "--engine",
+                        engine,
+                        "--evaluations",
+                        "3000",
+                        "--islands",
+                        islands,
+                        "--threads",
+                        threads,
+                        "--json",
+                        "-",
+                    ])
+                };
+                let one = run("1");
+                let others: &[&str] = if is_full() { &["2", "8"] } else { &["2"] };
+                for threads in others {
+                    assert_eq!(
+                        run(threads),
+                        one,
+                        "{problem}, {engine}, {islands} islands, {threads} threads"
+                    );
+                    runs += 1;
+                }
+            }
+        }
+    }
+    figure("reports equal to the byte over threads", runs);
+}

@@ -1,0 +1,202 @@
+//! Signals at random moments: what was found is kept, files are whole, and a killed run goes on as if nothing had happened.
+
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::thread;
+use std::time::Duration;
+
+use satisfice::SearchRng;
+use serde_json::Value;
+
+use crate::extent::{cases, figure};
+use crate::process::{command, ends_within, signal};
+
+/// Time in which an interrupted process has to end.
+const END: Duration = Duration::from_secs(5);
+
+fn json(path: &Path) -> Value {
+    let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_slice(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Files that were begun and not finished.
+fn partial_files(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name());
+    names
+        .map(|name| name.to_string_lossy().into_owned())
+        .filter(|name| name.contains("partial"))
+        .collect()
+}
+
+fn pause(rng: &mut SearchRng) {
+    thread::sleep(Duration::from_millis(30 + rng.below(400) as u64));
+}
+
+/// Interrupts a long run by these signals, shortly after one another.
+fn interrupted(name: &str, signals: &[&str]) {
+    let count = cases(4, 100);
+    for case in 0..count {
+        let folder = tempfile::tempdir().unwrap();
+        let mut rng = SearchRng::new(case);
+        let arguments = [
+            "run",
+            "teapots",
+            "--set",
+            "samples=500",
+            "--time",
+            "1h",
+            "--json",
+            "r.json",
+            "--checkpoint",
+            "c.json",
+        ];
+        let mut child = command(folder.path(), &arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        pause(&mut rng);
+        // The report is the place for results from the first moment on: a run that has not begun yet keeps nothing.
+        while !folder.path().join("c.json").exists() {
+            thread::sleep(Duration::from_millis(5));
+        }
+        for name in signals {
+            signal(&child, name);
+            thread::sleep(Duration::from_millis(rng.below(20) as u64));
+        }
+        assert!(
+            ends_within(&mut child, END, false),
+            "case {case}: deaf to {signals:?}"
+        );
+        let code = child.wait().unwrap().code();
+        assert!(
+            matches!(code, Some(0 | 1)),
+            "case {case}: exit code {code:?} after {signals:?}"
+        );
+        let report = json(&folder.path().join("r.json"));
+        assert_eq!(report["stop_reason"], "Cancelled", "case {case}");
+        assert!(json(&folder.path().join("c.json")).is_object());
+        assert_eq!(partial_files(folder.path()), Vec::<String>::new(), "case {case}");
+    }
+    figure(
+        &format!("runs ended by {name}"),
+        format!("{count}, every report and checkpoint whole"),
+    );
+}
+
+#[test]
+fn an_interrupt_keeps_the_report() {
+    interrupted("SIGINT", &["INT"]);
+}
+
+#[test]
+fn a_termination_keeps_the_report() {
+    interrupted("SIGTERM", &["TERM"]);
+}
+
+#[test]
+fn a_second_signal_within_a_second_is_the_same_wish() {
+    interrupted(
+        "SIGTERM twice within 20 ms, as `timeout` sends it",
+        &["TERM", "TERM"],
+    );
+}
+
+fn without_times(mut report: Value) -> Value {
+    fn visit(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.retain(|key, _| !key.ends_with("seconds"));
+                map.values_mut().for_each(visit);
+            }
+            Value::Array(list) => list.iter_mut().for_each(visit),
+            _ => {}
+        }
+    }
+    visit(&mut report);
+    report
+}
+
+#[test]
+fn a_killed_run_resumes_as_if_nothing_had_happened() {
+    let count = cases(3, 100);
+    let run = [
+        "run",
+        "rastrigin",
+        "--evaluations",
+        "400000",
+        "--slices",
+        "3",
+        "--seed",
+        "5",
+    ];
+    let whole = tempfile::tempdir().unwrap();
+    let done = command(whole.path(), &[&run[..], &["--json", "r.json"]].concat())
+        .output()
+        .unwrap();
+    assert!(done.status.success());
+    let expected = without_times(json(&whole.path().join("r.json")));
+    let mut killed = 0;
+    for case in 0..count {
+        let folder = tempfile::tempdir().unwrap();
+        let mut rng = SearchRng::new(case);
+        let mut child = command(folder.path(), &[&run[..], &["--checkpoint", "c.json"]].concat())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while !folder.path().join("c.json").exists() {
+            thread::sleep(Duration::from_millis(2));
+        }
+        pause(&mut rng);
+        killed += u64::from(child.try_wait().unwrap().is_none());
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let resumed = command(
+            folder.path(),
+            &["run", "rastrigin", "--resume", "c.json", "--json", "r.json"],
+        )
+        .output()
+        .unwrap();
+        let said = String::from_utf8_lossy(&resumed.stderr).into_owned();
+        assert!(resumed.status.success(), "case {case}: {said}");
+        assert_eq!(
+            without_times(json(&folder.path().join("r.json"))),
+            expected,
+            "case {case}"
+        );
+    }
+    figure(
+        "runs killed and resumed",
+        format!("{count} ({killed} of them before their end), all equal to the uninterrupted run"),
+    );
+}
+
+#[test]
+fn two_processes_do_not_share_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("s.toml"),
+        "seeds = \"0..4\"\n[[part]]\nengines = [\"random\"]\nproblems = [\"queens\"]\ntime = \"500ms\"\n",
+    )
+    .unwrap();
+    let mut first = command(folder.path(), &["bench", "s.toml", "--out", "out"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !folder.path().join("out").join("results.jsonl").exists() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    let second = command(folder.path(), &["bench", "s.toml", "--out", "out"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    assert_eq!(second.status.code(), Some(2), "{said}");
+    assert!(said.contains("out"), "{said}");
+    assert!(ends_within(&mut first, Duration::from_secs(30), false));
+    assert_eq!(first.wait().unwrap().code(), Some(0));
+}
