@@ -111,6 +111,11 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) json: Option<PathBuf>,
 
+    /// Count all hits of the problem for the recall, even if that takes longer than the run. Without it, the count may take as
+    /// long as the run, and at least 2 s.
+    #[arg(long)]
+    pub(crate) reference: bool,
+
     /// Draw hits against evaluations and time, as .svg or .png.
     #[arg(long, value_name = "FILE.svg|.png", value_hint = ValueHint::FilePath)]
     pub(crate) plot: Option<PathBuf>,

@@ -10,7 +10,7 @@ use satisfice_catalogue::quantity::shown;
 
 use crate::arguments::BenchArguments;
 use crate::progress::{Counting, Runs};
-use crate::{interrupt, output};
+use crate::{interrupt, message, output};
 
 pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     let mut suite = Suite::open(&arguments.suite)?;
@@ -36,10 +36,10 @@ pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow
             } else {
                 String::new()
             };
-            eprintln!(
+            message::say(format_args!(
                 "{all} runs{clock}; {done} of them are in {} already",
                 folder.display()
-            );
+            ));
             runs = Some(Runs::new(*all, *done));
         }
         Event::Counting(problem) => runs
@@ -76,22 +76,24 @@ pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow
         .for_each(|finding| text.push_str(&finding.table()));
     output::print(text.as_bytes())?;
     if finished.foreign > 0 {
-        eprintln!(
+        message::say(format_args!(
             "{} runs in the folder are not of this suite and seeds; they are left out of its tables",
             finished.foreign
-        );
+        ));
     }
     if finished.missing() > 0 {
-        eprintln!(
+        message::say(format_args!(
             "interrupted: {} of {} runs are missing; the same command continues from here",
             finished.missing(),
             finished.runs
-        );
+        ));
     }
     if findings.len() < plan.suite.studies.len() {
-        eprintln!("interrupted: a study is missing; the same command runs it");
+        message::say(format_args!(
+            "interrupted: a study is missing; the same command runs it"
+        ));
     }
-    eprintln!("look at {}", folder.join("report.html").display());
+    message::say(format_args!("look at {}", folder.join("report.html").display()));
     Ok(ExitCode::SUCCESS)
 }
 

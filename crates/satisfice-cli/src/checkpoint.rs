@@ -1,11 +1,12 @@
 //! `--checkpoint` and `--resume`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
 use satisfice_catalogue::{RunSpec, checkpoint};
 
+use crate::message;
 use crate::output::Output;
 
 /// How often a checkpoint is written.
@@ -27,11 +28,10 @@ pub(crate) fn read(path: &Path, problem: &str) -> anyhow::Result<(Vec<u8>, RunSp
     Ok((bytes, spec))
 }
 
-/// Keeps the latest checkpoint in a file, which is complete at any time.
+/// Keeps the latest checkpoint in a file, which is whole at any time.
 pub(crate) struct Keeper {
-    path: PathBuf,
-    /// The next file, opened before it is needed.
-    next: Option<Output>,
+    output: Output,
+    /// Why the latest checkpoint was not written.
     failed: Option<anyhow::Error>,
 }
 
@@ -41,27 +41,25 @@ impl Keeper {
             bail!("a checkpoint is written again and again: name a file for it, not stdout");
         }
         Ok(Self {
-            path: path.to_owned(),
-            next: Some(Output::open(path)?),
+            output: Output::open(path)?,
             failed: None,
         })
     }
 
-    /// Replaces the file. An error is reported at the end, so that the run is not lost.
+    /// Replaces the file. A failure is reported at once, and the next checkpoint is tried again: the run goes on.
     pub(crate) fn save(&mut self, bytes: &[u8]) {
-        // One output is gone before the next one is opened: both are written beside the same place.
-        let written = self.next.take().map(|mut output| output.write(bytes));
-        match written.unwrap_or(Ok(())).and_then(|()| Output::open(&self.path)) {
-            Ok(next) => self.next = Some(next),
-            Err(error) => self.failed = Some(error),
+        self.failed = self.output.write(bytes).err();
+        if let Some(error) = &self.failed {
+            message::say(format_args!(
+                "warning: no checkpoint was written: {error:#}; the run goes on"
+            ));
         }
     }
 
-    /// Reports what went wrong.
+    /// Fails if the last checkpoint was not written.
     pub(crate) fn finish(self) -> anyhow::Result<()> {
-        match self.failed {
-            Some(error) if self.next.is_none() => Err(error).context("the last checkpoint was not written"),
-            _ => Ok(()),
-        }
+        self.failed.map_or(Ok(()), |error| {
+            Err(error).context("the last checkpoint was not written")
+        })
     }
 }

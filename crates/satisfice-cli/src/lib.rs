@@ -50,6 +50,7 @@ mod completions;
 mod failure;
 mod interrupt;
 mod list;
+mod message;
 mod output;
 mod plot;
 mod progress;

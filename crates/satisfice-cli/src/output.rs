@@ -1,12 +1,15 @@
-//! Where results go: stdout, or files that are complete or absent.
+//! Where results go: stdout, or files that are whole or not there.
 
+use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::{Context, bail};
+use tempfile::NamedTempFile;
 
-/// Writes to stdout. A reader that stops early (`| head`) is not an error.
+/// Writes to stdout. A reader that closes the pipe early (`| head`) is no error.
 pub(crate) fn print(bytes: &[u8]) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -17,7 +20,7 @@ pub(crate) fn print(bytes: &[u8]) -> anyhow::Result<()> {
     }
 }
 
-/// A destination for results, opened before the work begins, so that a typo does not cost the work.
+/// A place for results. It is opened before the work begins, so that an hour's work is not lost to a typo.
 pub(crate) struct Output {
     path: PathBuf,
     to: To,
@@ -28,42 +31,44 @@ enum To {
     Stdout,
     /// A device or a pipe: written in place.
     InPlace(File),
-    /// A file: written beside its destination, and moved there when it is complete.
-    Beside(PathBuf, File),
+    /// A file: written under a temporary name beside its place and moved there when it is whole.
+    Beside(Option<NamedTempFile>),
+}
+
+/// Temporary files that exist now: a program that gives up removes them.
+static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
+    PARTIAL.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every temporary file. Only for a program that is about to exit.
+pub(crate) fn remove_partial_files() {
+    for path in partial_files().drain(..) {
+        drop(fs::remove_file(path));
+    }
 }
 
 impl Output {
-    /// Opens `path`, or stdout for `-`.
+    /// Opens `path`, or stdout for `-`. A link is written through.
     pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
         let hint = || format!("cannot write {}: choose another place", path.display());
-        let to = if path == Path::new("-") {
-            To::Stdout
-        } else {
-            match fs::metadata(path) {
-                Ok(found) if found.is_dir() => bail!("{} is a folder: name a file in it", path.display()),
-                Ok(found) if found.permissions().readonly() => {
-                    bail!("{} may not be written to: choose another place", path.display())
-                }
-                Ok(found) if !found.is_file() => {
-                    To::InPlace(OpenOptions::new().write(true).open(path).with_context(hint)?)
-                }
-                _ => {
-                    let Some(name) = path.file_name() else {
-                        bail!("{} is not a file name: name a file", path.display())
-                    };
-                    let mut partial = std::ffi::OsString::from(".");
-                    partial.push(name);
-                    partial.push(format!(".{}.partial", std::process::id()));
-                    let partial = path.with_file_name(partial);
-                    let file = File::create(&partial).with_context(hint)?;
-                    To::Beside(partial, file)
-                }
+        if path == Path::new("-") {
+            let (path, to) = (path.to_owned(), To::Stdout);
+            return Ok(Self { path, to });
+        }
+        let path = target(path)?;
+        let to = match fs::metadata(&path) {
+            Ok(found) if found.is_dir() => bail!("{} is a folder: name a file in it", path.display()),
+            Ok(found) if found.permissions().readonly() => {
+                bail!("{} may not be written to: choose another place", path.display())
             }
+            Ok(found) if !found.is_file() => {
+                To::InPlace(OpenOptions::new().write(true).open(&path).with_context(hint)?)
+            }
+            _ => To::Beside(Some(beside(&path).with_context(hint)?)),
         };
-        Ok(Self {
-            path: path.to_owned(),
-            to,
-        })
+        Ok(Self { path, to })
     }
 
     /// Writes all of `bytes`; before that, the file is as it was.
@@ -74,10 +79,10 @@ impl Output {
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
                 written => written,
             },
-            To::Beside(partial, file) => file
-                .write_all(bytes)
-                .and_then(|()| file.sync_data())
-                .and_then(|()| fs::rename(partial, &self.path)),
+            To::Beside(partial) => match partial.take() {
+                Some(file) => replace(file, &self.path, bytes),
+                None => beside(&self.path).and_then(|file| replace(file, &self.path, bytes)),
+            },
         };
         written.with_context(|| {
             format!(
@@ -90,14 +95,95 @@ impl Output {
 
 impl Drop for Output {
     fn drop(&mut self) {
-        if let To::Beside(partial, _) = &self.to {
-            // It no longer exists where all went well.
-            drop(fs::remove_file(partial));
+        if let To::Beside(Some(partial)) = &self.to {
+            forget(partial.path());
         }
     }
 }
 
-/// Opens the destination, where one is given.
+/// A new file of an unpredictable name in the folder of `path`.
+fn beside(path: &Path) -> io::Result<NamedTempFile> {
+    let mut prefix = OsString::from(".");
+    prefix.push(path.file_name().unwrap_or_default());
+    prefix.push(".");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(".partial");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    partial_files().push(file.path().to_owned());
+    Ok(file)
+}
+
+/// Moves a file with these contents to its place.
+fn replace(mut file: NamedTempFile, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let partial = file.path().to_owned();
+    let moved = file
+        .write_all(bytes)
+        .and_then(|()| file.as_file().sync_data())
+        .and_then(|()| file.persist(path).map(drop).map_err(|error| error.error));
+    forget(&partial);
+    moved
+}
+
+fn forget(path: &Path) {
+    partial_files().retain(|known| known != path);
+}
+
+/// Where the bytes for `path` go: the end of a link, else the path itself.
+fn target(path: &Path) -> anyhow::Result<PathBuf> {
+    if path.file_name().is_none() {
+        bail!("{} is no name of a file: name one", path.display());
+    }
+    if fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink()) {
+        return fs::canonicalize(path).with_context(|| {
+            format!(
+                "{} is a link that leads nowhere: name another file",
+                path.display()
+            )
+        });
+    }
+    Ok(path.to_owned())
+}
+
+/// Refuses outputs that are the same file, or one of the inputs, before anything runs.
+///
+/// # Errors
+/// The two names, and what to do.
+pub(crate) fn check_distinct(inputs: &[&Path], outputs: &[(&str, Option<&PathBuf>)]) -> anyhow::Result<()> {
+    let outputs: Vec<_> = outputs
+        .iter()
+        .filter_map(|(option, path)| Some((option, (*path)?, identity((*path)?))))
+        .collect();
+    for (i, (option, path, file)) in outputs.iter().enumerate() {
+        if inputs.iter().any(|input| identity(input) == *file) {
+            bail!(
+                "{option} {} would overwrite an input: choose another file",
+                path.display()
+            );
+        }
+        if let Some((other, ..)) = outputs[..i].iter().find(|(.., known)| known == file) {
+            bail!(
+                "{other} and {option} both write {}: choose two files",
+                path.display()
+            );
+        }
+    }
+    Ok(())
+}
+
+/// What tells a file from others: its folder without links, and its name.
+fn identity(path: &Path) -> PathBuf {
+    if let Ok(whole) = fs::canonicalize(path) {
+        return whole;
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).unwrap_or_default();
+    folder.join(path.file_name().unwrap_or(path.as_os_str()))
+}
+
+/// Opens the place, if one is named.
 pub(crate) fn open(path: Option<&PathBuf>) -> anyhow::Result<Option<Output>> {
     path.map(|path| Output::open(path)).transpose()
 }

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use satisfice_catalogue::Progress;
 
+use crate::message;
+
 const STEPS: u64 = 1000;
 /// The time between progress lines of a sweep without a terminal.
 const TELL_EVERY: Duration = Duration::from_secs(5);
@@ -91,7 +93,7 @@ impl Runs {
             bar.set_message(what.to_owned());
         } else if self.told.elapsed() > TELL_EVERY {
             self.told = now();
-            eprintln!("{} of {} runs; {what}", self.done, self.all);
+            message::say(format_args!("{} of {} runs; {what}", self.done, self.all));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunReport, RunSpec, json};
 use satisfice_draw::plot::{self, Format};
@@ -14,6 +15,14 @@ use crate::progress::Bar;
 use crate::{interrupt, reference, summary};
 
 pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
+    output::check_distinct(
+        &[],
+        &[
+            ("--json", arguments.json.as_ref()),
+            ("--checkpoint", arguments.checkpoint.as_ref()),
+            ("--plot", arguments.plot.as_ref()),
+        ],
+    )?;
     let known = catalogue.find(&arguments.problem)?;
     let resume = arguments.resume.as_deref();
     let resumed = resume
@@ -48,9 +57,17 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     let mut report = problem.run(&spec, control)?;
     drop(bar);
     let counted = Arc::clone(&problem);
-    report.set_reference(reference::wait_for(problem.name(), &cancel, move || {
-        counted.reference_hits()
-    }));
+    let patience = if arguments.reference {
+        reference::Patience::Unlimited
+    } else {
+        reference::Patience::AsTheRun(Duration::try_from_secs_f64(report.elapsed_seconds).unwrap_or_default())
+    };
+    report.set_reference(reference::wait_for(
+        problem.name(),
+        patience,
+        &cancel,
+        move || counted.reference_hits(),
+    ));
 
     if let Some(file) = &mut json_file {
         file.write(&json::to_vec(&report)?)?;

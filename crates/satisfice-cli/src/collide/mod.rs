@@ -19,7 +19,7 @@ use satisfice_collision::broad::Method;
 use satisfice_collision::scene::{Completeness, Contact, Skips};
 use serde::Deserialize;
 
-use crate::{interrupt, output, reference, summary};
+use crate::{interrupt, message, output, reference, summary};
 use arguments::{CollideArguments, Find};
 use exact::{Exact, METHODS};
 use report::Report;
@@ -72,9 +72,12 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         let mut record = search::find(&world, &spec, &cancel)?;
         let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));
         let (counted, kept) = (Arc::clone(&world), Arc::clone(&reference));
-        record.set_reference(reference::wait_for("the scene", &cancel, move || {
-            count(&counted, &kept)
-        }));
+        record.set_reference(reference::wait_for(
+            "the scene",
+            reference::Patience::Unlimited,
+            &cancel,
+            move || count(&counted, &kept),
+        ));
         let (all, skips) = reference
             .lock()
             .map(|mut kept| std::mem::take(&mut *kept))
@@ -116,7 +119,7 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
 
 fn warn(world: &World) {
     for warning in warnings::warnings(world) {
-        eprintln!("warning: {warning}");
+        message::say(format_args!("warning: {warning}"));
     }
 }
 
