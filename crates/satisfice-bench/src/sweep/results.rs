@@ -1,13 +1,18 @@
-//! `results.jsonl`: one line per finished run, appended as it ends.
+//! `results.jsonl`: a line for every finished run, appended as it ends.
+//!
+//! Each line is a JSON object whose first key is the checksum of the others. A process that writes the file locks it.
 
-use std::fs::{File, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::row::Row;
 use crate::error::Error;
 
-/// The file of a sweep.
+/// How a line begins; 16 hexadecimal digits and `",` follow.
+const CHECKSUM: &str = "{\"checksum\":\"";
+
+/// The file of a sweep, locked until it is dropped.
 #[derive(Debug)]
 pub struct Results {
     path: PathBuf,
@@ -15,56 +20,98 @@ pub struct Results {
 }
 
 impl Results {
-    /// Opens or creates the file of a folder, which is created as well; returns its rows. A last line that
-    /// a crash has cut short is dropped.
+    /// Opens or creates the file in a folder, which is created too, and locks it. Returns the rows in it. An unfinished last
+    /// line, left by a crash, is dropped.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read or written, or a line is not a run.
+    /// [`Error::File`] if it cannot be read or written, if another process writes it, or if a line is damaged.
     pub fn open(folder: &Path) -> Result<(Self, Vec<Row>), Error> {
         let path = folder.join("results.jsonl");
-        let told = |what: String| Error::File {
+        let failed = |what: String| Error::File {
             path: path.clone(),
             what,
         };
         std::fs::create_dir_all(folder)
-            .map_err(|error| told(format!("cannot make its folder: {error}; choose another one")))?;
-        let text = match std::fs::read_to_string(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
-            read => read.map_err(|error| told(format!("cannot read it: {error}")))?,
-        };
-        let whole = text.rfind('\n').map_or(0, |end| end + 1);
-        let rows = text[..whole]
-            .lines()
+            .map_err(|error| failed(format!("cannot make its folder: {error}; choose another one")))?;
+        let mut file = OpenOptions::new()
+            .read(true)
+            .append(true)
+            .create(true)
+            .open(&path)
+            .map_err(|error| failed(format!("cannot write to it: {error}; choose another folder")))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let what = "another process is writing to it: wait for its end, or choose another folder";
+                return Err(failed(what.to_owned()));
+            }
+            Err(TryLockError::Error(error)) => return Err(failed(format!("cannot lock it: {error}"))),
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)
+            .map_err(|error| failed(format!("cannot read it: {error}")))?;
+        let whole = bytes
+            .iter()
+            .rposition(|&byte| byte == b'\n')
+            .map_or(0, |end| end + 1);
+        let rows = bytes[..whole]
+            .split(|&byte| byte == b'\n')
+            .filter(|line| !line.is_empty())
             .enumerate()
             .map(|(number, line)| {
-                serde_json::from_str(line).map_err(|error| {
-                    told(format!(
-                        "line {} is not a finished run ({error}): remove it, or choose another folder",
-                        number + 1
+                read(line).map_err(|what| {
+                    let number = number + 1;
+                    failed(format!(
+                        "line {number} {what}: remove it, or choose another folder"
                     ))
                 })
             })
             .collect::<Result<Vec<Row>, _>>()?;
-        let mut open = OpenOptions::new();
-        let file = open
-            .append(true)
-            .create(true)
-            .open(&path)
-            .and_then(|file| file.set_len(whole as u64).map(|()| file))
-            .map_err(|error| told(format!("cannot write to it: {error}; choose another folder")))?;
+        file.set_len(whole as u64)
+            .map_err(|error| failed(format!("cannot write to it: {error}; choose another folder")))?;
         Ok((Self { path, file }, rows))
     }
 
     /// Appends a run; it is on the disk when this returns.
     ///
     /// # Errors
-    /// [`Error::File`] where the disk is full or gone.
+    /// [`Error::File`] if the disk is full or gone.
     pub fn append(&mut self, row: &Row) -> Result<(), Error> {
-        let mut line = serde_json::to_vec(row)?;
-        line.push(b'\n');
-        self.file.write_all(&line).and_then(|()| self.file.sync_data()).map_err(|error| Error::File {
+        let line = write(&serde_json::to_string(row)?);
+        let written = self
+            .file
+            .write_all(line.as_bytes())
+            .and_then(|()| self.file.sync_data());
+        written.map_err(|error| Error::File {
             path: self.path.clone(),
             what: format!("cannot write to it: {error}; its rows are kept: free some space and run the same command again"),
         })
     }
+}
+
+/// A line from the JSON of a row.
+fn write(row: &str) -> String {
+    format!("{CHECKSUM}{:016x}\",{}\n", checksum(row.as_bytes()), &row[1..])
+}
+
+/// The row of a line, or what is wrong with the line.
+fn read(line: &[u8]) -> Result<Row, String> {
+    let damaged = || "is damaged".to_owned();
+    let line = std::str::from_utf8(line).map_err(|_| damaged())?;
+    let (digits, rest) = line
+        .strip_prefix(CHECKSUM)
+        .and_then(|line| line.split_once("\","))
+        .ok_or_else(|| "is not a finished run".to_owned())?;
+    let row = format!("{{{rest}");
+    if digits != format!("{:016x}", checksum(row.as_bytes())) {
+        return Err(damaged());
+    }
+    serde_json::from_str(&row).map_err(|error| format!("is not a finished run ({error})"))
+}
+
+/// FNV-1a (Fowler, Noll, Vo 1991): every change of one byte changes it.
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
 }
