@@ -101,6 +101,12 @@ impl Drop for Output {
     }
 }
 
+/// The folder of a path; the current one for a plain name.
+fn folder_of(path: &Path) -> &Path {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
+}
+
 /// A new file of an unpredictable name in the folder of `path`.
 fn beside(path: &Path) -> io::Result<NamedTempFile> {
     let mut prefix = OsString::from(".");
@@ -110,8 +116,9 @@ fn beside(path: &Path) -> io::Result<NamedTempFile> {
     builder.prefix(&prefix).suffix(".partial");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    // The library's error names the temporary file, which means nothing to the user.
+    let plain = |error: io::Error| io::Error::from(error.kind());
+    let file = builder.tempfile_in(folder_of(path)).map_err(plain)?;
     partial_files().push(file.path().to_owned());
     Ok(file)
 }
@@ -135,6 +142,12 @@ fn forget(path: &Path) {
 fn target(path: &Path) -> anyhow::Result<PathBuf> {
     if path.file_name().is_none() {
         bail!("{} is no name of a file: name one", path.display());
+    }
+    if !folder_of(path).is_dir() {
+        bail!(
+            "cannot write {}: its folder does not exist: make it, or choose another place",
+            path.display()
+        );
     }
     if fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink()) {
         return fs::canonicalize(path).with_context(|| {
@@ -178,8 +191,7 @@ fn identity(path: &Path) -> PathBuf {
     if let Ok(whole) = fs::canonicalize(path) {
         return whole;
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).unwrap_or_default();
+    let folder = fs::canonicalize(folder_of(path)).unwrap_or_default();
     folder.join(path.file_name().unwrap_or(path.as_os_str()))
 }
 
