@@ -1,10 +1,13 @@
 //! Whole steps: all pairs, the first impact, free steps, rigid motions.
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
+
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use satisfice::SatisficingProblem;
 use satisfice_collision::continuous::{
-    FeatureOf, Moving, MovingContact, RigidMotion, Separation, Step, decide, impact, rigid_hits,
+    FeatureOf, Moving, MovingContact, MovingPairs, RigidMotion, Separation, Step, decide, impact, rigid_hits,
 };
 use satisfice_collision::distance::PairKind;
 use satisfice_collision::{Error, Mesh, Placement, generate};
@@ -368,4 +371,30 @@ fn rotation_is_followed() {
         ..turn
     };
     assert!(rigid_hits(&[(&bar, bad)], PairKind::EdgeEdge, delta, 0.1).is_err());
+}
+
+/// Each pair of one list has two places in the space and counts once; all bounds hold.
+#[test]
+fn the_candidates_of_a_step_are_a_problem() {
+    let scene = Scene::shaken(3);
+    let step = scene.step();
+    for kind in KINDS {
+        for delta in [0.0, 0.03] {
+            let separation = Separation::new(delta).unwrap();
+            let problem = MovingPairs::new(&step, kind, separation).unwrap();
+            assert_eq!(satisfice::testing::problem::check(&problem, 1), [], "{kind}");
+            let [m, n] = problem.positions();
+            let mut found = BTreeSet::new();
+            for i in 0..m {
+                for j in 0..n {
+                    let pair = problem.decode(&[f64::from(i), f64::from(j)]);
+                    if problem.fitness(&pair) < problem.threshold() {
+                        found.insert(pair);
+                    }
+                }
+            }
+            let hits = step.hits(kind, separation).unwrap();
+            assert_eq!(found.into_iter().collect::<Vec<_>>(), hits.pairs);
+        }
+    }
 }

@@ -38,10 +38,9 @@ const TOLERANCE: f64 = 1e-6;
 /// step.add_rigid(&sheet, sheet.vertices())?;
 /// let problem = MovingPairs::new(&step, PairKind::EdgeEdge, Separation::TOUCHING)?;
 /// let hits = step.hits(PairKind::EdgeEdge, Separation::TOUCHING)?;
-/// let found = (0..problem.positions()[0]).flat_map(|i| (0..problem.positions()[1]).map(move |j| [f64::from(i), f64::from(j)]))
-///     .map(|values| problem.decode(&values))
-///     .filter(|pair| pair.a < pair.b && problem.fitness(pair) < problem.threshold());
-/// assert_eq!(found.count(), hits.pairs.len());
+/// let report = satisfice::Search::with(satisfice::engine::build("branch-and-bound")?)
+///     .run(&problem, &satisfice::Budget::evaluations(1_000_000))?;
+/// assert_eq!(report.hits().len(), hits.pairs.len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
