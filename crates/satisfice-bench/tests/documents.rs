@@ -44,6 +44,8 @@ fn links_between_the_documents_lead_somewhere() {
         "docs/architecture.md",
         "docs/adding-an-engine.md",
         "docs/adding-a-problem.md",
+        "docs/glossary.md",
+        "docs/guide.md",
         "docs/completeness.md",
         "docs/reproducibility.md",
         "docs/results/generalisation.md",
