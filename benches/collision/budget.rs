@@ -75,7 +75,8 @@ fn films(full: bool) -> Vec<Film> {
         ("teapots turning back", triangles, turning),
     ] {
         let bodies = vec![Body::fixed(pot.clone()), Body::rigid(pot.clone())];
-        let step = move |scene: &mut World, t: usize| scene.place(BodyId::nth(1), course(t)).expect("a rigid body");
+        let step =
+            move |scene: &mut World, t: usize| scene.place(BodyId::nth(1), course(t)).expect("a rigid body");
         films.push(Film {
             name,
             kind,
@@ -94,7 +95,9 @@ fn films(full: bool) -> Vec<Film> {
         Threshold::new(0.1).expect("positive"),
     );
     let step = move |scene: &mut World, t: usize| {
-        scene.deform(BodyId::nth(0), frames[t].vertices()).expect("finite points");
+        scene
+            .deform(BodyId::nth(0), frames[t].vertices())
+            .expect("finite points");
     };
     let (name, kind) = ("slow folded sheet", PairKind::VertexVertex);
     films.push(Film {
@@ -115,7 +118,9 @@ fn films(full: bool) -> Vec<Film> {
             let exact = of_a_cloth(&first, &second, Threshold::new(delta).expect("positive"));
             let frames = [first.vertices().to_vec(), second.vertices().to_vec()];
             let step = move |scene: &mut World, t: usize| {
-                scene.deform(BodyId::nth(0), &frames[t / LAST]).expect("finite points");
+                scene
+                    .deform(BodyId::nth(0), &frames[t / LAST])
+                    .expect("finite points");
             };
             let (name, kind) = ("cloth-ball 92 to 93", PairKind::VertexVertex);
             films.push(Film {

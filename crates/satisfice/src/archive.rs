@@ -1,18 +1,18 @@
-//! The set C: the distinct hits, in the order found.
+//! The archive: the distinct hits, in the order found.
 
 use hashbrown::HashTable;
 
 use crate::identity::Identity;
 
-/// Up to this many hits a filter of bits spares most look-ups in the table; beyond, it would no longer stay in the cache.
+/// Up to this many hits, a filter of bits saves most look-ups in the table; a larger one would not stay in the cache.
 const FILTERED: usize = 1 << 16;
-/// Bits of the filter for each hit it has room for: about one look-up in 16 is not spared.
+/// Bits of the filter per hit it has room for: about one look-up in 16 is not saved.
 const BITS: usize = 16;
 
 /// The distinct hits, in the order found, each with its fitness and with the evaluation and the time that found it.
 ///
 /// Memory, at rest and beyond the solutions: 20 bytes a hit and 5 bytes a slot of a table that is between 7/16 and 7/8 full,
-/// so between 25.7 and 31.5 bytes. A look-up that finds nothing costs a hash, a bit test and, seldom, a table look-up.
+/// so between 25.7 and 31.5 bytes. A look-up that finds nothing costs a hash, a bit test and, rarely, a table look-up.
 #[derive(Debug, Clone)]
 pub struct Archive<T> {
     solutions: Vec<T>,
@@ -20,17 +20,17 @@ pub struct Archive<T> {
     evaluations: Vec<u64>,
     seconds: Vec<f32>,
     table: HashTable<u32>,
-    /// Hits of probes that the engine has not found itself: [`Archive::contains`] does not see them.
+    /// Hits of probes that the engine has not found itself: [`Archive::contains`] skips them.
     probe_only: HashTable<u32>,
     filter: Vec<u64>,
 }
 
-/// What became of a hit that was handed to an archive.
+/// The outcome of [`Archive::enter`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Entered {
     /// It was new.
     New,
-    /// Only a probe had found it; now the engine has, too.
+    /// It was probe-only, and the engine has found it now.
     Promoted,
     /// It was known.
     Known,
@@ -77,7 +77,7 @@ impl<T> Archive<T> {
         self.probe_only.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no hits.
     #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -135,7 +135,7 @@ impl<T> Archive<T> {
 }
 
 impl<T: Identity> Archive<T> {
-    /// Whether a solution that is the same is here.
+    /// Whether it holds a solution that is the same.
     #[inline]
     #[must_use]
     pub fn contains(&self, solution: &T) -> bool {
@@ -145,13 +145,13 @@ impl<T: Identity> Archive<T> {
         solution.visit_keys(&mut |key| self.may_hold(key) && self.find(key, solution).is_some())
     }
 
-    /// Whether a solution is the same as the hit at `recent`: whoever finds a known hit again often does so many times.
+    /// Whether a solution is the same as the hit at `recent`: a hit that is found again is often found many times in a row.
     #[inline]
     pub(crate) fn is_again(&self, solution: &T, recent: usize) -> bool {
         self.solutions.get(recent).is_some_and(|hit| hit.same(solution)) && !self.is_probe_only(recent)
     }
 
-    /// [`Archive::contains`]; where it does, the hit is left in `recent`.
+    /// [`Archive::contains`]; if it does, the index of the hit is written to `recent`.
     pub(crate) fn contains_again(&self, solution: &T, recent: &mut usize) -> bool {
         let mut found = None;
         solution.visit_keys(&mut |key| {
@@ -183,14 +183,22 @@ impl<T: Identity> Archive<T> {
         })
     }
 
-    /// Adds a solution unless one that is the same is here; returns whether it was new. Amortised cost: O(1).
+    /// Adds a solution with its fitness F, its evaluation and its time in seconds, unless the archive holds one that is the
+    /// same; returns whether it was new. Amortised cost: O(1).
+    ///
+    /// ```
+    /// let mut archive = satisfice::Archive::default();
+    /// assert!(archive.insert([3, 4], -0.5, 1, 0.0));
+    /// assert!(!archive.insert([3, 4], -0.5, 2, 0.1), "the same pair");
+    /// assert_eq!(archive.get(0).map(|hit| (hit.fitness, hit.evaluation)), Some((-0.5, 1)));
+    /// ```
     ///
     /// At 2^32 - 1 hits, the archive is full and takes no more.
     pub fn insert(&mut self, solution: T, fitness: f64, evaluation: u64, seconds: f64) -> bool {
         self.enter(solution, fitness, evaluation, seconds, false) == Entered::New
     }
 
-    /// The same for a hit of the engine or of a probe. That of a probe is listed, but hidden from
+    /// [`Archive::insert`] for a hit of the engine or of a probe. That of a probe is listed, but not seen by
     /// [`contains`](Archive::contains) until the engine finds it, too, or the archive comes to rest.
     pub(crate) fn enter(
         &mut self,
@@ -230,7 +238,7 @@ impl<T: Identity> Archive<T> {
         Entered::New
     }
 
-    /// Where a solution that is the same is, hidden or not.
+    /// The index of a solution that is the same, probe-only or not.
     pub(crate) fn position(&self, solution: &T) -> Option<usize> {
         let mut found = None;
         solution.visit_keys(&mut |key| {
@@ -257,7 +265,7 @@ impl<T: Identity> Archive<T> {
         found
     }
 
-    /// Whether only a probe has found hit `index`.
+    /// Whether hit `index` is probe-only.
     pub(crate) fn is_probe_only(&self, index: usize) -> bool {
         !self.probe_only.is_empty()
             && self.solutions.get(index).is_some_and(|solution| {
@@ -274,7 +282,7 @@ impl<T: Identity> Archive<T> {
         indices
     }
 
-    /// Hides hit `index` from [`contains`](Archive::contains); `false` where there is none.
+    /// Marks hit `index` as probe-only; `false` if there is no such hit.
     pub(crate) fn set_probe_only(&mut self, index: u32) -> bool {
         let Some(key) = self.solutions.get(index as usize).map(Identity::key) else {
             return false;
@@ -299,7 +307,7 @@ impl<T: Identity> Archive<T> {
         self.note(key);
     }
 
-    /// Gives back memory that is kept for growth and for speed, and hides nothing any more.
+    /// Frees memory that was kept for growth and for speed, and promotes all probe-only hits.
     pub fn rest(&mut self) {
         let probe_only = core::mem::take(&mut self.probe_only);
         probe_only.into_iter().for_each(|index| self.promote(index));
@@ -330,7 +338,7 @@ impl<T: Identity> Archive<T> {
             return;
         }
         if hits * BITS > self.filter.len() * 64 {
-            // Twice the room, filled anew.
+            // Twice the room, filled again.
             self.filter.clear();
             self.filter
                 .resize((2 * hits * BITS).next_power_of_two().max(1024) / 64, 0);

@@ -18,13 +18,13 @@ use crate::error::Error;
 pub struct Budget {
     /// Wall time, from the start of the slice.
     pub time: Option<Duration>,
-    /// Candidates that reach the ledger, deleted ones included, and bounds that the problem gave.
+    /// Evaluations: candidates that reach the accounting, deleted ones included, and bounds that the problem gave.
     pub evaluations: Option<u64>,
     /// Distinct hits.
     pub hits: Option<u64>,
-    /// Evaluations to which schedules relate, where that is not the budget itself.
+    /// Evaluations to which schedules relate, if not the budget itself.
     pub horizon: Option<u64>,
-    /// Somebody who may cancel.
+    /// A flag that cancels the slice.
     #[serde(skip)]
     pub cancel: Option<Cancel>,
 }
@@ -55,7 +55,7 @@ impl Budget {
             ..Self::default()
         }
     }
-    /// A budget of hits. Alone it may never end: add another limit where the number of hits is not known.
+    /// A budget of hits. Alone it may never end: add another limit unless the number of hits is known.
     #[must_use]
     pub fn hits(hits: u64) -> Self {
         Self {
@@ -63,7 +63,7 @@ impl Budget {
             ..Self::default()
         }
     }
-    /// A budget that ends when somebody cancels.
+    /// A budget that ends when the flag is raised.
     #[must_use]
     pub fn until(cancel: &Cancel) -> Self {
         Self {
@@ -71,31 +71,31 @@ impl Budget {
             ..Self::default()
         }
     }
-    /// Limits wall time, too.
+    /// Also limits wall time.
     #[must_use]
     pub fn and_time(mut self, time: Duration) -> Self {
         self.time = Some(time);
         self
     }
-    /// Limits evaluations, too.
+    /// Also limits evaluations.
     #[must_use]
     pub fn and_evaluations(mut self, evaluations: u64) -> Self {
         self.evaluations = Some(evaluations);
         self
     }
-    /// Limits hits, too.
+    /// Also limits hits.
     #[must_use]
     pub fn and_hits(mut self, hits: u64) -> Self {
         self.hits = Some(hits);
         self
     }
-    /// May be cancelled, too.
+    /// Also ends when the flag is raised.
     #[must_use]
     pub fn and_until(mut self, cancel: &Cancel) -> Self {
         self.cancel = Some(cancel.clone());
         self
     }
-    /// Relates schedules to this many evaluations instead of to the budget, so that a short run is a prefix of a long one.
+    /// Relates schedules to this many evaluations instead of the budget, so that a short run is a prefix of a long one.
     #[must_use]
     pub fn with_horizon(mut self, evaluations: u64) -> Self {
         self.horizon = Some(evaluations);
@@ -103,7 +103,7 @@ impl Budget {
     }
 
     /// # Errors
-    /// [`Error::Budget`] where nothing limits the slice, or a limit is zero.
+    /// [`Error::Budget`] if nothing limits the slice, or if a limit is zero.
     pub(crate) fn check(&self) -> Result<(), Error> {
         if self.time.is_none() && self.evaluations.is_none() && self.hits.is_none() && self.cancel.is_none() {
             return Err(Error::Budget(

@@ -7,20 +7,20 @@ use crate::problem::SatisficingProblem;
 use crate::scalar::Real;
 use crate::space::Space;
 
-/// The candidates of one batch between proposal and outcome. Memory is kept from batch to batch.
+/// The candidates of one batch. Memory is reused from batch to batch.
 #[derive(Debug)]
 pub(crate) struct Candidates<S, T> {
-    /// What to evaluate: the first `live` solutions; those behind are memory to be used again.
+    /// The first `live` solutions are to be evaluated; those after them are memory to be reused.
     pub(crate) solutions: Vec<T>,
     pub(crate) live: usize,
-    /// The fitness of the live ones; what stands behind is memory.
+    /// The fitness of the live ones.
     pub(crate) fitness: Vec<S>,
-    /// How many of the live ones are computed without a gap...
+    /// The number of live ones that are computed without a gap...
     pub(crate) ready: usize,
-    /// ...and which of them, where threads have left gaps.
+    /// ...and which are computed, if threads have left gaps.
     done: Vec<bool>,
     has_gaps: bool,
-    /// One for each point of the batch. Before they are settled: `Deleted` for a point that is not live, else `NotEvaluated`.
+    /// One per point of the batch. Before they are settled: `Deleted` for a point that is not live, else `NotEvaluated`.
     pub(crate) outcomes: Vec<Outcome<S>>,
     /// Whether they are uniform probes, whose hits the engine does not see.
     pub(crate) probing: bool,
@@ -47,7 +47,7 @@ impl<S: Real, T> Default for Candidates<S, T> {
 }
 
 impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
-    /// Brings the points inside, decodes the first `limit` of them and looks them up in C.
+    /// Brings the points inside, decodes the first `limit` of them and looks them up in the archive.
     #[inline]
     pub(crate) fn prepare<P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized>(
         &mut self,
@@ -79,8 +79,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     ) -> R {
         let values = inside(problem.space(), point, &mut self.values);
         if !core::mem::needs_drop::<T>() {
-            // Without memory to keep, it is best in registers: read back from a list, numbers of different widths wait for
-            // each other.
+            // A solution without memory stays in registers: loads from a list would wait for stores of another width.
             return judge(&problem.decode(values));
         }
         match self.solutions.first_mut() {
@@ -90,7 +89,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         judge(&self.solutions[0])
     }
 
-    /// The same for solutions that are known already, at the points of `batch`.
+    /// Prepares solutions that are known already, at the points of `batch`.
     pub(crate) fn prepare_solutions<'a>(
         &mut self,
         solutions: impl ExactSizeIterator<Item = &'a T>,
@@ -153,7 +152,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         (self.ready..self.live).all(|slot| self.is_done(slot))
     }
 
-    /// Solutions, fitness, and whether it is computed, to be filled in in any order.
+    /// Solutions, fitness, and whether it is computed: to be filled in any order.
     #[cfg(feature = "rayon")]
     pub(crate) fn slots(&mut self) -> (&[T], &mut [S], &mut [bool]) {
         if !self.has_gaps {
@@ -170,14 +169,14 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         )
     }
 
-    /// The fitness of what has to be evaluated, as far as it is computed.
+    /// The fitness of the live ones, as far as it is computed.
     pub(crate) fn computed(&self) -> Vec<Option<S>> {
         (0..self.live)
             .map(|slot| self.is_done(slot).then_some(self.fitness[slot]))
             .collect()
     }
 
-    /// Takes fitness values that were computed before; what is missing remains to be evaluated.
+    /// Takes fitness values that were computed before; missing ones remain to be evaluated.
     pub(crate) fn resume(&mut self, computed: &[Option<S>]) {
         for (fitness, computed) in self.fitness.iter_mut().zip(computed) {
             *fitness = computed.unwrap_or(*fitness);
@@ -189,7 +188,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         self.ready = self.done.iter().take_while(|&&done| done).count();
     }
 
-    /// What has to be evaluated, in order.
+    /// The solutions to evaluate, in order.
     pub(crate) fn live(&self) -> &[T] {
         &self.solutions[..self.live]
     }
@@ -208,7 +207,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     }
 }
 
-/// Brings a point inside and gives its values, which stand in `memory` where they are not the point itself.
+/// Brings a point inside and returns its values, in `memory` if they are not the point itself.
 #[inline(always)]
 fn inside<'a, S: Real>(space: &Space<S>, point: &'a mut [S], memory: &'a mut Vec<S>) -> &'a [S] {
     if space.has_integers() {

@@ -1,4 +1,4 @@
-//! Time: the only file that asks what time it is.
+//! The clock of a slice. No other file of the core reads the time.
 
 use core::time::Duration;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use crate::budget::Cancel;
 
-/// Between two looks at the clock about this much time may pass...
+/// About this much time may pass between two looks at the clock...
 const LOOK_EVERY: Duration = Duration::from_micros(20);
-/// ...and at most this many evaluations, so that a fitness that suddenly gets slow is noticed.
+/// ...and at most this many evaluations, so that a fitness that suddenly becomes slow is noticed.
 const LOOK_AFTER: u64 = 4096;
 
 #[expect(clippy::disallowed_methods, reason = "this is clock.rs")]
@@ -17,23 +17,22 @@ fn now() -> Instant {
     Instant::now()
 }
 
-/// The clock of a slice: counts evaluations down to the next look, and adapts how many that are to what they cost.
+/// Counts evaluations down to the next look at the time, and adapts their number to their cost.
 ///
-/// A look costs some 25 ns. A fitness of 5 ns is looked at every 4,096 evaluations, one of 5 ms every time. Where a time is
-/// limited, an [`Alarm`] stands by for a fitness whose cost jumps.
+/// Under a time limit, an [`Alarm`] covers a fitness whose cost jumps between two looks.
 #[derive(Debug)]
 pub(crate) struct Clock {
     start: Instant,
     before: Duration,
     last: Instant,
-    /// Time since the start at the last look: asked for at every proposal.
+    /// Time since the start at the last look.
     seen: Duration,
     since: u64,
     interval: u64,
 }
 
 impl Clock {
-    /// Starts; `before` has elapsed already, in a run that is resumed.
+    /// Starts now; `before` has elapsed already, in a run that is resumed.
     pub(crate) fn start(before: Duration) -> Self {
         let start = now();
         Self {
@@ -62,7 +61,7 @@ impl Clock {
         self.interval.saturating_sub(self.since).max(1)
     }
 
-    /// Says that `evaluations` have passed. Returns the time if this was a look.
+    /// Counts evaluations that have passed. Returns the time if this was a look.
     #[inline]
     pub(crate) fn pass(&mut self, evaluations: u64) -> Option<Duration> {
         self.since += evaluations;
@@ -91,7 +90,7 @@ impl Clock {
     }
 }
 
-/// Takes the time of calls of the fitness, without what surrounds them: for scheduling, never for results.
+/// Times calls of the fitness alone: for scheduling, never for results.
 #[cfg(feature = "rayon")]
 #[derive(Debug)]
 pub(crate) struct Stopwatch(Instant);
@@ -114,7 +113,7 @@ pub(crate) fn has_come(moment: Instant) -> bool {
     now() >= moment
 }
 
-/// Raises a flag when its time has come, from a thread of its own; dropped, it goes away at once.
+/// Raises a flag after a time, from a thread of its own, which ends at once when the alarm is dropped.
 #[derive(Debug)]
 pub(crate) struct Alarm {
     rung: Cancel,
@@ -123,7 +122,7 @@ pub(crate) struct Alarm {
 }
 
 impl Alarm {
-    /// Rings in `time`. Where no thread can be had, it never rings and the clock's looks have to do.
+    /// Rings in `time`. If no thread can be started, it never rings, and the looks at the clock must do.
     pub(crate) fn set(time: Duration) -> Self {
         let rung = Cancel::new();
         let dismissed = Arc::new((Mutex::new(false), Condvar::new()));
@@ -158,7 +157,7 @@ impl Drop for Alarm {
         *lock.lock().unwrap_or_else(PoisonError::into_inner) = true;
         condition.notify_one();
         if let Some(thread) = self.thread.take() {
-            // The thread cannot panic; if it did, there would be nothing to mend here.
+            // The thread cannot panic; if it did, nothing would depend on it.
             drop(thread.join());
         }
     }

@@ -1,4 +1,4 @@
-//! What an engine may ask while it searches, without ever seeing the problem.
+//! What an engine may ask while it searches. It never sees the problem.
 
 use crate::scalar::Real;
 use crate::space::{Region, Space};
@@ -8,11 +8,11 @@ pub trait Context<S: Real> {
     /// The space.
     fn space(&self) -> &Space<S>;
 
-    /// delta.
+    /// The threshold delta: a hit is F < delta.
     fn threshold(&self) -> S;
 
     /// Share of the budget (or of its [horizon](crate::Budget::with_horizon)) that is used, in `[0, 1]`: what schedules
-    /// go by. 0 where nothing limits evaluations or time.
+    /// follow. 0 if nothing limits evaluations or time.
     fn elapsed_share(&self) -> f64;
 
     /// Number of candidates evaluated in this slice so far.
@@ -28,7 +28,7 @@ pub trait Context<S: Real> {
     /// each integer axis. `false`, without a visit, where there are none of either kind.
     fn neighbours(&self, of: &[S], visit: &mut dyn FnMut(&[S])) -> bool;
 
-    /// Whether the problem names neighbours of its own.
+    /// Whether the problem declares a neighbourhood, together with an encoding.
     fn offers_neighbours(&self) -> bool;
 
     /// The problem's lower bound of F in a region of values, if it offers one. Every answer is counted, and
@@ -36,7 +36,7 @@ pub trait Context<S: Real> {
     fn lower_bound(&self, region: &Region<S>) -> Option<S>;
 
     /// Whether every point of a region of values is known to be the same answer as one hit in C, so that nothing new is
-    /// there. `false` where that is not so, or where the problem does not say.
+    /// there. `false` if not, or if the problem cannot tell.
     fn covers(&self, _region: &Region<S>) -> bool {
         false
     }

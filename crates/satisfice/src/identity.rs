@@ -10,16 +10,22 @@ use crate::space::Region;
 /// The seed of every key; fixed, so that a run is the same on every machine.
 const KEYS: FixedState = FixedState::with_seed(0x5a71_5f1c_e000_2012);
 
-/// Says whether two solutions count as one answer, and gives keys by which an archive finds them fast.
+/// Defines whether two solutions count as one answer, and gives the keys under which an archive finds them.
 ///
-/// Implemented for everything `Eq + Hash` (a pair of indices, a vector of integers), where *same* is *equal*. A
-/// solution of real coordinates is best a [`Located`], which is the same as another within a radius.
+/// It is implemented for every type that is `Eq + Hash` (a pair of indices, a vector of integers): there, *same* is *equal*.
+/// For real coordinates use [`Located`], which is the same as another one within a radius.
 ///
 /// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and the other way round.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not define when two solutions are the same answer",
+    label = "`Identity` is not implemented for `{Self}`",
+    note = "types that are `Eq + Hash`, such as `[u32; 2]` or `Vec<u32>`, implement it: there, same is equal",
+    note = "for real coordinates, such as `Vec<f64>`, use `satisfice::Located`: points within a radius are the same"
+)]
 pub trait Identity {
-    /// A hash under which the solution is filed.
+    /// The hash under which the solution is filed.
     fn key(&self) -> u64;
-    /// Whether both are the same answer. Symmetric.
+    /// Whether both are the same answer. It must be symmetric.
     fn same(&self, other: &Self) -> bool;
     /// Visits the keys under which a solution that is the same may be filed, until `visit` returns `true`; returns
     /// whether it did.
@@ -29,6 +35,8 @@ pub trait Identity {
     }
 }
 
+// Without this the compiler asks for `f64: Eq`, where `Located` is the answer.
+#[diagnostic::do_not_recommend]
 impl<T: Eq + Hash> Identity for T {
     #[inline]
     fn key(&self) -> u64 {

@@ -1,9 +1,9 @@
-//! Uniform probes: a small share of the evaluations by which a slice measures what its engine has not found.
+//! Uniform probes: a small share of the evaluations, from which a slice estimates what its engine has not found.
 //!
-//! The engine never learns of them: their hits are in C and in the report, but [hidden](Archive::enter) from the engine,
-//! which gets them as new if it finds them itself. So the engine's hits E do not depend on where the probes fell, and the
-//! probes are a uniform sample that is independent of E: what the estimates of [`Unseen`] rest on. Had the engine followed
-//! up a probe's hit, it would have turned the evidence of unseen hits into known ones.
+//! The engine never learns of them: their hits are in the archive and in the report, but [probe-only](Archive::enter) until
+//! the engine finds them itself, as new ones. So the engine's hits E do not depend on the probes, and the probes are a uniform
+//! sample that is independent of E, which the estimates of [`Unseen`] require. If the engine followed up the hits of probes,
+//! it would turn the evidence of unseen hits into known ones.
 
 use num_traits::Zero;
 
@@ -15,7 +15,7 @@ use crate::problem::SatisficingProblem;
 use crate::seed::SearchRng;
 use crate::unseen::{Sample, Unseen};
 
-/// Streams of the probes' generators, one a slice; far from those of islands, which count from 0.
+/// Streams of the probes' generators, one per slice; far from those of lanes, which count from 0.
 const STREAM: u64 = 0x7072_6f62_6573_0000;
 /// Probes come in batches that grow with their number, so that a short run has some and a long one keeps threads busy.
 const GROWTH: u64 = 16;
@@ -31,7 +31,7 @@ pub(crate) struct Probes {
     /// The evaluation count from which the next batch is due.
     due: u64,
     sample: Sample,
-    /// Hits that a probe found first, by their index in C, ascending.
+    /// Hits that a probe found first, by their index in the archive, ascending.
     first: Vec<First>,
 }
 
@@ -101,7 +101,7 @@ impl Probes {
         }
     }
 
-    /// Takes what became of the probes of `batch`.
+    /// Counts the outcomes of the probes of `batch`.
     pub(crate) fn take<P: SatisficingProblem + ?Sized>(
         &mut self,
         problem: &P,
@@ -126,7 +126,7 @@ impl Probes {
             let index = archive
                 .position(&solution)
                 .or_else(|| archive.position(canonical));
-            // None only where the archive is full or the problem is not pure.
+            // None only if the archive is full or the problem is not pure.
             let Some((index, hit)) = index.and_then(|index| Some((index, archive.solutions().get(index)?)))
             else {
                 continue;
@@ -170,9 +170,9 @@ impl Probes {
         false
     }
 
-    fn enter(&mut self, index: usize, hidden: bool, own: bool) {
+    fn enter(&mut self, index: usize, probe_only: bool, own: bool) {
         let own = u64::from(own);
-        if !hidden {
+        if !probe_only {
             self.sample.recaptures += 1;
             self.sample.own_recaptures += own;
             return;
@@ -193,7 +193,7 @@ impl Probes {
         self.first[at].own += own;
     }
 
-    /// What the probes say of the hits that are not in C now. `None` without a probe.
+    /// The estimate of hits that are not in the archive; `None` without a probe.
     pub(crate) fn estimate<P: SatisficingProblem + ?Sized>(
         &self,
         problem: &P,

@@ -1,4 +1,4 @@
-//! The problem: what a candidate means, how good it is, and when it is good enough.
+//! Problems: what a candidate means, how good it is, and when it is good enough.
 
 use crate::capability::{Bounds, Encoding, Neighbourhood};
 use crate::catalogue::Description;
@@ -8,11 +8,11 @@ use crate::space::{Region, Space};
 
 /// A problem whose answers are all candidates with F(x) < delta.
 ///
-/// Four methods say what the problem is; the others are capabilities that a problem may offer and that every engine runs
-/// without. Methods get *values* (integers on integer axes), never the real positions that engines move.
+/// Four methods define the problem. The others are optional: [capabilities](crate::capability) that help engines, and faster
+/// forms. Methods get *values* (whole on integer axes), never the real positions that engines move.
 ///
-/// All of them must be pure: the same arguments give the same result, from any thread, until the problem is changed
-/// between two slices.
+/// All methods must be pure: the same arguments give the same result, from any thread, until the problem is changed between
+/// two slices. [`testing::problem::check`](crate::testing::problem::check) checks these laws.
 ///
 /// ```
 /// use satisfice::{Axis, SatisficingProblem, Space};
@@ -35,9 +35,9 @@ use crate::space::{Region, Space};
 /// # Ok::<(), satisfice::Error>(())
 /// ```
 pub trait SatisficingProblem: Sync {
-    /// `f32` or `f64`.
+    /// The scalar of the search: `f32` or `f64`.
     type Scalar: Real;
-    /// What a point decodes to, and what counts once.
+    /// The type that points decode to; solutions that are the [same](Identity) count once.
     type Solution: Identity + Clone + Send + Sync;
 
     /// The box that is searched. Its number of axes must not change during a search.
@@ -52,13 +52,13 @@ pub trait SatisficingProblem: Sync {
     /// delta: a hit is F < delta, strictly. Any value but NaN, 0 and negative ones included.
     fn threshold(&self) -> Self::Scalar;
 
-    /// Decodes into a solution that exists already; worth writing where a solution owns memory.
+    /// Decodes into an existing solution; worth writing if a solution owns memory.
     #[inline]
     fn decode_into(&self, values: &[Self::Scalar], solution: &mut Self::Solution) {
         *solution = self.decode(values);
     }
 
-    /// F of many solutions at once, into `fitness` of the same length; worth writing where F vectorises.
+    /// F of many solutions at once, into `fitness` of the same length; worth writing if F vectorises.
     #[inline]
     fn fitness_all(&self, solutions: &[Self::Solution], fitness: &mut [Self::Scalar]) {
         for (solution, fitness) in solutions.iter().zip(fitness) {

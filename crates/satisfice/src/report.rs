@@ -1,4 +1,4 @@
-//! What a slice found, and all that is needed to replay it.
+//! What a slice found, and everything that is needed to replay it.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -12,35 +12,35 @@ use crate::unseen::Unseen;
 /// How complete the hits are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Completeness {
-    /// All hits of the space are listed: it was covered, or excluded by bounds.
+    /// All hits of the space are listed: every region was evaluated or excluded by bounds.
     Proved,
-    /// There may be more. No hits does not mean that there are none.
+    /// There may be more hits, also if none was found.
     Unknown,
 }
 
-/// One point of the curve |C| against evaluations and time.
+/// One point of the curve of hits against evaluations and time.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TracePoint {
     /// Evaluations so far.
     pub evaluations: u64,
     /// Seconds since the start of the slice.
     pub elapsed_seconds: f64,
-    /// |C|.
+    /// Hits so far.
     pub hits: u64,
 }
 
-/// What the ledger counted.
+/// What was counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counts {
-    /// Candidates that reached the ledger.
+    /// Candidates that reached the accounting, deleted ones included.
     pub evaluations: u64,
     /// Calls of the fitness.
     pub fitness_calls: u64,
-    /// Candidates whose solution was in C already, before or after their fitness was called.
+    /// Candidates whose solution was in the archive already, before or after their fitness was called.
     pub duplicates: u64,
     /// Fitness values that were NaN or infinite.
     pub non_finite: u64,
-    /// Hits of the slice before that were evaluated anew at the start of this one.
+    /// Hits of the slice before that were evaluated again at the start of this one.
     pub verified: u64,
     /// Uniform probes among the evaluations.
     #[serde(default)]
@@ -51,7 +51,7 @@ pub struct Counts {
     pub bound_calls: u64,
 }
 
-/// Counts of several slices, or of several searches.
+/// Adds the counts of several slices or searches.
 impl core::ops::AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
         self.evaluations += other.evaluations;
@@ -97,17 +97,17 @@ pub struct Report<T> {
     pub overshoot: Duration,
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
-    /// How many hits are missing, estimated; `None` where nothing was probed or proved.
+    /// An estimate of how many hits are missing; `None` if nothing was probed or proved.
     #[serde(default)]
     pub unseen: Option<Unseen>,
     /// The least fitness evaluated, and where; `None` if no fitness was finite.
     #[serde(default = "Option::default")]
     pub best: Option<Best<T>>,
-    /// |C| at fixed evaluation counts (some ten a decade) and, under a time budget, at each hundredth of it.
+    /// Hits at fixed evaluation counts (about ten a decade) and, under a time budget, at each hundredth of it.
     pub trace: Vec<TracePoint>,
     /// The version of this crate.
     pub version: String,
-    /// C.
+    /// The hits.
     pub archive: Arc<Archive<T>>,
 }
 
@@ -123,13 +123,13 @@ impl<T> Report<T> {
         self.best.as_ref()
     }
 
-    /// |C|.
+    /// The number of hits.
     #[must_use]
     pub fn hit_count(&self) -> usize {
         self.archive.len()
     }
 
-    /// Share of `reference` hits that were found, `None` for a reference of 0.
+    /// The share of `reference` hits that were found; `None` for a reference of 0.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub fn recall(&self, reference: u64) -> Option<f64> {
@@ -154,7 +154,7 @@ impl<T> core::fmt::Display for Report<T> {
         )?;
         match &self.unseen {
             Some(unseen) if self.completeness == Completeness::Unknown => {
-                write!(f, ", some {unseen} hits not seen")
+                write!(f, ", about {unseen} hits not seen")
             }
             _ => Ok(()),
         }

@@ -1,17 +1,17 @@
-//! The threads that work is shared among: the calling one and its helpers. The only file that knows of them.
+//! The threads that share work: the calling one and its helpers.
 
 use crate::error::Error;
 
 /// Threads to evaluate on.
 #[derive(Debug, Default)]
 pub(crate) struct Threads {
-    /// One less than there are threads: the one that calls works, too.
+    /// One less than the number of threads: the caller works, too.
     #[cfg(feature = "rayon")]
     helpers: Option<rayon::ThreadPool>,
 }
 
 impl Threads {
-    /// `threads` of them, 0 for as many as there are cores. Without the feature `rayon` always one.
+    /// So many threads, 0 for as many as there are cores. Without the feature `rayon` always one.
     #[cfg(feature = "rayon")]
     pub(crate) fn new(threads: usize) -> Result<Self, Error> {
         let threads = match threads {
@@ -41,7 +41,7 @@ impl Threads {
 }
 
 impl Threads {
-    /// How many they are, the caller among them.
+    /// The number of threads, including the caller.
     #[cfg(feature = "rayon")]
     pub(crate) fn count(&self) -> usize {
         1 + self
@@ -50,7 +50,7 @@ impl Threads {
             .map_or(0, rayon::ThreadPool::current_num_threads)
     }
 
-    /// Wakes the helpers, which takes some tens of microseconds once they sleep: for the next batch, while it is thought out.
+    /// Wakes sleeping helpers ahead of the next batch, while the engine computes it.
     pub(crate) fn wake(&self) {
         #[cfg(feature = "rayon")]
         if let Some(helpers) = &self.helpers {
@@ -60,7 +60,7 @@ impl Threads {
         }
     }
 
-    /// Does something with each item, on as many threads as there are: whoever is free takes the next one.
+    /// Applies `work` to each item on all threads; a free thread takes the next item.
     pub(crate) fn for_each<I>(&self, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
         #[cfg(feature = "rayon")]
         if let Some(helpers) = &self.helpers {
@@ -71,13 +71,13 @@ impl Threads {
     }
 }
 
-/// Whoever calls works, too, so that nobody has to be woken twice for each batch.
+/// The caller works, too, so that no thread has to be woken twice for each batch.
 #[cfg(feature = "rayon")]
 fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
     use core::sync::atomic::{AtomicUsize, Ordering};
     use std::sync::{Mutex, PoisonError};
 
-    /// Looks at whether the helpers are done, before the caller sleeps: some 20 us.
+    /// How often the caller checks whether the helpers are done before it sleeps.
     const LOOKS: usize = 400;
 
     let items = Mutex::new(items);
@@ -114,7 +114,7 @@ mod tests {
     use crate::{Budget, Search, Space, engine, from_fn};
 
     #[test]
-    fn the_first_batch_of_a_dear_fitness_is_shared() {
+    fn the_first_batch_of_an_expensive_fitness_is_shared() {
         let seen = Mutex::new(Vec::new());
         let problem = from_fn(Space::cube(1, 0.0, 1.0).unwrap(), -1.0, |x: &[f64]| {
             seen.lock().unwrap().push(std::thread::current().id());

@@ -1,4 +1,4 @@
-//! What an engine sees of a running search.
+//! The view that an engine has of a running search.
 
 use core::cell::{Cell, RefCell};
 
@@ -22,7 +22,7 @@ pub(crate) struct Scratch<S, T> {
     solution: Option<T>,
 }
 
-/// Memory that is not in use. A list, because an engine may ask again while it is visiting neighbours.
+/// Memory not in use: a list, because an engine may ask again while it visits neighbours.
 pub(crate) type Scratches<S, T> = RefCell<Vec<Scratch<S, T>>>;
 
 pub(crate) struct View<'a, P: SatisficingProblem + ?Sized> {

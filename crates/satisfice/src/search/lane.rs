@@ -164,9 +164,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
     {
         let threads = Threads::default();
         loop {
-            let mut nobody = ();
+            let mut silent = ();
             let alone: Option<&mut dyn Observer<T>> = match keep {
-                None => Some(&mut nobody),
+                None => Some(&mut silent),
                 Some(_) => None,
             };
             if !self.propose(problem, previous, alone) {

@@ -25,7 +25,7 @@ use crate::state::{Reader, State};
 
 /// More evaluations than any slice makes.
 const TOO_MANY: u64 = 1 << 62;
-/// More time than any slice takes: some 30,000 years.
+/// More time than any slice takes: about 35,000 years.
 const TOO_LONG: Duration = Duration::from_secs(1 << 40);
 
 impl<P: SatisficingProblem + ?Sized> Search<P> {

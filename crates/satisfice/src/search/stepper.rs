@@ -155,14 +155,14 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
             Some(threads) => threads,
             None => Threads::new(self.search.threads)?,
         };
-        let mut nobody = ();
+        let mut silent = ();
         let RunOptions {
             observer,
             mut keeper,
             catches_panics,
             ..
         } = options;
-        let observer = observer.unwrap_or(&mut nobody);
+        let observer = observer.unwrap_or(&mut silent);
         if catches_panics {
             let run = AssertUnwindSafe(|| self.drive_on(&threads, observer, &mut keeper));
             if catch_unwind(run).is_err() {

@@ -1,4 +1,4 @@
-//! For authors of engines and of problems: suites that say which laws are broken, and a comparison of reports.
+//! For authors of engines and problems: suites that report broken laws, and a comparison of reports.
 
 use core::fmt::Debug;
 
@@ -8,7 +8,7 @@ mod case;
 pub mod engine;
 pub mod problem;
 
-/// A law that something under test broke.
+/// A law that was broken.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation<L> {
     /// Which one.
@@ -25,9 +25,9 @@ impl<L: Debug> core::fmt::Display for Violation<L> {
     }
 }
 
-/// The first difference between two reports, times aside; `None` where they tell the same.
+/// The first difference between two reports apart from times; `None` if there is none.
 ///
-/// Under a time budget, traces and counts differ of course.
+/// Under a time budget, traces and counts differ.
 #[must_use]
 pub fn difference<T: PartialEq + Debug>(a: &Report<T>, b: &Report<T>) -> Option<String> {
     let budget = |r: &Report<T>| {

@@ -15,11 +15,11 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Region;
 
-/// The laws that the suite looks after.
+/// The laws that the suite checks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Law {
-    /// The threshold is no NaN and always the same.
+    /// The threshold is not NaN and always the same.
     Threshold,
     /// The same values decode to the same solution, also into one that exists.
     Decode,
@@ -27,18 +27,18 @@ pub enum Law {
     Identity,
     /// The same solution has the same F to the last bit, alone and among others.
     Fitness,
-    /// What is encoded is inside the bounds, whole on integer axes, and decodes to the same solution.
+    /// Encoded values are inside the bounds, whole on integer axes, and decode to the same solution.
     Encode,
     /// Neighbours are offered together with an encoding, and come in the same order each time; those that are encoded are
     /// inside and decode to themselves.
     Neighbours,
-    /// No F in a region is below its lower bound, which is no NaN.
+    /// No F in a region is below its lower bound, which is not NaN.
     LowerBound,
     /// The representative of a hit is its own representative and a hit.
     Canonical,
 }
 
-/// What the suite reports.
+/// A broken law.
 pub type Violation = super::Violation<Law>;
 
 /// Points looked at.
@@ -49,8 +49,8 @@ const SAMPLES: usize = 30;
 
 type Point<P> = Vec<<P as SatisficingProblem>::Scalar>;
 
-/// Looks at the corners, at the middle and at random points of a problem's space. Cost: some 4,000 calls of F and of
-/// `decode`, some 300 of the others. The first violation of each law is listed.
+/// Checks the laws at the corners, in the middle and at random points of a problem's space. Lists the first violation of each
+/// law. Cost: about 4,000 calls of F and `decode`, and about 300 of the other methods.
 #[must_use]
 pub fn check<P: SatisficingProblem>(problem: &P, seed: u64) -> Vec<Violation> {
     let mut rng = SearchRng::new(seed);
