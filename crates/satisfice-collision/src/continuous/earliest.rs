@@ -111,7 +111,7 @@ impl Step {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Earliest, Error> {
-        if !(tolerance >= 1e-12) {
+        if tolerance.is_nan() || tolerance < 1e-12 {
             return Err(Error::parameter(
                 "tolerance",
                 tolerance,

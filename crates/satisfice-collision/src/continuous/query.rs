@@ -101,8 +101,7 @@ pub fn impact<A: Against<B>, B: Copy>(
     separation: Separation,
     tolerance: f64,
 ) -> Result<Option<Impact>, Error> {
-    // Written so that NaN is refused, too.
-    if !(tolerance >= 1e-12) {
+    if tolerance.is_nan() || tolerance < 1e-12 {
         return Err(Error::parameter(
             "tolerance",
             tolerance,

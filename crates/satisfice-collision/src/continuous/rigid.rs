@@ -142,8 +142,7 @@ pub fn rigid_hits(
     separation: Separation,
     tolerance: f64,
 ) -> Result<RigidHits, Error> {
-    // Written so that NaN is refused, too.
-    if !(tolerance > 0.0) {
+    if tolerance.is_nan() || tolerance <= 0.0 {
         return Err(Error::parameter("tolerance", tolerance, "a length above 0"));
     }
     let axes = bodies

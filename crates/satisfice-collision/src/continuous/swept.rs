@@ -74,8 +74,9 @@ impl<const K: usize> Swept<K> {
                 sum += (p[0] + p[1] + p[2]) + (q[0] + q[1] + q[2]);
             }
         }
-        // Written so that NaN leaves, too.
-        if !(sum.abs() < RANGE && size < RANGE && size > 1.0 / RANGE) {
+        let is_in_range = sum.abs() < RANGE && size < RANGE && size > 1.0 / RANGE;
+        // NaN is in no range.
+        if !is_in_range {
             return None;
         }
         let scale = inverse_power_of_two(size);
@@ -111,7 +112,7 @@ impl<const K: usize> Swept<K> {
     pub(super) fn apart_around(&self, direction: Point, time: f64) -> Option<(f64, f64)> {
         let scale = largest(direction);
         // A direction too short for the bounds, or none.
-        if !(scale > 1e-100) {
+        if scale.is_nan() || scale <= 1e-100 {
             return None;
         }
         let n = direction.map(|x| x * (1.0 / scale));
