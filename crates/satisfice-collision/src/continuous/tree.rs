@@ -197,7 +197,10 @@ impl Group {
         let mut apart = [0_u32; LANES];
         for k in 0..3 {
             let (min, max) = ([of.min[0][k], of.min[1][k]], [of.max[0][k], of.max[1][k]]);
-            let (lower, upper) = ([&self.min[0][k], &self.min[1][k]], [&self.max[0][k], &self.max[1][k]]);
+            let (lower, upper) = (
+                [&self.min[0][k], &self.min[1][k]],
+                [&self.max[0][k], &self.max[1][k]],
+            );
             // Without branches, so that lanes become those of vector instructions.
             for lane in 0..LANES {
                 let after = u32::from(lower[0][lane] > max[0]) & u32::from(lower[1][lane] > max[1]);
