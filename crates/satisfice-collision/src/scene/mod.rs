@@ -8,7 +8,7 @@
 //! let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.01)?);
 //! let table = world.add(Body::fixed(generate::torus(1.0, 0.3, 24, 12)?))?;
 //! let ball = world.add(Body::rigid(generate::icosphere(0.5, 2)?))?;
-//! world.place(ball, Placement::from_translation([0.0, 0.0, 0.4])?)?;
+//! world.place(ball, Placement::from_translation([0.5, 0.0, 0.4])?)?;
 //! world.update()?;
 //! assert!(world.contacts().count() > 0);
 //! assert!(world.contacts().all(|contact| contact.bodies() == (table, ball)));
