@@ -77,6 +77,7 @@ laws! {
     pso_1995 pso_inertia pso pso_latest_hit spso_2011
     qpso qpso_deletion latest_hit_qpso
     niching_pso_dbscan bounded_swarms branch_and_bound
+    surrogate
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod configured;
 mod decorate;
 mod exact;
 mod local;
+mod model;
 mod portfolio;
 mod registry;
 mod swarm;
@@ -22,6 +23,7 @@ pub use config::{EngineConfig, Setting, Settings};
 pub use configured::{COMMON_PARAMETERS, ConfiguredEngine};
 pub use exact::{BranchAndBound, SplitRule};
 pub use local::{Descent, DescentFlood, Random, RestartedCmaEs, Walk};
+pub use model::{GaussianProcess, Surrogate};
 pub use portfolio::{NeighbourTiming, Omitted, Portfolio};
 pub use registry::{EngineSpec, all, build, default, find};
 pub use swarm::{

@@ -2,6 +2,7 @@
 
 use super::exact::BranchAndBound;
 use super::local::{Descent, DescentFlood, Random, RestartedCmaEs, Walk};
+use super::model::Surrogate;
 use super::portfolio::Portfolio;
 use super::swarm::{
     BoundedSwarms, LatestHitQpso, NichingPsoDbscan, Pso, Pso1995, PsoInertia, PsoLatestHit, Qpso,
@@ -89,6 +90,7 @@ engines! {
     NichingPsoDbscan,
     BoundedSwarms,
     BranchAndBound,
+    Surrogate,
 }
 
 /// Every engine, in the order of the docs.

@@ -1,0 +1,80 @@
+//! How far apart distinct hits are, learned from points that turned out to be the same as a known hit.
+//!
+//! A problem may recognise a hit only once it is evaluated (its canonical form is polished). The engine cannot ask for
+//! that radius, but it can learn it.
+
+use super::record::Record;
+
+/// Outcomes that the radius is learned from: the latest.
+const LATEST: usize = 64;
+
+/// The radius around hits, in units of the axes, that best tells duplicates from new hits: with the fewest of the latest
+/// outcomes on the wrong side. 0 where there are no duplicates.
+pub(super) fn radius(record: &Record) -> f64 {
+    if record.duplicates.is_empty() {
+        return 0.0;
+    }
+    let duplicates = record.duplicates.iter().rev().take(LATEST).map(|&i| (nearest(record, i), false));
+    let hits = record.hits.iter().rev().take(LATEST).map(|&i| (nearest(record, i), true));
+    let mut all: Vec<(f64, bool)> = duplicates.chain(hits).filter(|(d, _)| d.is_finite()).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Errors of a radius just below the first: all duplicates.
+    let mut errors = all.iter().filter(|(_, is_new)| !is_new).count();
+    let mut best = (errors, 0.0);
+    for &(distance, is_new) in &all {
+        errors = if is_new { errors + 1 } else { errors - 1 };
+        if errors < best.0 {
+            best = (errors, distance);
+        }
+    }
+    // Halfway to the next new hit; without one, twice as far, so that a region of one answer is left soon.
+    let (_, last) = best;
+    let next = all.iter().find(|&&(distance, is_new)| is_new && distance > last);
+    next.map_or(2.0 * last, |&(next, _)| (last + next.min(3.0 * last)) / 2.0)
+}
+
+/// Distance of point `i` to the nearest hit before it.
+fn nearest(record: &Record, i: usize) -> f64 {
+    let x = record.point(i);
+    let before = record.hits.iter().take_while(|&&hit| hit < i);
+    before
+        .map(|&hit| square(record.point(hit), x))
+        .fold(f64::INFINITY, f64::min)
+        .sqrt()
+}
+
+/// Whether a point is within the radius of a hit or of a duplicate.
+pub(super) fn is_duplicate(record: &Record, radius: f64, x: &[f64]) -> bool {
+    let known = record.hits.iter().chain(&record.duplicates);
+    radius > 0.0 && known.into_iter().any(|&i| square(record.point(i), x) <= radius * radius)
+}
+
+fn square(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::model::record::Kind;
+
+    #[test]
+    fn the_radius_parts_duplicates_from_hits() {
+        let mut record = Record::default();
+        record.clear(1);
+        for (x, kind) in [
+            (0.1, Kind::Hit),
+            (0.13, Kind::Duplicate),
+            (0.15, Kind::Duplicate),
+            (0.3, Kind::Hit),
+            (0.25, Kind::Duplicate),
+            (0.9, Kind::Hit),
+        ] {
+            record.add(&[x], -1.0, kind);
+        }
+        let radius = radius(&record);
+        // Duplicates are up to 0.05 from a hit; new hits are 0.2 and more away.
+        assert!((radius - 0.1).abs() < 1e-12, "{radius}");
+        assert!(is_duplicate(&record, radius, &[0.95]) && !is_duplicate(&record, radius, &[0.6]));
+    }
+}

@@ -1,0 +1,206 @@
+//! How likely the observed values are under length scales and noise, and the scales that make them likeliest.
+
+use super::factor::Factor;
+use super::kernel::{covariances, matern_slope, squares};
+use super::lanes::{LANES, Lanes};
+use super::points::Points;
+use super::scales::Scales;
+
+/// Scaled points, their factor, and the mean and variance that are likeliest given the scales.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Fit {
+    pub(super) points: Points,
+    pub(super) factor: Factor,
+    /// Mean of the process: generalised least squares.
+    pub(super) mean: f64,
+    /// Variance of the process.
+    pub(super) variance: f64,
+}
+
+/// Variances below this count as this: all values are equal.
+const LEAST_VARIANCE: f64 = 1e-300;
+
+impl Fit {
+    /// Scales the points and factors their covariance. Cost: n³ / 6.
+    pub(super) fn factor(&mut self, scales: &Scales, inputs: &[&[f64]]) {
+        let inverses: Vec<f64> = (0..scales.axes()).map(|j| 1.0 / scales.length(j)).collect();
+        self.points.clear(scales.axes());
+        for input in inputs {
+            self.points.push(input.iter().zip(&inverses).map(|(x, s)| x * s));
+        }
+        let variance = 1.0 + scales.noise();
+        self.factor.clear();
+        let mut rows: Vec<Lanes> = Vec::with_capacity(inputs.len() + LANES);
+        for b in 0..self.points.blocks() {
+            let (block, count) = (self.points.block(b), self.points.count(b));
+            rows.clear();
+            rows.extend((0..b * LANES + count).map(|j| covariances(self.points.row(j), block)));
+            for lane in 0..count {
+                rows[b * LANES + lane][lane] = variance;
+            }
+            self.factor.push_block(&mut rows, count);
+        }
+    }
+
+    /// Sets mean and variance to their likeliest values. Returns `L⁻¹ (y - mean)`.
+    #[expect(clippy::cast_precision_loss, reason = "a number of points")]
+    pub(super) fn moments(&mut self, values: &[f64]) -> Vec<f64> {
+        let mut ones = vec![1.0; values.len()];
+        let mut solved = values.to_vec();
+        self.factor.solve_one(&mut ones);
+        self.factor.solve_one(&mut solved);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        self.mean = dot(&ones, &solved) / dot(&ones, &ones);
+        for (z, one) in solved.iter_mut().zip(&ones) {
+            *z -= self.mean * one;
+        }
+        self.variance = (dot(&solved, &solved) / values.len() as f64).max(LEAST_VARIANCE);
+        solved
+    }
+
+    /// The negative logarithm of likelihood and prior up to a constant, and its gradient by the logarithms of the scales.
+    /// Mean and variance are profiled out. Cost: n³ / 2.
+    ///
+    /// Rasmussen, Williams 2006, Eq. 5.9, with `K` in units of the variance.
+    #[expect(clippy::cast_precision_loss, reason = "a number of points")]
+    fn evaluate(&mut self, scales: &Scales, inputs: &[&[f64]], values: &[f64]) -> (f64, Vec<f64>) {
+        self.factor(scales, inputs);
+        let mut weights = self.moments(values);
+        self.factor.solve_transposed(&mut weights);
+        let root = self.variance.sqrt();
+        weights.iter_mut().for_each(|weight| *weight /= root);
+        let mut gradient = vec![0.0; scales.logs.len()];
+        self.slopes(scales, &weights, &mut gradient);
+        let loss = values.len() as f64 / 2.0 * self.variance.ln() + self.factor.log_determinant();
+        (loss + scales.prior(&mut gradient), gradient)
+    }
+
+    /// Adds `½ tr((K⁻¹ - w wᵀ) dK)` for each scale, `weights` being `w = K⁻¹ (y - mean) / σ`.
+    fn slopes(&self, scales: &Scales, weights: &[f64], gradient: &mut [f64]) {
+        let n = self.points.len();
+        let inverse: Vec<Vec<Lanes>> = (0..self.points.blocks())
+            .map(|b| self.factor.inverse_columns(b))
+            .collect();
+        let (by_length, by_noise) = gradient.split_at_mut(scales.axes());
+        let mut sums = vec![[0.0; LANES]; scales.axes()];
+        let mut trace = 0.0;
+        for (b, columns) in inverse.iter().enumerate() {
+            let (start, count, block) = (b * LANES, self.points.count(b), self.points.block(b));
+            for i in start..n {
+                let mut entry = product(&inverse[i / LANES], columns, i, start);
+                for lane in 0..count {
+                    entry[lane] -= weights[i] * weights[start + lane];
+                }
+                if i < start + count {
+                    trace += entry[i - start];
+                    // Each pair of points once; a point does not move from itself.
+                    entry[i - start..].fill(0.0);
+                }
+                entry[count..].fill(0.0);
+                let row = self.points.row(i);
+                let slope = matern_slope(&squares(row, block));
+                for lane in 0..LANES {
+                    entry[lane] *= slope[lane];
+                }
+                for ((sum, x), y) in sums.iter_mut().zip(row).zip(block) {
+                    for lane in 0..LANES {
+                        let d = x - y[lane];
+                        sum[lane] += entry[lane] * d * d;
+                    }
+                }
+            }
+        }
+        for (slope, sum) in by_length.iter_mut().zip(sums) {
+            *slope += sum.iter().sum::<f64>();
+        }
+        by_noise[0] += scales.noise() * trace / 2.0;
+    }
+}
+
+/// Row `i` of `K⁻¹ = L⁻ᵀ L⁻¹` in the columns of a block that starts at `start <= i`.
+#[inline(always)]
+fn product(of_row: &[Lanes], columns: &[Lanes], i: usize, start: usize) -> Lanes {
+    let (own, lane) = (i / LANES * LANES, i % LANES);
+    let mut sum = [0.0; LANES];
+    for (a, b) in of_row[i - own..].iter().zip(&columns[i - start..]) {
+        let a = a[lane];
+        for (sum, b) in sum.iter_mut().zip(b) {
+            *sum += a * b;
+        }
+    }
+    sum
+}
+
+/// First step of a logarithm.
+const FIRST_STEP: f64 = 0.4;
+/// Longest step of a logarithm.
+const LONGEST_STEP: f64 = 1.0;
+
+/// Improves the scales by steps along the signs of the gradient, whose lengths adapt, each axis for itself (iRprop⁻: Igel,
+/// Hüsken 2003, doi 10.1016/S0925-2312(01)00700-7). Returns the best scales of all steps.
+pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[f64], steps: usize) -> Scales {
+    let mut fit = Fit::default();
+    let mut scales = from.clone();
+    let mut best = (f64::INFINITY, from.clone());
+    let mut lengths = vec![FIRST_STEP; scales.logs.len()];
+    let mut before = vec![0.0; scales.logs.len()];
+    for _ in 0..steps {
+        let (loss, gradient) = fit.evaluate(&scales, inputs, values);
+        if loss < best.0 {
+            best = (loss, scales.clone());
+        }
+        for (k, slope) in gradient.into_iter().enumerate() {
+            let mut slope = slope;
+            if slope * before[k] > 0.0 {
+                lengths[k] = (lengths[k] * 1.2_f64).min(LONGEST_STEP);
+            } else if slope * before[k] < 0.0 {
+                lengths[k] *= 0.5;
+                slope = 0.0;
+            }
+            before[k] = slope;
+            if slope != 0.0 {
+                scales.shift(k, -lengths[k].copysign(slope));
+            }
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of a plane and values that change along the first axis only.
+    fn data(n: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let point = |i: usize| vec![(i as f64 * 0.754_877).fract(), (i as f64 * 0.569_840).fract()];
+        let inputs: Vec<_> = (1..=n).map(point).collect();
+        let values = inputs.iter().map(|x| (6.0 * x[0]).sin()).collect();
+        (inputs, values)
+    }
+
+    #[test]
+    fn the_gradient_agrees_with_differences() {
+        let (inputs, values) = data(37);
+        let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+        let mut scales = Scales::new(2);
+        scales.logs = vec![-0.4, 0.3, -4.0];
+        let (_, gradient) = Fit::default().evaluate(&scales, &inputs, &values);
+        for (k, slope) in gradient.iter().enumerate() {
+            let at = |step: f64| {
+                let mut moved = scales.clone();
+                moved.logs[k] += step;
+                Fit::default().evaluate(&moved, &inputs, &values).0
+            };
+            let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
+            assert!((slope - difference).abs() < 1e-4 * (1.0 + slope.abs()), "{k}: {slope} {difference}");
+        }
+    }
+
+    #[test]
+    fn an_axis_without_effect_gets_a_long_scale() {
+        let (inputs, values) = data(40);
+        let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+        let scales = likeliest(&Scales::new(2), &inputs, &values, 40);
+        assert!(scales.length(1) > 3.0 * scales.length(0), "{scales:?}");
+    }
+}

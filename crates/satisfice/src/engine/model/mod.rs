@@ -1,0 +1,24 @@
+//! Engines that model F.
+
+mod candidates;
+mod duplicates;
+mod factor;
+mod gaussian_process;
+mod kernel;
+mod lanes;
+mod likelihood;
+mod low_discrepancy;
+mod model;
+mod points;
+mod pool;
+mod process;
+mod reach;
+mod record;
+mod region;
+mod scales;
+mod surrogate;
+mod target;
+mod units;
+
+pub use gaussian_process::GaussianProcess;
+pub use surrogate::Surrogate;

@@ -1,0 +1,268 @@
+//! The model of F, its candidates, and which of them is proposed.
+
+use super::candidates::{Source, least};
+use super::duplicates::{is_duplicate, radius};
+use super::lanes::LANES;
+use super::likelihood::likeliest;
+use super::pool::{Place, Pool, Score};
+use super::process::Process;
+use super::reach::{reach, square};
+use super::record::Record;
+use super::region::Region;
+use super::scales::Scales;
+use super::target::Target;
+use super::units::Units;
+use crate::context::Context;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+/// Points from which length scales are learned, at most.
+const LEARNED_FROM: usize = 160;
+/// Steps of the likelihood's ascent at the first fit, and at later ones, which start where the last one ended.
+const STEPS: (usize, usize) = (40, 8);
+/// Blocks of candidates that are drawn anew for each proposal, half of them uniform.
+const REPLACED: usize = 4;
+/// Rounds in which candidates are drawn around the best one, each time closer.
+const ROUNDS: usize = 3;
+/// Candidates that are examined for one proposal.
+const EXAMINED: usize = 4096;
+
+/// A Gaussian process of the points so far, and candidates.
+#[derive(Debug)]
+pub(super) struct Model {
+    pub(super) process: Process,
+    pub(super) target: Target,
+    pub(super) region: Region,
+    /// How many of the known points the scales, mean and variance come from.
+    pub(super) prefix: usize,
+    /// Points of the record at the last fit, and those that are known or left out by now.
+    pub(super) fitted: usize,
+    pub(super) taken: usize,
+    /// How far from a hit the next one may be.
+    pub(super) reach: Vec<f64>,
+    /// The same where only an evaluation shows it.
+    pub(super) radius: f64,
+    pub(super) pool: Pool,
+}
+
+/// What a model is given.
+pub(super) struct Given<'a, S> {
+    pub(super) context: &'a dyn Context<S>,
+    pub(super) units: &'a Units,
+    pub(super) record: &'a Record,
+    pub(super) position: &'a mut [S],
+}
+
+impl<S: Real> Given<'_, S> {
+    /// Whether a candidate is a known point or the same as a hit.
+    fn is_known(&mut self, x: &[f64], radius: f64, rounded: &mut Vec<f64>) -> bool {
+        let space = self.context.space();
+        self.units.to_position(space, x, self.position);
+        self.units.of_position(space, self.position, rounded);
+        self.record.has(rounded)
+            || self.context.is_deleted(self.position)
+            || is_duplicate(self.record, radius, rounded)
+    }
+}
+
+impl Model {
+    /// Fits a model to all points, or to those next to each other if there are more than `most`.
+    pub(super) fn fit<S: Real>(
+        given: &mut Given<'_, S>,
+        old: Option<Self>,
+        (most, candidates): (usize, usize),
+        rng: &mut SearchRng,
+    ) -> Self {
+        let (record, axes) = (given.record, given.units.len());
+        let points = record.len();
+        let (scales, mut pool, steps) = match old {
+            Some(old) => (old.process.scales, old.pool, STEPS.1),
+            None => (Scales::new(axes), Pool::default(), STEPS.0),
+        };
+        let region = if points <= most {
+            Region::whole(record)
+        } else {
+            pool.clear();
+            Region::local(record, &scales, most, rng)
+        };
+        pool.reset();
+        let raw: Vec<f64> = region.known.iter().map(|&i| record.values[i]).collect();
+        let target = Target::new(given.context.threshold().f64(), &raw);
+        let values: Vec<f64> = raw.iter().map(|&value| target.of(value)).collect();
+        let inputs: Vec<&[f64]> = region.known.iter().map(|&i| record.point(i)).collect();
+        let learned: Vec<usize> = learned_from(inputs.len()).collect();
+        let (some, some_values): (Vec<&[f64]>, Vec<f64>) = learned.iter().map(|&i| (inputs[i], values[i])).unzip();
+        let scales = likeliest(&scales, &some, &some_values, steps);
+        let reach = match record.hits.last() {
+            Some(&hit) => reach(given.context, given.units, record.point(hit), given.position),
+            None => vec![0.0; axes],
+        };
+        let mut model = Self {
+            process: Process::new(scales, &inputs, &values),
+            target,
+            prefix: region.known.len(),
+            region,
+            fitted: points,
+            taken: points,
+            reach,
+            radius: radius(record),
+            pool: Pool::default(),
+        };
+        let least = least(record, &model.region.known);
+        let lengths = model.lengths();
+        while pool.len() < (candidates / LANES).max(2) {
+            let radius = model.radius;
+            let source = model.source(given.units, record, &lengths);
+            let mut rounded = Vec::new();
+            let is_known = &mut |x: &[f64]| given.is_known(x, radius, &mut rounded);
+            pool.push(source.either(pool.len(), &least, is_known, rng));
+        }
+        model.pool = pool;
+        model
+    }
+
+    /// Whether new points are worth a fit: a few while there are few, every ten later.
+    pub(super) fn is_due(&self, record: &Record) -> bool {
+        record.len() >= self.fitted + (self.fitted / 8).clamp(2, 10)
+    }
+
+    /// Adds the points that were told since.
+    pub(super) fn follow(&mut self, record: &Record) {
+        for i in self.taken..record.len() {
+            if record.duplicates.binary_search(&i).is_err() {
+                self.region.known.push(i);
+                self.process.push(record.point(i), self.target.of(record.values[i]));
+            }
+        }
+        self.taken = record.len();
+    }
+
+    fn lengths(&self) -> Vec<f64> {
+        (0..self.process.scales.axes())
+            .map(|j| self.process.scales.length(j))
+            .collect()
+    }
+
+    fn source<'a>(&'a self, units: &'a Units, record: &'a Record, lengths: &'a [f64]) -> Source<'a> {
+        Source {
+            units,
+            record,
+            known: &self.region.known[..self.prefix],
+            lengths,
+            reach: &self.reach,
+            bounds: (&self.region.lower, &self.region.upper),
+        }
+    }
+
+    /// Draws some candidates anew.
+    pub(super) fn refresh<S: Real>(&mut self, given: &mut Given<'_, S>, rng: &mut SearchRng) {
+        let least = least(given.record, &self.region.known);
+        let (lengths, radius) = (self.lengths(), self.radius);
+        let mut rounded = Vec::new();
+        for k in 0..REPLACED {
+            let source = self.source(given.units, given.record, &lengths);
+            let is_known = &mut |x: &[f64]| given.is_known(x, radius, &mut rounded);
+            let block = source.either(k, &least, is_known, rng);
+            self.pool.replace(block);
+        }
+    }
+
+    /// The coordinates of the best candidate that is neither known nor within reach of a pending point. `None` if there is
+    /// none.
+    pub(super) fn choose<S: Real>(
+        &mut self,
+        given: &mut Given<'_, S>,
+        pending: &[Vec<f64>],
+        rng: &mut SearchRng,
+    ) -> Option<Vec<f64>> {
+        let ranking = self.pool.ranking(&self.process);
+        let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
+        let lengths = self.lengths();
+        let mut longest = 0.5;
+        for _ in 0..ROUNDS {
+            let radius = self.radius;
+            let mut rounded = Vec::new();
+            let source = self.source(given.units, given.record, &lengths);
+            let is_known = &mut |x: &[f64]| given.is_known(x, radius, &mut rounded);
+            let around = source.around(&best.1, longest, is_known, rng);
+            longest /= 3.0;
+            let block = self.pool.replace(around);
+            let mut rated: Vec<(Score, Place)> = self.pool.rate(&self.process, block).collect();
+            rated.sort_by(|(a, _), (b, _)| b.order(a));
+            if let Some(better) = self.first_allowed(given, rated.into_iter(), pending, Some(best.0)) {
+                best = better;
+            }
+        }
+        Some(best.1)
+    }
+
+    /// The best allowed candidate of a list that starts with the best, if it is better than `than`.
+    fn first_allowed<S: Real>(
+        &mut self,
+        given: &mut Given<'_, S>,
+        ranking: impl Iterator<Item = (Score, Place)>,
+        pending: &[Vec<f64>],
+        than: Option<Score>,
+    ) -> Option<(Score, Vec<f64>)> {
+        let (mut x, mut rounded) = (Vec::new(), Vec::new());
+        let mut best: Option<(Score, Vec<f64>)> = None;
+        for (score, place) in ranking.take(EXAMINED) {
+            let bar = best.as_ref().map(|(score, _)| *score).or(than);
+            if bar.is_some_and(|bar| score.order(&bar).is_le()) {
+                break;
+            }
+            self.pool.coordinates(place, &mut x);
+            if given.is_known(&x, self.radius, &mut rounded) {
+                self.pool.exclude(place);
+                continue;
+            }
+            if pending.iter().any(|point| square(point, &x, &self.reach) <= 1.0) {
+                continue;
+            }
+            let score = self.spread(score, &x, given.record);
+            if bar.is_none_or(|bar| score.order(&bar).is_gt()) {
+                best = Some((score, x.clone()));
+            }
+        }
+        best
+    }
+
+    /// Where no candidate is hopeful, what is left next to a hit is its slope: candidates lose by being close to one.
+    fn spread(&self, score: Score, x: &[f64], record: &Record) -> Score {
+        if score.hopeful {
+            return score;
+        }
+        let hits = record.hits.iter().map(|&hit| square(record.point(hit), x, &self.reach));
+        let nearest = hits.fold(f64::INFINITY, f64::min);
+        Score {
+            value: score.value - (-nearest / 2.0).exp(),
+            ..score
+        }
+    }
+}
+
+/// Which of `points` scales are learned from: the latest half and every so many of the others.
+fn learned_from(points: usize) -> impl Iterator<Item = usize> {
+    let half = LEARNED_FROM / 2;
+    let older = points - half.min(points);
+    let all = points <= LEARNED_FROM;
+    let spread = if all { older } else { half };
+    (0..spread)
+        .map(move |k| if all { k } else { k * older / half })
+        .chain(older..points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_are_learned_from_all_points_or_from_a_bounded_number() {
+        for points in [1, 5, 80, 81, 160] {
+            assert!(learned_from(points).eq(0..points), "{points}");
+        }
+        let some: Vec<usize> = learned_from(500).collect();
+        assert_eq!(some.len(), LEARNED_FROM);
+        assert!(some.is_sorted_by(|a, b| a < b) && some.ends_with(&[498, 499]));
+    }
+}

@@ -1,0 +1,167 @@
+//! Candidates that are kept and rated.
+
+use super::lanes::{LANES, Lanes};
+use super::process::{Block, Process};
+
+/// Deviations below the mean at which a candidate is still taken for a possible hit.
+const HOPE: f64 = 2.0;
+
+/// A candidate: its block and its lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) block: usize,
+    pub(super) lane: usize,
+}
+
+/// How good a candidate is, the greater the better.
+///
+/// `(0 - mean) / deviation`, which ranks as the probability of a hit does, as long as a candidate is within [`HOPE`]
+/// deviations of one. Elsewhere hits are out of reach and that quotient would only ask for the greatest deviation: the lower
+/// confidence bound ranks what is left. Both rules agree where they meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Score {
+    pub(super) hopeful: bool,
+    pub(super) value: f64,
+}
+
+impl Score {
+    #[inline]
+    fn new(mean: f64, variance: f64) -> Self {
+        let deviation = variance.sqrt();
+        let bound = mean - HOPE * deviation;
+        let hopeful = bound <= 0.0;
+        Self {
+            hopeful,
+            value: if hopeful { -mean / deviation } else { -bound },
+        }
+    }
+
+    pub(super) fn order(&self, other: &Self) -> core::cmp::Ordering {
+        (self.hopeful.cmp(&other.hopeful)).then(self.value.total_cmp(&other.value))
+    }
+}
+
+/// Candidates in blocks, of which the oldest are replaced.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pool {
+    blocks: Vec<Block>,
+    /// Candidates that are known points or the same as a hit.
+    excluded: Vec<[bool; LANES]>,
+    /// The block to be replaced next.
+    next: usize,
+}
+
+impl Pool {
+    pub(super) fn len(&self) -> usize {
+        self.blocks.len()
+    }
+
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    pub(super) fn push(&mut self, units: Vec<Lanes>) {
+        self.blocks.push(Block::new(units));
+        self.excluded.push([false; LANES]);
+    }
+
+    /// Replaces the oldest block, and returns its number.
+    pub(super) fn replace(&mut self, units: Vec<Lanes>) -> usize {
+        let block = self.next % self.len();
+        self.blocks[block] = Block::new(units);
+        self.excluded[block] = [false; LANES];
+        self.next = (block + 1) % self.len();
+        block
+    }
+
+    /// Forgets what is predicted, not the candidates.
+    pub(super) fn reset(&mut self) {
+        self.blocks.iter_mut().for_each(Block::reset);
+    }
+
+    /// Forgets what points after the first `len` say.
+    pub(super) fn truncate(&mut self, process: &Process, len: usize) {
+        for block in &mut self.blocks {
+            process.rewind(block, len);
+        }
+    }
+
+    /// Appends the coordinates of a candidate to `out`.
+    pub(super) fn coordinates(&self, place: Place, out: &mut Vec<f64>) {
+        out.clear();
+        let axes = &self.blocks[place.block].units;
+        out.extend(axes.iter().map(|lanes| lanes[place.lane]));
+    }
+
+    pub(super) fn exclude(&mut self, place: Place) {
+        self.excluded[place.block][place.lane] = true;
+    }
+
+    /// All candidates that are not excluded, the best one last.
+    pub(super) fn ranking(&mut self, process: &Process) -> Vec<(Score, Place)> {
+        let mut all = Vec::with_capacity(self.len() * LANES);
+        for block in 0..self.len() {
+            all.extend(self.rate(process, block));
+        }
+        all.sort_unstable_by(|(a, at), (b, bt)| {
+            let places = (bt.block, bt.lane).cmp(&(at.block, at.lane));
+            a.order(b).then(places)
+        });
+        all
+    }
+
+    /// The candidates of one block that are not excluded.
+    pub(super) fn rate(&mut self, process: &Process, block: usize) -> impl Iterator<Item = (Score, Place)> {
+        process.update(&mut self.blocks[block]);
+        let (means, variances) = process.predictions(&self.blocks[block]);
+        let excluded = self.excluded[block];
+        (0..LANES)
+            .filter(move |&lane| !excluded[lane])
+            .map(move |lane| (Score::new(means[lane], variances[lane]), Place { block, lane }))
+    }
+
+    /// Mean and variance of a candidate that was rated.
+    pub(super) fn prediction(&self, process: &Process, place: Place) -> (f64, f64) {
+        let (means, variances) = process.predictions(&self.blocks[place.block]);
+        (means[place.lane], variances[place.lane])
+    }
+
+    /// Candidates, exclusions and the next block, for [`Pool::restored`].
+    pub(super) fn saved(&self) -> (Vec<f64>, Vec<bool>, usize) {
+        let units = self.blocks.iter().flat_map(|block| &block.units).flatten();
+        let excluded = self.excluded.iter().flatten();
+        (units.copied().collect(), excluded.copied().collect(), self.next)
+    }
+
+    /// `None` where the lists do not fit each other.
+    pub(super) fn restored(axes: usize, units: &[f64], excluded: &[bool], next: usize) -> Option<Self> {
+        let (lanes, []) = units.as_chunks::<LANES>() else { return None };
+        let (marks, []) = excluded.as_chunks::<LANES>() else { return None };
+        if axes == 0 || lanes.len() != marks.len() * axes || next > marks.len() {
+            return None;
+        }
+        Some(Self {
+            blocks: lanes.chunks_exact(axes).map(|lanes| Block::new(lanes.to_vec())).collect(),
+            excluded: marks.to_vec(),
+            next,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_probable_come_first_and_the_bound_ranks_the_rest() {
+        let scores = [
+            Score::new(10.0, 1.0),
+            Score::new(9.0, 1.0),
+            Score::new(2.1, 1.0),
+            Score::new(2.0, 1.0),
+            Score::new(1.0, 4.0),
+            Score::new(-1.0, 1.0),
+        ];
+        assert!(scores.is_sorted_by(|a, b| a.order(b).is_lt()));
+    }
+}

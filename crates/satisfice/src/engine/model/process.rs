@@ -1,0 +1,211 @@
+//! Gaussian process: scales, points, values, and what they predict.
+
+use super::kernel::covariances;
+use super::lanes::{LANES, Lanes};
+use super::likelihood::Fit;
+use super::scales::Scales;
+
+/// Least variance of a prediction, as a share of the process's.
+const LEAST_VARIANCE: f64 = 1e-9;
+
+/// A Gaussian process that is extended by a point at a time.
+#[derive(Debug, Clone)]
+pub(super) struct Process {
+    pub(super) scales: Scales,
+    inverses: Vec<f64>,
+    fit: Fit,
+    /// `L⁻¹ (y - mean)`.
+    solved: Vec<f64>,
+}
+
+/// A block of candidates and what the points say of them.
+#[derive(Debug, Clone)]
+pub(super) struct Block {
+    /// In units of the axes.
+    pub(super) units: Vec<Lanes>,
+    scaled: Vec<Lanes>,
+    /// `L⁻¹ k` for each candidate, as far as it is known.
+    solved: Vec<Lanes>,
+    /// What the points add to the mean.
+    mean: Lanes,
+    /// What the points take from the variance, as a share of it.
+    explained: Lanes,
+}
+
+impl Block {
+    pub(super) fn new(units: Vec<Lanes>) -> Self {
+        Self {
+            scaled: units.clone(),
+            units,
+            solved: Vec::new(),
+            mean: [0.0; LANES],
+            explained: [0.0; LANES],
+        }
+    }
+
+    /// Forgets the predictions.
+    pub(super) fn reset(&mut self) {
+        self.solved.clear();
+        self.mean = [0.0; LANES];
+        self.explained = [0.0; LANES];
+    }
+}
+
+impl Process {
+    /// The process through these points, with the likeliest mean and variance.
+    pub(super) fn new(scales: Scales, inputs: &[&[f64]], values: &[f64]) -> Self {
+        let mut fit = Fit::default();
+        fit.factor(&scales, inputs);
+        let solved = fit.moments(values);
+        let inverses = (0..scales.axes()).map(|j| 1.0 / scales.length(j)).collect();
+        Self {
+            scales,
+            inverses,
+            fit,
+            solved,
+        }
+    }
+
+    /// Number of points.
+    pub(super) fn len(&self) -> usize {
+        self.solved.len()
+    }
+
+    /// Adds a point. Cost: n² / 2.
+    pub(super) fn push(&mut self, input: &[f64], value: f64) {
+        let fit = &mut self.fit;
+        fit.points.push(input.iter().zip(&self.inverses).map(|(x, s)| x * s));
+        let new = fit.points.len() - 1;
+        let row = fit.points.row(new);
+        let mut all: Vec<f64> = Vec::with_capacity(new + LANES);
+        for b in 0..fit.points.blocks() {
+            all.extend(covariances(row, fit.points.block(b)));
+        }
+        all.truncate(new);
+        fit.factor.push(all.into_iter(), 1.0 + self.scales.noise());
+        let row = fit.factor.row(new);
+        let known = row
+            .iter()
+            .zip(&self.solved)
+            .fold(value - fit.mean, |sum, (l, z)| sum - l * z);
+        self.solved.push(known * fit.factor.inverse_pivot(new));
+    }
+
+    /// Brings a block back to what the first `len` points say.
+    pub(super) fn rewind(&self, block: &mut Block, len: usize) {
+        if block.solved.len() > len {
+            block.solved.truncate(len);
+            block.mean = [0.0; LANES];
+            block.explained = [0.0; LANES];
+            self.accumulate(block, 0);
+        }
+    }
+
+    /// Forgets all points but the first `len`.
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.fit.points.truncate(len);
+        self.fit.factor.truncate(len);
+        self.solved.truncate(len);
+    }
+
+    /// Brings what is known of a block up to date. Cost for each candidate and new point: n.
+    #[inline(always)]
+    pub(super) fn update(&self, block: &mut Block) {
+        let known = block.solved.len();
+        if known == 0 {
+            for ((scaled, units), inverse) in block.scaled.iter_mut().zip(&block.units).zip(&self.inverses) {
+                for (scaled, unit) in scaled.iter_mut().zip(units) {
+                    *scaled = unit * inverse;
+                }
+            }
+        }
+        let rows = (known..self.len()).map(|i| covariances(self.fit.points.row(i), &block.scaled));
+        block.solved.extend(rows);
+        self.fit.factor.solve(&mut block.solved, known);
+        self.accumulate(block, known);
+    }
+
+    #[inline(always)]
+    fn accumulate(&self, block: &mut Block, from: usize) {
+        for (solved, z) in block.solved[from..].iter().zip(&self.solved[from..]) {
+            for lane in 0..LANES {
+                block.mean[lane] += solved[lane] * z;
+                block.explained[lane] += solved[lane] * solved[lane];
+            }
+        }
+    }
+
+    /// Means and variances of a block that is up to date.
+    #[inline]
+    pub(super) fn predictions(&self, block: &Block) -> (Lanes, Lanes) {
+        let (mut means, mut variances) = (block.mean, block.explained);
+        for (mean, variance) in means.iter_mut().zip(&mut variances) {
+            *mean += self.fit.mean;
+            *variance = (1.0 - *variance).max(LEAST_VARIANCE) * self.fit.variance;
+        }
+        (means, variances)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(i: usize) -> [f64; 2] {
+        [(i as f64 * 0.754_877).fract(), (i as f64 * 0.569_840).fract()]
+    }
+
+    fn value(x: &[f64]) -> f64 {
+        (3.0 * x[0]).sin() + x[1] * x[1]
+    }
+
+    fn process(n: usize) -> Process {
+        let inputs: Vec<_> = (0..n).map(point).collect();
+        let values: Vec<_> = inputs.iter().map(|x| value(x)).collect();
+        let inputs: Vec<&[f64]> = inputs.iter().map(|x| &x[..]).collect();
+        Process::new(Scales::new(2), &inputs, &values)
+    }
+
+    fn block(first: usize) -> Block {
+        let lane = |j: usize| core::array::from_fn(|lane| point(first + lane)[j]);
+        Block::new(vec![lane(0), lane(1)])
+    }
+
+    #[test]
+    fn known_points_are_predicted_for_certain_and_others_nearly() {
+        let process = process(60);
+        for (first, tolerance) in [(5, 1e-3), (500, 0.02)] {
+            let mut block = block(first);
+            process.update(&mut block);
+            let (means, variances) = process.predictions(&block);
+            for lane in 0..LANES {
+                let truth = value(&point(first + lane));
+                assert!((means[lane] - truth).abs() < tolerance, "{first} {lane}");
+                assert!((means[lane] - truth).abs() < 6.0 * variances[lane].sqrt() + 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn a_block_that_follows_has_the_bits_of_one_computed_at_once() {
+        let (mut growing, mut follows) = (process(20), block(300));
+        for i in 20..45 {
+            growing.push(&point(i), value(&point(i)));
+            growing.update(&mut follows);
+        }
+        let mut at_once = block(300);
+        growing.update(&mut at_once);
+        assert_eq!(growing.predictions(&follows), growing.predictions(&at_once));
+    }
+
+    #[test]
+    fn a_point_that_is_taken_back_leaves_no_trace() {
+        let (mut one, two) = (process(33), process(33));
+        one.push(&point(99), 7.0);
+        one.truncate(33);
+        let (mut a, mut b) = (block(300), block(300));
+        one.update(&mut a);
+        two.update(&mut b);
+        assert_eq!(one.predictions(&a), two.predictions(&b));
+    }
+}

@@ -1,0 +1,121 @@
+//! Everything that was evaluated.
+
+use foldhash::fast::FixedState;
+use hashbrown::HashSet;
+use core::hash::BuildHasher;
+
+/// The seed of the keys; fixed, so that a run is the same on every machine.
+const KEYS: FixedState = FixedState::with_seed(0x6d6f_6465_6c00);
+
+/// What became of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A new hit.
+    Hit,
+    /// No hit, or without F.
+    Miss,
+    /// Evaluated and found to be the same as a hit.
+    Duplicate,
+}
+
+/// Points in units, with F; in the order in which they were told.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Record {
+    axes: usize,
+    units: Vec<f64>,
+    /// NaN where there is no finite F.
+    pub(super) values: Vec<f64>,
+    /// Indices of hits.
+    pub(super) hits: Vec<usize>,
+    /// Indices of points that turned out to be the same as a hit.
+    pub(super) duplicates: Vec<usize>,
+    /// Keys of all points.
+    seen: HashSet<u64, FixedState>,
+}
+
+impl Record {
+    pub(super) fn clear(&mut self, axes: usize) {
+        *self = Self {
+            axes,
+            ..Self::default()
+        };
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Number of different points that were told.
+    pub(super) fn distinct(&self) -> usize {
+        self.seen.len()
+    }
+
+    #[inline]
+    pub(super) fn point(&self, i: usize) -> &[f64] {
+        &self.units[i * self.axes..(i + 1) * self.axes]
+    }
+
+    /// Whether this very point was told.
+    pub(super) fn has(&self, units: &[f64]) -> bool {
+        self.seen.contains(&key(units))
+    }
+
+    /// Notes a point with its F, NaN where that is missing.
+    pub(super) fn add(&mut self, units: &[f64], value: f64, kind: Kind) {
+        self.seen.insert(key(units));
+        match kind {
+            Kind::Hit => self.hits.push(self.len()),
+            Kind::Duplicate => self.duplicates.push(self.len()),
+            Kind::Miss => {}
+        }
+        self.units.extend_from_slice(units);
+        self.values.push(value);
+    }
+
+    pub(super) fn axes(&self) -> usize {
+        self.axes
+    }
+
+    /// All that has to be saved, for [`Record::restored`].
+    pub(super) fn saved(&self) -> (usize, Vec<f64>, Vec<f64>, [Vec<usize>; 2]) {
+        let lists = [self.hits.clone(), self.duplicates.clone()];
+        (self.axes, self.units.clone(), self.values.clone(), lists)
+    }
+
+    /// `None` where the lists do not fit each other.
+    pub(super) fn restored(
+        axes: usize,
+        units: Vec<f64>,
+        values: Vec<f64>,
+        [hits, duplicates]: [Vec<usize>; 2],
+    ) -> Option<Self> {
+        let fits = |list: &[usize]| {
+            list.is_sorted_by(|a, b| a < b) && list.last().is_none_or(|&last| last < values.len())
+        };
+        if units.len() != axes * values.len() || !fits(&hits) || !fits(&duplicates) {
+            return None;
+        }
+        let mut record = Self {
+            axes,
+            units,
+            values,
+            hits,
+            duplicates,
+            seen: HashSet::default(),
+        };
+        for i in 0..record.len() {
+            let key = key(record.point(i));
+            record.seen.insert(key);
+        }
+        Some(record)
+    }
+}
+
+fn key(units: &[f64]) -> u64 {
+    use core::hash::Hasher;
+    let mut hasher = KEYS.build_hasher();
+    for x in units {
+        hasher.write_u64((x + 0.0).to_bits());
+    }
+    hasher.finish()
+}

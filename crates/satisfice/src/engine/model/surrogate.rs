@@ -1,0 +1,358 @@
+//! The engine `surrogate`: a Gaussian process says where the next hit probably is.
+
+use super::low_discrepancy;
+use super::model::{Given, Model};
+use super::pool::Pool;
+use super::process::Process;
+use super::record::{Kind, Record};
+use super::region::Region;
+use super::scales::Scales;
+use super::target::Target;
+use super::units::Units;
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine_settings;
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::state::{Part, Reader, State};
+
+engine_settings! {
+    /// After a low-discrepancy design of `2 d + 2` points, each proposal is the candidate with the highest probability of
+    /// `F < delta` under a Gaussian process with a Matérn 5/2 kernel and a length scale for each axis:
+    ///
+    /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate.
+    /// - A candidate that is a known point, or the same as a hit, is excluded. So is one within the separation radius of a point
+    ///   that is proposed and not told yet; such points count as told with `F = delta` (constant liar: Ginsbourger, Le Riche,
+    ///   Carraro 2010, doi 10.1007/978-3-642-10701-6_6).
+    /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
+    /// - Points that turn out to be the same as a hit only once they are evaluated are no part of the model; from them the
+    ///   engine learns how far apart distinct hits are.
+    /// - Scales are the likeliest ones under a weak prior, found anew every ten points.
+    /// - Beyond `points` points a model knows the 128 points next to a hit, and the next one those next to another.
+    ///
+    /// Cost of a proposal: O(n²) for n points that a model knows; see `docs/results/expensive.md`. For an F that takes a
+    /// millisecond or more, and 20 to 500 evaluations.
+    pub struct Surrogate {
+        /// Points proposed at once, for evaluation in parallel.
+        pub batch: usize = 1, 1..=1024;
+        /// Candidates that compete for each proposal.
+        pub candidates: usize = 1024, 32..=1 << 20;
+        /// Points that one model knows at most; beyond, models are local.
+        pub points: usize = 500, 16..=5000;
+    }
+}
+
+impl EngineConfig for Surrogate {
+    const NAME: &'static str = "surrogate";
+    const SUMMARY: &'static str = "Gaussian process that proposes where a hit is most probable, for 20 to 500 expensive evaluations";
+    const CITATION: &'static str = "after Bryan et al. 2005, NIPS 18, and Gotovos et al. 2013, IJCAI 23; Matérn kernels: Rasmussen, Williams 2006, ISBN 026218253X";
+
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(ModelledSearch {
+            settings: self.clone(),
+            units: Units::default(),
+            record: Record::default(),
+            shift: Vec::new(),
+            started: 0,
+            pending: Vec::new(),
+            model: None,
+            position: Vec::new(),
+            enumerated: 0,
+        })
+    }
+}
+
+/// Uniform points that are tried where no candidate is left.
+const TRIES: usize = 64;
+/// Spaces of at most so many points are searched to the last one.
+const ENUMERABLE: f64 = 1e6;
+
+/// The engine of [`Surrogate`].
+#[derive(Debug)]
+struct ModelledSearch<S> {
+    settings: Surrogate,
+    units: Units,
+    record: Record,
+    /// Of the first points.
+    shift: Vec<f64>,
+    /// First points that were looked at.
+    started: usize,
+    /// Points that are proposed and not told yet.
+    pending: Vec<Vec<f64>>,
+    model: Option<Model>,
+    position: Vec<S>,
+    /// Points of the enumeration that were looked at.
+    enumerated: usize,
+}
+
+impl<S: Real> ModelledSearch<S> {
+    /// The next point of the design that is new.
+    fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
+        let axes = self.units.len();
+        if self.shift.is_empty() {
+            self.shift.extend((0..axes).map(|_| rng.uniform()));
+        }
+        let mut x = Vec::new();
+        while self.started < (2 * axes + 2).min(4 * axes) {
+            low_discrepancy::point(self.started, &self.shift, &mut x);
+            self.started += 1;
+            for (x, unit) in x.iter_mut().zip(&self.units.axes) {
+                *x = unit.round(*x);
+            }
+            if self.is_new(context, &x) {
+                return Some(x);
+            }
+        }
+        None
+    }
+
+    fn is_new(&mut self, context: &dyn Context<S>, x: &[f64]) -> bool {
+        let space = context.space();
+        let mut rounded = Vec::new();
+        self.units.to_position(space, x, &mut self.position);
+        self.units.of_position(space, &self.position, &mut rounded);
+        let pending = self.pending.contains(&rounded);
+        !pending && !self.record.has(&rounded) && !context.is_deleted(&self.position)
+    }
+
+    /// The best candidate of the model.
+    fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
+        if self.record.len() == self.record.duplicates.len() {
+            return None;
+        }
+        let mut given = Given {
+            context,
+            units: &self.units,
+            record: &self.record,
+            position: &mut self.position,
+        };
+        let mut model = match self.model.take() {
+            Some(model) if !model.is_due(&self.record) => model,
+            old => Model::fit(&mut given, old, (self.settings.points, self.settings.candidates), rng),
+        };
+        model.follow(&self.record);
+        model.refresh(&mut given, rng);
+        let known = model.process.len();
+        for point in &self.pending {
+            model.process.push(point, 0.0);
+        }
+        let chosen = model.choose(&mut given, &self.pending, rng);
+        if !self.pending.is_empty() {
+            model.process.truncate(known);
+            model.pool.truncate(&model.process, known);
+        }
+        self.model = Some(model);
+        chosen
+    }
+
+    /// A uniform point that is new, or the next new one of a small space.
+    fn any_new(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
+        let small = self.units.cardinality() <= ENUMERABLE;
+        let mut x = vec![0.0; self.units.len()];
+        for _ in 0..TRIES {
+            for (x, unit) in x.iter_mut().zip(&self.units.axes) {
+                *x = unit.round(rng.uniform());
+            }
+            if self.is_new(context, &x) {
+                return Some(x);
+            }
+        }
+        if !small {
+            return Some(x);
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a million at most"
+        )]
+        let all = self.units.cardinality() as usize;
+        while self.enumerated < all {
+            self.units.nth(self.enumerated, &mut x);
+            if self.is_new(context, &x) {
+                return Some(x);
+            }
+            self.enumerated += 1;
+        }
+        None
+    }
+
+    /// Whether every point of the space was told.
+    fn is_covered(&self) -> bool {
+        #[expect(clippy::cast_precision_loss, reason = "below a million where it matters")]
+        let told = self.record.distinct() as f64;
+        told >= self.units.cardinality()
+    }
+}
+
+impl<S: Real> Engine<S> for ModelledSearch<S> {
+    fn begin(&mut self, context: &dyn Context<S>) {
+        self.units = Units::of(context.space());
+        self.record.clear(self.units.len());
+        self.shift.clear();
+        self.started = 0;
+        self.pending.clear();
+        self.model = None;
+        self.enumerated = 0;
+        self.position = vec![S::zero(); context.space().dimension()];
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        if self.is_covered() {
+            return Ask::Covered;
+        }
+        for _ in 0..self.settings.batch {
+            let next = self
+                .first_point(context, rng)
+                .or_else(|| self.modelled(context, rng))
+                .or_else(|| self.any_new(context, rng));
+            let Some(x) = next else { break };
+            let mut rounded = Vec::new();
+            self.units.to_position(context.space(), &x, &mut self.position);
+            self.units
+                .of_position(context.space(), &self.position, &mut rounded);
+            out.push(&self.position);
+            self.pending.push(rounded);
+        }
+        if out.is_empty() { Ask::Exhausted } else { Ask::More }
+    }
+
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
+        let mut x = Vec::new();
+        for (point, outcome) in batch.points().zip(outcomes) {
+            self.units.of_position(context.space(), point, &mut x);
+            if let Some(place) = self.pending.iter().position(|pending| *pending == x) {
+                self.pending.remove(place);
+            }
+            match *outcome {
+                Outcome::Hit(f) => self.record.add(&x, f.f64(), Kind::Hit),
+                Outcome::Miss(f) => self.record.add(&x, f.f64(), Kind::Miss),
+                Outcome::Known(f) => self.record.add(&x, f.f64(), Kind::Duplicate),
+                Outcome::Deleted => self.record.add(&x, f64::NAN, Kind::Duplicate),
+                Outcome::NonFinite => self.record.add(&x, f64::NAN, Kind::Miss),
+                Outcome::NotEvaluated => {}
+            }
+        }
+    }
+
+    fn save(&self, state: &mut State) {
+        self.record.save(state);
+        Part::save(&self.shift, state);
+        Part::save(&self.started, state);
+        Part::save(&self.pending, state);
+        Part::save(&self.enumerated, state);
+        Part::save(&self.position, state);
+        Part::save(&self.units.saved(), state);
+        Part::save(&self.model.is_some(), state);
+        if let Some(model) = &self.model {
+            model.save(state);
+        }
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        self.record.restore(from)?;
+        self.shift = from.read()?;
+        self.started = from.read()?;
+        self.pending = from.read()?;
+        self.enumerated = from.read()?;
+        self.position = from.read()?;
+        self.units = Units::restored(&from.read::<Vec<f64>>()?)
+            .filter(|units| units.len() == self.record.axes())
+            .ok_or_else(|| Error::State("its axes do not fit".to_owned()))?;
+        self.model = if from.read()? {
+            Some(Model::restore(&self.record, from)?)
+        } else {
+            None
+        };
+        Ok(())
+    }
+}
+
+impl Record {
+    fn save(&self, state: &mut State) {
+        let (axes, units, values, [hits, duplicates]) = self.saved();
+        Part::save(&axes, state);
+        Part::save(&units, state);
+        Part::save(&values, state);
+        Part::save(&hits, state);
+        Part::save(&duplicates, state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        let (axes, units, values) = (from.read()?, from.read()?, from.read()?);
+        *self = Self::restored(axes, units, values, [from.read()?, from.read()?])
+            .ok_or_else(|| Error::State("its points do not fit".to_owned()))?;
+        Ok(())
+    }
+}
+
+impl Model {
+    fn save(&self, state: &mut State) {
+        let (candidates, excluded, next) = self.pool.saved();
+        Part::save(&self.process.scales.logs, state);
+        Part::save(&self.target.delta, state);
+        Part::save(&self.target.clip, state);
+        Part::save(&self.region.known, state);
+        Part::save(&self.region.lower, state);
+        Part::save(&self.region.upper, state);
+        Part::save(&self.prefix, state);
+        Part::save(&self.fitted, state);
+        Part::save(&self.taken, state);
+        Part::save(&self.reach, state);
+        Part::save(&self.radius, state);
+        Part::save(&candidates, state);
+        Part::save(&excluded, state);
+        Part::save(&next, state);
+    }
+
+    /// Factors the same points in the same order as the model that was saved, which gives the same bits.
+    fn restore(record: &Record, from: &mut Reader<'_>) -> Result<Self, Error> {
+        let scales = Scales { logs: from.read()? };
+        let target = Target {
+            delta: from.read()?,
+            clip: from.read()?,
+        };
+        let region = Region {
+            known: from.read()?,
+            lower: from.read()?,
+            upper: from.read()?,
+        };
+        let [prefix, fitted, taken]: [usize; 3] = from.read()?;
+        let reach: Vec<f64> = from.read()?;
+        let radius = from.read()?;
+        let pool = Pool::restored(
+            record.axes(),
+            &from.read::<Vec<f64>>()?,
+            &from.read::<Vec<bool>>()?,
+            from.read()?,
+        );
+        let axes = [region.lower.len(), region.upper.len(), reach.len(), scales.logs.len() - 1];
+        let fits = axes.iter().all(|&axes| axes == record.axes())
+            && prefix > 0
+            && prefix <= region.known.len()
+            && taken <= record.len()
+            && region.known.iter().all(|&i| i < record.len());
+        let (true, Some(pool)) = (fits, pool) else {
+            return Err(Error::State("its model does not fit".to_owned()));
+        };
+        let value = |&i: &usize| target.of(record.values[i]);
+        let inputs: Vec<&[f64]> = region.known[..prefix].iter().map(|&i| record.point(i)).collect();
+        let values: Vec<f64> = region.known[..prefix].iter().map(value).collect();
+        let mut process = Process::new(scales, &inputs, &values);
+        for i in &region.known[prefix..] {
+            process.push(record.point(*i), value(i));
+        }
+        Ok(Self {
+            process,
+            target,
+            region,
+            prefix,
+            fitted,
+            taken,
+            reach,
+            radius,
+            pool,
+        })
+    }
+}
