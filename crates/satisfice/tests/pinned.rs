@@ -24,6 +24,8 @@ use satisfice::{
 const SHOWN: usize = 8;
 /// Evaluations of a run.
 const RUN: u64 = 3000;
+/// Evaluations of a run of an engine that thinks for milliseconds.
+const SHORT_RUN: &[(&str, u64)] = &[("surrogate", 120)];
 
 /// The settings under which an engine is pinned beside its defaults.
 const SETTINGS: &[(&str, &[(&str, &str)])] = &[
@@ -150,9 +152,15 @@ fn run<S: Real>(name: &str, settings: &[(&str, &str)], problem: &Bowls<S>, out: 
         .unwrap()
         .configure(settings.iter().copied())
         .unwrap();
+<<<<<<< HEAD
     let report = Search::with(engine)
+=======
+    let short = SHORT_RUN.iter().find(|(engine, _)| *engine == name);
+    let evaluations = short.map_or(RUN, |&(_, evaluations)| evaluations);
+    let report = Search::new(engine)
+>>>>>>> 84a9daf (Engine surrogate: proposes where a hit is most probable under a Gaussian process)
         .seed(42)
-        .run(problem, &Budget::evaluations(RUN))
+        .run(problem, &Budget::evaluations(evaluations))
         .unwrap();
     let words = problem.evaluated.lock().unwrap();
     for point in words.chunks(problem.space.dimension()).take(SHOWN) {

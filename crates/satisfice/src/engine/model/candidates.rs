@@ -94,7 +94,11 @@ impl Source<'_> {
     }
 
     /// Fills a block; known points are drawn again a few times.
-    fn block(&self, is_known: &mut dyn FnMut(&[f64]) -> bool, mut fill: impl FnMut(&mut [f64])) -> Vec<Lanes> {
+    fn block(
+        &self,
+        is_known: &mut dyn FnMut(&[f64]) -> bool,
+        mut fill: impl FnMut(&mut [f64]),
+    ) -> Vec<Lanes> {
         let mut lanes = vec![[0.0; LANES]; self.units.len()];
         let mut x = vec![0.0; self.units.len()];
         for lane in 0..LANES {
@@ -116,7 +120,11 @@ impl Source<'_> {
         let hits = &self.record.hits;
         let choice = rng.uniform();
         if !hits.is_empty() && choice < 0.75 {
-            let latest = if choice < 0.375 { LATEST.min(hits.len()) } else { hits.len() };
+            let latest = if choice < 0.375 {
+                LATEST.min(hits.len())
+            } else {
+                hits.len()
+            };
             let hit = hits[hits.len() - 1 - rng.below(latest)];
             return (self.record.point(hit), true);
         }
@@ -164,7 +172,13 @@ impl Source<'_> {
             }
             let moved = *x + step;
             // Reflected once, then clamped: long steps are rare.
-            let inside = if moved < 0.0 { -moved } else if moved > 1.0 { 2.0 - moved } else { moved };
+            let inside = if moved < 0.0 {
+                -moved
+            } else if moved > 1.0 {
+                2.0 - moved
+            } else {
+                moved
+            };
             *x = inside.clamp(0.0, 1.0);
         }
     }

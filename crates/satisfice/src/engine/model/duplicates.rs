@@ -14,8 +14,18 @@ pub(super) fn radius(record: &Record) -> f64 {
     if record.duplicates.is_empty() {
         return 0.0;
     }
-    let duplicates = record.duplicates.iter().rev().take(LATEST).map(|&i| (nearest(record, i), false));
-    let hits = record.hits.iter().rev().take(LATEST).map(|&i| (nearest(record, i), true));
+    let duplicates = record
+        .duplicates
+        .iter()
+        .rev()
+        .take(LATEST)
+        .map(|&i| (nearest(record, i), false));
+    let hits = record
+        .hits
+        .iter()
+        .rev()
+        .take(LATEST)
+        .map(|&i| (nearest(record, i), true));
     let mut all: Vec<(f64, bool)> = duplicates.chain(hits).filter(|(d, _)| d.is_finite()).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Errors of a radius just below the first: all duplicates.
@@ -46,7 +56,10 @@ fn nearest(record: &Record, i: usize) -> f64 {
 /// Whether a point is within the radius of a hit or of a duplicate.
 pub(super) fn is_duplicate(record: &Record, radius: f64, x: &[f64]) -> bool {
     let known = record.hits.iter().chain(&record.duplicates);
-    radius > 0.0 && known.into_iter().any(|&i| square(record.point(i), x) <= radius * radius)
+    radius > 0.0
+        && known
+            .into_iter()
+            .any(|&i| square(record.point(i), x) <= radius * radius)
 }
 
 fn square(a: &[f64], b: &[f64]) -> f64 {

@@ -48,7 +48,11 @@ impl Factor {
 
     /// The logarithm of the determinant of `L`.
     pub(super) fn log_determinant(&self) -> f64 {
-        -self.inverse_pivots.iter().map(|inverse| inverse.ln()).sum::<f64>()
+        -self
+            .inverse_pivots
+            .iter()
+            .map(|inverse| inverse.ln())
+            .sum::<f64>()
     }
 
     /// Adds a row for a point with these covariances with the points before, and this variance. Cost: n² / 2.

@@ -49,7 +49,11 @@ impl GaussianProcess {
     /// If the point does not have a coordinate for each axis.
     #[must_use]
     pub fn predict(&self, point: &[f64]) -> (f64, f64) {
-        assert_eq!(point.len(), self.process.scales.axes(), "a coordinate for each axis");
+        assert_eq!(
+            point.len(),
+            self.process.scales.axes(),
+            "a coordinate for each axis"
+        );
         let mut block = Block::new(point.iter().map(|&x| [x; LANES]).collect());
         self.process.update(&mut block);
         let (means, variances) = self.process.predictions(&block);

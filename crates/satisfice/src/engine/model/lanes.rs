@@ -65,6 +65,9 @@ mod tests {
             approx::assert_relative_eq!(exp_of_minus(&[x; LANES])[3], (-x).exp(), max_relative = 1e-14);
         }
         assert_eq!(exp_of_minus(&[0.0; LANES]), [1.0; LANES]);
-        assert_eq!(exp_of_minus(&[f64::INFINITY; LANES]), exp_of_minus(&[700.0; LANES]));
+        assert_eq!(
+            exp_of_minus(&[f64::INFINITY; LANES]),
+            exp_of_minus(&[700.0; LANES])
+        );
     }
 }

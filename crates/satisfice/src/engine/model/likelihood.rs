@@ -192,7 +192,10 @@ mod tests {
                 Fit::default().evaluate(&moved, &inputs, &values).0
             };
             let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
-            assert!((slope - difference).abs() < 1e-4 * (1.0 + slope.abs()), "{k}: {slope} {difference}");
+            assert!(
+                (slope - difference).abs() < 1e-4 * (1.0 + slope.abs()),
+                "{k}: {slope} {difference}"
+            );
         }
     }
 

@@ -41,6 +41,10 @@ mod tests {
 
     #[test]
     fn one_axis_has_the_golden_ratio() {
-        approx::assert_relative_eq!(generalised_golden_ratio(1), 1.618_033_988_749_895, max_relative = 1e-12);
+        approx::assert_relative_eq!(
+            generalised_golden_ratio(1),
+            1.618_033_988_749_895,
+            max_relative = 1e-12
+        );
     }
 }

@@ -91,7 +91,8 @@ impl Model {
         let values: Vec<f64> = raw.iter().map(|&value| target.of(value)).collect();
         let inputs: Vec<&[f64]> = region.known.iter().map(|&i| record.point(i)).collect();
         let learned: Vec<usize> = learned_from(inputs.len()).collect();
-        let (some, some_values): (Vec<&[f64]>, Vec<f64>) = learned.iter().map(|&i| (inputs[i], values[i])).unzip();
+        let (some, some_values): (Vec<&[f64]>, Vec<f64>) =
+            learned.iter().map(|&i| (inputs[i], values[i])).unzip();
         let scales = likeliest(&scales, &some, &some_values, steps);
         let reach = match record.hits.last() {
             Some(&hit) => reach(given.context, given.units, record.point(hit), given.position),
@@ -131,7 +132,8 @@ impl Model {
         for i in self.taken..record.len() {
             if record.duplicates.binary_search(&i).is_err() {
                 self.region.known.push(i);
-                self.process.push(record.point(i), self.target.of(record.values[i]));
+                self.process
+                    .push(record.point(i), self.target.of(record.values[i]));
             }
         }
         self.taken = record.len();
@@ -232,7 +234,10 @@ impl Model {
         if score.hopeful {
             return score;
         }
-        let hits = record.hits.iter().map(|&hit| square(record.point(hit), x, &self.reach));
+        let hits = record
+            .hits
+            .iter()
+            .map(|&hit| square(record.point(hit), x, &self.reach));
         let nearest = hits.fold(f64::INFINITY, f64::min);
         Score {
             value: score.value - (-nearest / 2.0).exp(),

@@ -120,12 +120,6 @@ impl Pool {
             .map(move |lane| (Score::new(means[lane], variances[lane]), Place { block, lane }))
     }
 
-    /// Mean and variance of a candidate that was rated.
-    pub(super) fn prediction(&self, process: &Process, place: Place) -> (f64, f64) {
-        let (means, variances) = process.predictions(&self.blocks[place.block]);
-        (means[place.lane], variances[place.lane])
-    }
-
     /// Candidates, exclusions and the next block, for [`Pool::restored`].
     pub(super) fn saved(&self) -> (Vec<f64>, Vec<bool>, usize) {
         let units = self.blocks.iter().flat_map(|block| &block.units).flatten();
@@ -135,13 +129,20 @@ impl Pool {
 
     /// `None` where the lists do not fit each other.
     pub(super) fn restored(axes: usize, units: &[f64], excluded: &[bool], next: usize) -> Option<Self> {
-        let (lanes, []) = units.as_chunks::<LANES>() else { return None };
-        let (marks, []) = excluded.as_chunks::<LANES>() else { return None };
+        let (lanes, []) = units.as_chunks::<LANES>() else {
+            return None;
+        };
+        let (marks, []) = excluded.as_chunks::<LANES>() else {
+            return None;
+        };
         if axes == 0 || lanes.len() != marks.len() * axes || next > marks.len() {
             return None;
         }
         Some(Self {
-            blocks: lanes.chunks_exact(axes).map(|lanes| Block::new(lanes.to_vec())).collect(),
+            blocks: lanes
+                .chunks_exact(axes)
+                .map(|lanes| Block::new(lanes.to_vec()))
+                .collect(),
             excluded: marks.to_vec(),
             next,
         })

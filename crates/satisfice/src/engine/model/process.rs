@@ -74,7 +74,8 @@ impl Process {
     /// Adds a point. Cost: n² / 2.
     pub(super) fn push(&mut self, input: &[f64], value: f64) {
         let fit = &mut self.fit;
-        fit.points.push(input.iter().zip(&self.inverses).map(|(x, s)| x * s));
+        fit.points
+            .push(input.iter().zip(&self.inverses).map(|(x, s)| x * s));
         let new = fit.points.len() - 1;
         let row = fit.points.row(new);
         let mut all: Vec<f64> = Vec::with_capacity(new + LANES);

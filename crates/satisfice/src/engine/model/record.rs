@@ -1,8 +1,8 @@
 //! Everything that was evaluated.
 
+use core::hash::BuildHasher;
 use foldhash::fast::FixedState;
 use hashbrown::HashSet;
-use core::hash::BuildHasher;
 
 /// The seed of the keys; fixed, so that a run is the same on every machine.
 const KEYS: FixedState = FixedState::with_seed(0x6d6f_6465_6c00);

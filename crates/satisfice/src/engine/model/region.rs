@@ -53,7 +53,12 @@ impl Region {
             upper: vec![0.0; scales.axes()],
         };
         for &i in &region.known {
-            for ((lower, upper), &x) in region.lower.iter_mut().zip(&mut region.upper).zip(record.point(i)) {
+            for ((lower, upper), &x) in region
+                .lower
+                .iter_mut()
+                .zip(&mut region.upper)
+                .zip(record.point(i))
+            {
                 *lower = lower.min(x);
                 *upper = upper.max(x);
             }

@@ -46,7 +46,8 @@ engine_settings! {
 
 impl EngineConfig for Surrogate {
     const NAME: &'static str = "surrogate";
-    const SUMMARY: &'static str = "Gaussian process that proposes where a hit is most probable, for 20 to 500 expensive evaluations";
+    const SUMMARY: &'static str =
+        "Gaussian process that proposes where a hit is most probable, for 20 to 500 expensive evaluations";
     const CITATION: &'static str = "after Bryan et al. 2005, NIPS 18, and Gotovos et al. 2013, IJCAI 23; Matérn kernels: Rasmussen, Williams 2006, ISBN 026218253X";
 
     fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
@@ -130,7 +131,12 @@ impl<S: Real> ModelledSearch<S> {
         };
         let mut model = match self.model.take() {
             Some(model) if !model.is_due(&self.record) => model,
-            old => Model::fit(&mut given, old, (self.settings.points, self.settings.candidates), rng),
+            old => Model::fit(
+                &mut given,
+                old,
+                (self.settings.points, self.settings.candidates),
+                rng,
+            ),
         };
         model.follow(&self.record);
         model.refresh(&mut given, rng);
@@ -327,7 +333,12 @@ impl Model {
             &from.read::<Vec<bool>>()?,
             from.read()?,
         );
-        let axes = [region.lower.len(), region.upper.len(), reach.len(), scales.logs.len() - 1];
+        let axes = [
+            region.lower.len(),
+            region.upper.len(),
+            reach.len(),
+            scales.logs.len() - 1,
+        ];
         let fits = axes.iter().all(|&axes| axes == record.axes())
             && prefix > 0
             && prefix <= region.known.len()

@@ -39,7 +39,11 @@ impl Units {
             axes: several
                 .map(|(j, axis)| Unit {
                     axis: j,
-                    cells: if axis.is_integer() { axis.width().f64() } else { 0.0 },
+                    cells: if axis.is_integer() {
+                        axis.width().f64()
+                    } else {
+                        0.0
+                    },
                     width: axis.width().f64(),
                 })
                 .collect(),
@@ -79,7 +83,13 @@ impl Units {
     pub(super) fn cardinality(&self) -> f64 {
         self.axes
             .iter()
-            .map(|unit| if unit.cells > 0.0 { unit.cells } else { f64::INFINITY })
+            .map(|unit| {
+                if unit.cells > 0.0 {
+                    unit.cells
+                } else {
+                    f64::INFINITY
+                }
+            })
             .product()
     }
 
@@ -102,7 +112,8 @@ impl Units {
     #[expect(clippy::cast_precision_loss, reason = "a number of axes")]
     pub(super) fn saved(&self) -> Vec<f64> {
         let axes = self.axes.iter();
-        axes.flat_map(|unit| [unit.axis as f64, unit.cells, unit.width]).collect()
+        axes.flat_map(|unit| [unit.axis as f64, unit.cells, unit.width])
+            .collect()
     }
 
     /// `None` where the list is not whole.
@@ -112,7 +123,9 @@ impl Units {
         reason = "a number of axes"
     )]
     pub(super) fn restored(saved: &[f64]) -> Option<Self> {
-        let (axes, []) = saved.as_chunks::<3>() else { return None };
+        let (axes, []) = saved.as_chunks::<3>() else {
+            return None;
+        };
         let unit = |&[axis, cells, width]: &[f64; 3]| Unit {
             axis: axis as usize,
             cells,

@@ -1,0 +1,224 @@
+//! Searches of 20 to 500 evaluations: what the engine `surrogate` knows of F as hits come in, and how it compares.
+//!
+//! `cargo run --release --example expensive`; writes to `out/expensive`, or to the folder `SATISFICE_OUT`.
+
+use std::error::Error;
+use std::f64::consts::PI;
+use std::sync::Mutex;
+
+use satisfice::engine::{self, GaussianProcess};
+use satisfice::{Budget, Search, SearchRng, Space, from_fn};
+use satisfice_draw::plot::{Colour, Layer, Map, Maps, Marker, Shape, draw_maps};
+
+mod gallery;
+
+/// Engines that are compared.
+const ENGINES: [&str; 5] = ["surrogate", "portfolio", "latest-hit-qpso", "walk", "random"];
+/// Evaluations after which hits are counted.
+const COUNTED: [u64; 3] = [50, 200, 500];
+/// Share of the space that is a hit.
+const FEASIBLE: f64 = 0.01;
+/// Grid points along an axis of a picture.
+const GRID: usize = 81;
+
+/// A function on the unit cube, with the radius within which two of its hits are one.
+struct Function {
+    name: &'static str,
+    axes: usize,
+    separation: f64,
+    f: fn(&[f64]) -> f64,
+}
+
+const FUNCTIONS: [Function; 2] = [
+    Function {
+        name: "Branin, 2 axes",
+        axes: 2,
+        separation: 0.01,
+        f: branin,
+    },
+    Function {
+        name: "Hartmann, 6 axes",
+        axes: 6,
+        separation: 0.05,
+        f: hartmann,
+    },
+];
+
+/// Branin's function of `x` in -5..10 and `y` in 0..15, scaled to the unit square: three basins.
+fn branin(u: &[f64]) -> f64 {
+    let (x, y) = (15.0 * u[0] - 5.0, 15.0 * u[1]);
+    let valley = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
+    valley * valley + 10.0 * (1.0 - 1.0 / (8.0 * PI)) * x.cos() + 10.0
+}
+
+/// Hartmann's function of six variables: four Gaussian wells.
+fn hartmann(u: &[f64]) -> f64 {
+    const DEPTHS: [f64; 4] = [1.0, 1.2, 3.0, 3.2];
+    const WIDTHS: [[f64; 6]; 4] = [
+        [10.0, 3.0, 17.0, 3.5, 1.7, 8.0],
+        [0.05, 10.0, 17.0, 0.1, 8.0, 14.0],
+        [3.0, 3.5, 1.7, 10.0, 17.0, 8.0],
+        [17.0, 8.0, 0.05, 10.0, 0.1, 14.0],
+    ];
+    const CENTRES: [[f64; 6]; 4] = [
+        [0.1312, 0.1696, 0.5569, 0.0124, 0.8283, 0.5886],
+        [0.2329, 0.4135, 0.8307, 0.3736, 0.1004, 0.9991],
+        [0.2348, 0.1451, 0.3522, 0.2883, 0.3047, 0.6650],
+        [0.4047, 0.8828, 0.8732, 0.5743, 0.1091, 0.0381],
+    ];
+    let well = |k: usize| {
+        let squares = u.iter().zip(&WIDTHS[k]).zip(&CENTRES[k]);
+        let sum: f64 = squares
+            .map(|((x, width), centre)| width * (x - centre).powi(2))
+            .sum();
+        DEPTHS[k] * (-sum).exp()
+    };
+    -(0..4).map(well).sum::<f64>()
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    for function in &FUNCTIONS {
+        compare(function)?;
+    }
+    picture(&FUNCTIONS[0])
+}
+
+impl Function {
+    /// The value of F below which [`FEASIBLE`] of the cube lies, from 100,000 uniform points.
+    fn threshold(&self) -> f64 {
+        let mut rng = SearchRng::new(7);
+        let point = |rng: &mut SearchRng| -> Vec<f64> { (0..self.axes).map(|_| rng.uniform()).collect() };
+        let mut values: Vec<f64> = (0..100_000).map(|_| (self.f)(&point(&mut rng))).collect();
+        values.sort_by(f64::total_cmp);
+        values[(FEASIBLE * 1e5) as usize]
+    }
+
+    /// Distinct hits of an engine after each number of evaluations, and all evaluated points in order.
+    fn search(&self, engine: &str, seed: u64, counted: &[u64]) -> Result<Run, satisfice::Error> {
+        let evaluated = Mutex::new(Vec::new());
+        let space = Space::cube(self.axes, 0.0, 1.0)?;
+        let problem = from_fn(space, self.threshold(), |x: &[f64]| {
+            let value = (self.f)(x);
+            if let Ok(mut list) = evaluated.lock() {
+                list.push((x.to_vec(), value));
+            }
+            value
+        })
+        .separation(self.separation);
+        let last = counted.iter().copied().max().unwrap_or(1);
+        let mut search = Search::new(engine::build(engine)?).seed(seed);
+        let report = search.run(&problem, &Budget::evaluations(last))?;
+        let hits = |limit: u64| report.hits().filter(|hit| hit.evaluation <= limit).count();
+        let hits = counted.iter().map(|&limit| hits(limit)).collect();
+        drop(problem);
+        Ok(Run {
+            hits,
+            evaluated: evaluated.into_inner().unwrap_or_default(),
+        })
+    }
+}
+
+/// What a search came to.
+struct Run {
+    hits: Vec<usize>,
+    evaluated: Vec<(Vec<f64>, f64)>,
+}
+
+/// Prints medians over seeds, and checks that the model leads.
+fn compare(function: &Function) -> Result<(), Box<dyn Error>> {
+    let seeds = if gallery::is_quick() { 2 } else { 16 };
+    let counted = if gallery::is_quick() {
+        &COUNTED[..2]
+    } else {
+        &COUNTED[..]
+    };
+    println!(
+        "{}: medians of {seeds} seeds, hits after {counted:?} evaluations",
+        function.name
+    );
+    let mut medians = Vec::new();
+    for engine in ENGINES {
+        let runs: Vec<Run> = (1..=seeds)
+            .map(|seed| function.search(engine, seed, counted))
+            .collect::<Result<_, _>>()?;
+        let row: Vec<f64> = (0..counted.len())
+            .map(|k| median(runs.iter().map(|run| run.hits[k]).collect()))
+            .collect();
+        println!("  {engine:16} {row:?}");
+        medians.push(row);
+    }
+    let (model, others) = medians.split_at(1);
+    assert!(
+        others.iter().all(|row| row[1] < model[0][1]),
+        "another engine found more in {} evaluations",
+        counted[1]
+    );
+    Ok(())
+}
+
+fn median(mut counts: Vec<usize>) -> f64 {
+    counts.sort_unstable();
+    let n = counts.len();
+    (counts[(n - 1) / 2] + counts[n / 2]) as f64 / 2.0
+}
+
+/// Draws what the model expects after some evaluations, with the points so far.
+fn picture(function: &Function) -> Result<(), Box<dyn Error>> {
+    let run = function.search("surrogate", 1, &[200])?;
+    let delta = function.threshold();
+    let panels = [12, 40, 200].map(|count| panel(&run.evaluated[..count.min(run.evaluated.len())], delta));
+    let maps = Maps {
+        title: format!("{}: F - delta as modelled, hits and misses", function.name),
+        size: (430.0, 430.0),
+        panels: panels.into_iter().collect::<Option<_>>().ok_or("no points")?,
+    };
+    gallery::save("expensive", |format| draw_maps(&maps, format))
+}
+
+/// The model of these points. F is clipped as the engine does it: far above delta its height does not matter.
+fn panel(evaluated: &[(Vec<f64>, f64)], delta: f64) -> Option<Map> {
+    let (mut points, mut values) = (Vec::new(), Vec::new());
+    for (x, f) in evaluated {
+        points.extend_from_slice(x);
+        values.push((f - delta).min(60.0));
+    }
+    let model = GaussianProcess::fit(2, &points, &values)?;
+    let along: Vec<f64> = (0..GRID).map(|k| k as f64 / (GRID - 1) as f64).collect();
+    let row = |y: &f64| along.iter().map(|&x| model.predict(&[x, *y]).0).collect();
+    let z: Vec<Vec<f64>> = along.iter().map(row).collect();
+    let of = |hits: bool| -> Vec<(f64, f64)> {
+        let kind = evaluated.iter().filter(|(_, f)| (*f < delta) == hits);
+        kind.map(|(x, _)| (x[0], x[1])).collect()
+    };
+    let (hits, misses) = (of(true), of(false));
+    let marks = |label: &str, colour, size, marker, points| Layer {
+        label: Some(label.to_owned()),
+        colour,
+        size,
+        shape: Shape::Points(marker, points),
+    };
+    Some(Map {
+        title: format!("{} evaluations, {} below delta", evaluated.len(), hits.len()),
+        x_label: "first axis".to_owned(),
+        y_label: "second axis".to_owned(),
+        x_range: (0.0, 1.0),
+        y_range: (0.0, 1.0),
+        to_scale: true,
+        layers: vec![
+            Layer {
+                label: Some("F - delta".to_owned()),
+                colour: Colour::Black,
+                size: 1.0,
+                shape: Shape::Contours {
+                    x: along.clone(),
+                    y: along,
+                    z,
+                    levels: (-2..13).map(|k| 5.0 * f64::from(k)).collect(),
+                },
+            },
+            marks("miss", Colour::White, 3.0, Marker::Cross, misses),
+            marks("hit", Colour::Vermilion, 2.6, Marker::Disc, hits),
+        ],
+        ..Map::default()
+    })
+}
