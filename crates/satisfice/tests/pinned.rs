@@ -152,13 +152,9 @@ fn run<S: Real>(name: &str, settings: &[(&str, &str)], problem: &Bowls<S>, out: 
         .unwrap()
         .configure(settings.iter().copied())
         .unwrap();
-<<<<<<< HEAD
-    let report = Search::with(engine)
-=======
     let short = SHORT_RUN.iter().find(|(engine, _)| *engine == name);
     let evaluations = short.map_or(RUN, |&(_, evaluations)| evaluations);
-    let report = Search::new(engine)
->>>>>>> 84a9daf (Engine surrogate: proposes where a hit is most probable under a Gaussian process)
+    let report = Search::with(engine)
         .seed(42)
         .run(problem, &Budget::evaluations(evaluations))
         .unwrap();

@@ -1,6 +1,6 @@
 //! Searches of 20 to 500 evaluations: what the engine `surrogate` knows of F as hits come in, and how it compares.
 //!
-//! `cargo run --release --example expensive`; writes to `out/expensive`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release -p satisfice-draw --example expensive`; writes to `out/expensive`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -106,7 +106,7 @@ impl Function {
         })
         .separation(self.separation);
         let last = counted.iter().copied().max().unwrap_or(1);
-        let mut search = Search::new(engine::build(engine)?).seed(seed);
+        let mut search = Search::with(engine::build(engine)?).seed(seed);
         let report = search.run(&problem, &Budget::evaluations(last))?;
         let hits = |limit: u64| report.hits().filter(|hit| hit.evaluation <= limit).count();
         let hits = counted.iter().map(|&limit| hits(limit)).collect();

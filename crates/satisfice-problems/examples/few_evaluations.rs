@@ -1,0 +1,197 @@
+//! Hits after 50, 200 and 400 evaluations: the figures of `docs/results/expensive.md`.
+//!
+//! `cargo run --release -p satisfice-problems --example few_evaluations -- [engine=NAME] [seeds=N] [only=TEXT]`
+
+#![allow(missing_docs, reason = "an example")]
+
+use std::error::Error;
+use std::f64::consts::PI;
+
+use satisfice::catalogue::{Catalogued, Params};
+use satisfice::{Budget, SatisficingProblem, Search, SearchRng, Space, engine, from_fn};
+use satisfice_problems::{Arm, Falsification, SallenKey, Shell};
+
+/// Share of the space that is a hit of the functions with a name.
+const FEASIBLE: f64 = 0.01;
+/// Small regions among which a search has to find all.
+const REGIONS: usize = 8;
+const AXES: usize = 6;
+
+struct Settings {
+    engine: String,
+    seeds: u64,
+    only: String,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut settings = Settings {
+        engine: "surrogate".to_owned(),
+        seeds: 16,
+        only: String::new(),
+    };
+    for argument in std::env::args().skip(1) {
+        match argument.split_once('=') {
+            Some(("engine", name)) => settings.engine = name.to_owned(),
+            Some(("seeds", count)) => settings.seeds = count.parse()?,
+            Some(("only", text)) => settings.only = text.to_owned(),
+            _ => return Err(format!("`{argument}` is not engine=, seeds= or only=").into()),
+        }
+    }
+    settings.catalogued::<Falsification>()?;
+    settings.catalogued::<Shell>()?;
+    settings.catalogued::<Arm>()?;
+    settings.catalogued::<SallenKey>()?;
+    settings.function("branin", 2, 0.01, branin)?;
+    settings.function("himmelblau, log1p", 2, 0.01, himmelblau)?;
+    settings.function("rosenbrock, log1p", 4, 0.03, rosenbrock)?;
+    settings.function("hartmann", 6, 0.05, hartmann)?;
+    settings.regions("balls", |x, c| {
+        x.iter().zip(c).map(|(x, c)| (x - c).powi(2)).sum::<f64>().sqrt()
+    })?;
+    settings.regions("boxes", |x, c| {
+        x.iter().zip(c).map(|(x, c)| (x - c).abs()).fold(0.0, f64::max)
+    })
+}
+
+impl Settings {
+    fn catalogued<P>(&self) -> Result<(), Box<dyn Error>>
+    where
+        P: Catalogued + SatisficingProblem<Scalar = f64>,
+    {
+        let problem = P::from_params(&Params::defaults(P::PARAMETERS)?)?;
+        self.row(P::NAME, &[50, 200], |_, seed, budget| self.hits(&problem, seed, budget))
+    }
+
+    /// A function of the unit cube, whose hits are the best hundredth of it.
+    fn function(
+        &self,
+        name: &str,
+        axes: usize,
+        separation: f64,
+        f: fn(&[f64]) -> f64,
+    ) -> Result<(), Box<dyn Error>> {
+        let problem = from_fn(Space::cube(axes, 0.0, 1.0)?, quantile(axes, f), f).separation(separation);
+        self.row(name, &[50, 200], |_, seed, budget| self.hits(&problem, seed, budget))
+    }
+
+    /// Small regions in the unit cube, others for each seed: F is the distance to the nearest centre.
+    fn regions(&self, name: &str, distance: fn(&[f64], &[f64]) -> f64) -> Result<(), Box<dyn Error>> {
+        self.row(name, &[400], |settings, seed, budget| {
+            let centres = centres(seed);
+            let f = |x: &[f64]| {
+                let all = centres.iter().map(|c| distance(x, c));
+                all.fold(f64::INFINITY, f64::min)
+            };
+            let problem = from_fn(Space::cube(AXES, 0.0, 1.0)?, 0.05, f).separation(0.2);
+            settings.hits(&problem, seed, budget)
+        })
+    }
+
+    /// The evaluations at which hits were found.
+    fn hits<P: SatisficingProblem<Scalar = f64>>(
+        &self,
+        problem: &P,
+        seed: u64,
+        budget: u64,
+    ) -> Result<Vec<u64>, satisfice::Error> {
+        let mut search = Search::with(engine::build(&self.engine)?).seed(seed);
+        let report = search.run(problem, &Budget::evaluations(budget))?;
+        Ok(report.hits().map(|hit| hit.evaluation).collect())
+    }
+
+    /// Prints the medians of distinct hits after each number of evaluations.
+    fn row(
+        &self,
+        name: &str,
+        counted: &[u64],
+        run: impl Fn(&Self, u64, u64) -> Result<Vec<u64>, satisfice::Error>,
+    ) -> Result<(), Box<dyn Error>> {
+        if !name.contains(&self.only) {
+            return Ok(());
+        }
+        let last = counted[counted.len() - 1];
+        let runs: Vec<Vec<u64>> = (1..=self.seeds)
+            .map(|seed| run(self, seed, last))
+            .collect::<Result<_, _>>()?;
+        print!("{name:20}");
+        for &limit in counted {
+            let count = |hits: &Vec<u64>| hits.iter().filter(|&&at| at <= limit).count();
+            let counts: Vec<usize> = runs.iter().map(count).collect();
+            let mean = counts.iter().sum::<usize>() as f64 / counts.len() as f64;
+            print!("  {limit}: {:.1} (mean {mean:.1})", median(counts));
+        }
+        println!();
+        Ok(())
+    }
+}
+
+fn median(mut counts: Vec<usize>) -> f64 {
+    counts.sort_unstable();
+    let n = counts.len();
+    (counts[(n - 1) / 2] + counts[n / 2]) as f64 / 2.0
+}
+
+/// The value below which [`FEASIBLE`] of the unit cube lies, from 100,000 uniform points.
+fn quantile(axes: usize, f: fn(&[f64]) -> f64) -> f64 {
+    let mut rng = SearchRng::new(7);
+    let point = |rng: &mut SearchRng| -> Vec<f64> { (0..axes).map(|_| rng.uniform()).collect() };
+    let mut values: Vec<f64> = (0..100_000).map(|_| f(&point(&mut rng))).collect();
+    values.sort_by(f64::total_cmp);
+    values[(FEASIBLE * 1e5) as usize]
+}
+
+/// Centres that are 0.4 apart.
+fn centres(seed: u64) -> Vec<Vec<f64>> {
+    let mut rng = SearchRng::new(1000 + seed);
+    let mut centres: Vec<Vec<f64>> = Vec::new();
+    while centres.len() < REGIONS {
+        let centre: Vec<f64> = (0..AXES).map(|_| 0.1 + 0.8 * rng.uniform()).collect();
+        let apart = |other: &Vec<f64>| {
+            let squares = centre.iter().zip(other).map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>() > 0.16
+        };
+        if centres.iter().all(apart) {
+            centres.push(centre);
+        }
+    }
+    centres
+}
+
+fn branin(u: &[f64]) -> f64 {
+    let (x, y) = (15.0 * u[0] - 5.0, 15.0 * u[1]);
+    let valley = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
+    valley * valley + 10.0 * (1.0 - 1.0 / (8.0 * PI)) * x.cos() + 10.0
+}
+
+fn himmelblau(u: &[f64]) -> f64 {
+    let (x, y) = (10.0 * u[0] - 5.0, 10.0 * u[1] - 5.0);
+    ((x * x + y - 11.0).powi(2) + (x + y * y - 7.0).powi(2)).ln_1p()
+}
+
+fn rosenbrock(u: &[f64]) -> f64 {
+    let x: Vec<f64> = u.iter().map(|u| 4.0 * u - 2.0).collect();
+    let terms = x.windows(2).map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2));
+    terms.sum::<f64>().ln_1p()
+}
+
+fn hartmann(u: &[f64]) -> f64 {
+    const DEPTHS: [f64; 4] = [1.0, 1.2, 3.0, 3.2];
+    const WIDTHS: [[f64; 6]; 4] = [
+        [10.0, 3.0, 17.0, 3.5, 1.7, 8.0],
+        [0.05, 10.0, 17.0, 0.1, 8.0, 14.0],
+        [3.0, 3.5, 1.7, 10.0, 17.0, 8.0],
+        [17.0, 8.0, 0.05, 10.0, 0.1, 14.0],
+    ];
+    const CENTRES: [[f64; 6]; 4] = [
+        [0.1312, 0.1696, 0.5569, 0.0124, 0.8283, 0.5886],
+        [0.2329, 0.4135, 0.8307, 0.3736, 0.1004, 0.9991],
+        [0.2348, 0.1451, 0.3522, 0.2883, 0.3047, 0.6650],
+        [0.4047, 0.8828, 0.8732, 0.5743, 0.1091, 0.0381],
+    ];
+    let well = |k: usize| {
+        let squares = u.iter().zip(&WIDTHS[k]).zip(&CENTRES[k]);
+        let sum: f64 = squares.map(|((x, width), centre)| width * (x - centre).powi(2)).sum();
+        DEPTHS[k] * (-sum).exp()
+    };
+    -(0..4).map(well).sum::<f64>()
+}
