@@ -1,10 +1,12 @@
 //! Shared by the examples that draw: a search of the right length, and the folder for pictures.
 
+#![allow(dead_code, reason = "each example uses a part")]
+
 use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
+use satisfice::{Budget, Report, SatisficingProblem, Search};
 use satisfice_draw::plot::Format;
 
 /// Whether to run a short form that only shows that the example works.
@@ -19,7 +21,7 @@ pub(crate) fn search<P: SatisficingProblem<Scalar = f64>>(
     hits: u64,
 ) -> Result<Report<P::Solution>, satisfice::Error> {
     let evaluations = if is_quick() { evaluations / 5 } else { evaluations };
-    let mut search = Search::with(engine::build("portfolio")?).seed(1);
+    let mut search = Search::new().seed(1);
     search.run(problem, &Budget::evaluations(evaluations).and_hits(hits))
 }
 
