@@ -59,7 +59,9 @@ impl Settings {
         P: Catalogued + SatisficingProblem<Scalar = f64>,
     {
         let problem = P::from_params(&Params::defaults(P::PARAMETERS)?)?;
-        self.row(P::NAME, &[50, 200], |_, seed, budget| self.hits(&problem, seed, budget))
+        self.row(P::NAME, &[50, 200], |_, seed, budget| {
+            self.hits(&problem, seed, budget)
+        })
     }
 
     /// A function of the unit cube, whose hits are the best hundredth of it.
@@ -71,7 +73,9 @@ impl Settings {
         f: fn(&[f64]) -> f64,
     ) -> Result<(), Box<dyn Error>> {
         let problem = from_fn(Space::cube(axes, 0.0, 1.0)?, quantile(axes, f), f).separation(separation);
-        self.row(name, &[50, 200], |_, seed, budget| self.hits(&problem, seed, budget))
+        self.row(name, &[50, 200], |_, seed, budget| {
+            self.hits(&problem, seed, budget)
+        })
     }
 
     /// Small regions in the unit cube, others for each seed: F is the distance to the nearest centre.
@@ -170,7 +174,9 @@ fn himmelblau(u: &[f64]) -> f64 {
 
 fn rosenbrock(u: &[f64]) -> f64 {
     let x: Vec<f64> = u.iter().map(|u| 4.0 * u - 2.0).collect();
-    let terms = x.windows(2).map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2));
+    let terms = x
+        .windows(2)
+        .map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2));
     terms.sum::<f64>().ln_1p()
 }
 
@@ -190,7 +196,9 @@ fn hartmann(u: &[f64]) -> f64 {
     ];
     let well = |k: usize| {
         let squares = u.iter().zip(&WIDTHS[k]).zip(&CENTRES[k]);
-        let sum: f64 = squares.map(|((x, width), centre)| width * (x - centre).powi(2)).sum();
+        let sum: f64 = squares
+            .map(|((x, width), centre)| width * (x - centre).powi(2))
+            .sum();
         DEPTHS[k] * (-sum).exp()
     };
     -(0..4).map(well).sum::<f64>()
