@@ -14,9 +14,17 @@ const LINES: usize = 2;
 /// A value that JSON cannot represent, such as a map whose keys are not text.
 pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     let mut text = Vec::new();
-    value.serialize(&mut Serializer::with_formatter(&mut text, Lines::default()))?;
-    text.push(b'\n');
+    write(value, &mut text).map_err(serde_json::Error::io)?;
     Ok(text)
+}
+
+/// Writes the same piece by piece, as the value is serialised.
+///
+/// # Errors
+/// What `out` reports, or a value that is not representable.
+pub fn write(value: &impl Serialize, mut out: impl Write) -> io::Result<()> {
+    value.serialize(&mut Serializer::with_formatter(&mut out, Lines::default()))?;
+    out.write_all(b"\n")
 }
 
 /// Breaks lines at the outer levels only.

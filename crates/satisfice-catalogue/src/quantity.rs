@@ -150,6 +150,17 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A finite number, 0 or greater.
+///
+/// # Errors
+/// Any other text.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err("must be a finite number, 0 or greater".to_owned()),
+    }
+}
+
 /// Quantities as text for people.
 pub mod shown {
     /// A count with separated thousands: `1,000,000`.

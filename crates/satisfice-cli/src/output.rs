@@ -2,12 +2,28 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::{Context, bail};
 use tempfile::NamedTempFile;
+
+/// Writes into the place that it is given.
+pub(crate) type Writer<'w> = &'w mut dyn FnMut(&mut dyn Write) -> io::Result<()>;
+
+fn buffered(to: &mut dyn Write, write: Writer<'_>) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, to);
+    write(&mut out).and_then(|()| out.flush())
+}
+
+/// A reader that closes the pipe early (`| head`) is no error.
+fn unless_closed(written: io::Result<()>) -> io::Result<()> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written,
+    }
+}
 
 /// Writes to stdout. A reader that closes the pipe early (`| head`) is no error.
 pub(crate) fn print(bytes: &[u8]) -> anyhow::Result<()> {
@@ -73,15 +89,20 @@ impl Output {
 
     /// Writes all of `bytes`; before that, the file is as it was.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.write_by(&mut |out| out.write_all(bytes))
+    }
+
+    /// Writes what `write` writes, piece by piece; before all of it is there, the file is as it was.
+    pub(crate) fn write_by(&mut self, write: Writer<'_>) -> anyhow::Result<()> {
         let written = match &mut self.to {
-            To::Stdout => return print(bytes),
-            To::InPlace(file) => match file.write_all(bytes) {
-                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-                written => written,
-            },
+            To::Stdout => {
+                return unless_closed(buffered(&mut io::stdout().lock(), write))
+                    .context("cannot write to stdout");
+            }
+            To::InPlace(file) => unless_closed(buffered(file, write)),
             To::Beside(partial) => match partial.take() {
-                Some(file) => replace(file, &self.path, bytes),
-                None => beside(&self.path).and_then(|file| replace(file, &self.path, bytes)),
+                Some(file) => replace(file, &self.path, write),
+                None => beside(&self.path).and_then(|file| replace(file, &self.path, write)),
             },
         };
         written.with_context(|| {
@@ -124,10 +145,9 @@ fn beside(path: &Path) -> io::Result<NamedTempFile> {
 }
 
 /// Moves a file with these contents to its place.
-fn replace(mut file: NamedTempFile, path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn replace(mut file: NamedTempFile, path: &Path, write: Writer<'_>) -> io::Result<()> {
     let partial = file.path().to_owned();
-    let moved = file
-        .write_all(bytes)
+    let moved = buffered(&mut file, write)
         .and_then(|()| file.as_file().sync_data())
         .and_then(|()| file.persist(path).map(drop).map_err(|error| error.error));
     forget(&partial);

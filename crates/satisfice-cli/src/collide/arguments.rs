@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum, ValueHint};
 
+use super::inputs::{self, At};
 use crate::arguments::SearchArguments;
 use crate::quantity;
 
@@ -21,13 +22,36 @@ Examples:
       As many pairs as a search engine finds in 100 ms, and what share of all that is.
   satisfice collide *.obj --threshold 0.1 --pairs triangle-triangle --touching
       Only which bodies touch, with one pair of triangles that shows it for each pair of bodies.
+  satisfice collide factory.glb --threshold 0.01 --pairs triangle-triangle --touching
+      Which nodes of a scene touch, by their names.
+  curl example.com/scan.ply.gz | satisfice collide - tool.stl --format ply --at tool:0,0,12.5,90,0,0 --threshold 0.2
+      A mesh from standard input, and another one turned about x and lifted.
 
-Meshes are .obj, .ply or .stl files; OBJ may hold points and lines alone. Features are numbered from 0: vertices and triangles as in
-the file, edges in the order of their lower, then their higher vertex. Ctrl-C keeps what was found.")]
+Meshes are .obj, .ply, .stl and .off files; scenes are .gltf and .glb files (a body for each node with a mesh) and lists of meshes:
+  [[bodies]]                 # or in JSON: {\"bodies\": [{\"mesh\": \"arm.obj\", ...}]}
+  mesh = \"arm.obj\"           # relative to the list
+  name = \"left arm\"
+  at = [0, 0, 2.5]           # also rotate = [degrees about x, then y, then z] and scale = 2
+All may be compressed (.gz). Features are numbered from 0: vertices and triangles as in the file, edges in the order of their lower,
+then their higher vertex. `Touch` means: closer than the threshold. Ctrl-C keeps the pairs found so far.")]
 pub(crate) struct CollideArguments {
-    /// Mesh files: .obj, .ply or .stl.
+    /// Files of meshes or scenes: .obj, .ply, .stl, .off, .gltf, .glb, .json or .toml; `-` is standard input.
     #[arg(value_name = "MESH", required = true, value_hint = ValueHint::FilePath)]
     pub(crate) meshes: Vec<PathBuf>,
+
+    /// The format of standard input: obj, ply, stl, off, gltf, json or toml.
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<String>,
+
+    /// Place a body: scale it about the origin, turn it about x, then y, then z by degrees, and move it. BODY is a number
+    /// from 0 or a name, which is that of the file without its extension. May be repeated.
+    #[arg(long, value_name = "BODY:x,y,z[,rx,ry,rz[,scale]]", value_parser = inputs::at, allow_hyphen_values = true)]
+    pub(crate) at: Vec<At>,
+
+    /// Join vertices of a body that are equal or closer than D, in the unit of the meshes, so that seams make no pairs
+    /// within it. Vertices are then numbered anew, in the order of the file.
+    #[arg(long, value_name = "D", value_parser = quantity::not_negative, allow_hyphen_values = true)]
+    pub(crate) weld: Option<f64>,
 
     /// A pair is found if its distance is below this, in the unit of the meshes.
     #[arg(long, value_name = "D", value_parser = quantity::positive, allow_hyphen_values = true)]
@@ -37,11 +61,11 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "KIND", default_value = "vertex-vertex")]
     pub(crate) pairs: PairKind,
 
-    /// Look for pairs within each mesh as well; features that share a vertex are none.
+    /// Look for pairs within each mesh as well, except features that share a vertex.
     #[arg(long = "self")]
     pub(crate) within: bool,
 
-    /// Within a mesh, features of which two vertices are at most K edges apart are no pairs, either
+    /// Within a mesh, leave out features with two vertices at most K edges apart
     /// [default: 1 for vertex-vertex, otherwise 0].
     #[arg(long, value_name = "K", value_parser = quantity::width, requires = "within", allow_hyphen_values = true)]
     pub(crate) ring_width: Option<usize>,
@@ -49,8 +73,8 @@ pub(crate) struct CollideArguments {
     #[command(flatten)]
     pub(crate) find: FindArguments,
 
-    /// `exact` finds every pair by the cheapest method, `tree`, `grid` (vertices only) and `brute-force` by that one;
-    /// the name of an engine searches until the budget ends.
+    /// `exact` finds every pair by the cheapest method; `tree`, `grid` (vertices only) and `brute-force` use that one;
+    /// an engine, by its name, searches until the budget ends.
     #[arg(long, value_name = "exact|ENGINE", default_value = "exact")]
     pub(crate) method: String,
 
@@ -61,11 +85,20 @@ pub(crate) struct CollideArguments {
     #[command(flatten)]
     pub(crate) search: SearchArguments,
 
+    /// List at most N pairs. All are counted, in memory that does not grow with them.
+    #[arg(long, value_name = "N", default_value = "10000000", value_parser = quantity::count, allow_hyphen_values = true)]
+    pub(crate) max_pairs: u64,
+
+    /// Report the closest points of each pair, the normal between them, and the corner, edge or face they are on.
+    #[arg(long)]
+    pub(crate) witnesses: bool,
+
     /// Write the report as JSON; `-` is stdout and replaces the summary.
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) json: Option<PathBuf>,
 
-    /// Write the pairs as CSV: body and feature of a, body and feature of b, distance.
+    /// Write the pairs as CSV: body and feature of a, body and feature of b, distance; then what --witnesses adds, and names
+    /// of bodies if a file holds several.
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 
@@ -93,7 +126,7 @@ pub(crate) enum Axis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Args)]
 #[group(multiple = false)]
 pub(crate) struct FindArguments {
-    /// Only which bodies touch: stop at the first pair of each two bodies.
+    /// Only which bodies touch (are closer than the threshold): stop at the first pair of each two bodies.
     #[arg(long)]
     touching: bool,
 
@@ -127,7 +160,7 @@ impl FindArguments {
 }
 
 impl Find {
-    /// What a report says of it.
+    /// How a report calls it.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::All => "all",

@@ -2,15 +2,15 @@
 
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
 use satisfice::{Cancel, StopReason};
-use satisfice_catalogue::{RunReport, RunSpec};
 use satisfice_collision::broad::Method;
-use satisfice_collision::scene::{self, Contact, Frame, Skips};
-use serde_json::{Value, json};
+use satisfice_collision::distance::Proximity;
+use satisfice_collision::scene::{self, Completeness, Contact, Skips};
 
-use super::PROBLEM;
 use super::arguments::Find;
-use super::scene::World;
+use super::pairs::Pairs;
+use super::scene::{Measure, Pair, World};
 use crate::progress::Counting;
 
 /// The exact methods by their names.
@@ -21,64 +21,110 @@ pub(super) const METHODS: [(&str, Method); 4] = [
     ("brute-force", Method::BruteForce),
 ];
 
+/// Pairs measured between two looks at the clock; one can take some 100 us.
+const MEASURED_AT_ONCE: usize = 16;
+
 /// How to find.
 pub(super) struct Exact<'a> {
-    pub(super) name: &'static str,
     pub(super) method: Method,
+    /// Bounds the whole answer, measuring included.
     pub(super) time: Option<Duration>,
     pub(super) hits: Option<u64>,
+    /// More pairs are counted, but not listed.
+    pub(super) most: usize,
+    /// Whether closest points are kept.
+    pub(super) witnesses: bool,
     pub(super) threads: usize,
     pub(super) cancel: &'a Cancel,
 }
 
 /// What was found.
 pub(super) struct Found {
-    pub(super) report: RunReport,
+    pub(super) pairs: Pairs,
+    /// Whether all pairs are listed, as was proved.
+    pub(super) complete: bool,
+    /// How many there are, if that is known.
+    pub(super) count: Option<u64>,
+    /// Why there are no more.
+    pub(super) stop: StopReason,
     pub(super) skips: Skips,
+    pub(super) elapsed: Duration,
 }
 
-/// Contacts, and why there are no more.
+/// Pairs that are not measured yet.
 struct Answer {
-    contacts: Vec<Contact>,
+    pairs: Vec<Pair>,
+    /// Distances that are known beforehand, of all or of none.
+    known: Vec<Proximity>,
     skips: Skips,
     stop: StopReason,
     complete: bool,
+    count: Option<u64>,
+}
+
+/// Until when to work.
+struct Limit<'a> {
+    start: Instant,
+    time: Option<Duration>,
+    cancel: &'a Cancel,
+}
+
+impl Limit<'_> {
+    fn is_reached(&self) -> bool {
+        self.cancel.is_cancelled() || self.time.is_some_and(|time| self.start.elapsed() >= time)
+    }
+
+    fn reason(&self) -> StopReason {
+        match self.cancel.is_cancelled() {
+            true => StopReason::Cancelled,
+            false => StopReason::Time,
+        }
+    }
 }
 
 impl Exact<'_> {
     /// Finds on as many threads as are wanted.
     pub(super) fn find(&self, world: &World) -> anyhow::Result<Found> {
         if self.threads == 1 {
-            return self.find_in(world, world.scene(self.method)?);
+            return self.find_in(world);
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build()?;
-        pool.install(|| self.find_in(world, world.scene(self.method)?.parallel()))
+        pool.install(|| self.find_in(world))
     }
 
     #[expect(
         clippy::disallowed_methods,
         reason = "a scene is told when to stop; it does not ask the time itself"
     )]
-    fn find_in(&self, world: &World, mut scene: scene::World) -> anyhow::Result<Found> {
-        let start = Instant::now();
+    fn find_in(&self, world: &World) -> anyhow::Result<Found> {
+        let limit = Limit {
+            start: Instant::now(),
+            time: self.time,
+            cancel: self.cancel,
+        };
         let counting = Counting::new();
-        let answer = self.answer(world, &mut scene, start, &counting)?;
-        let searched = start.elapsed();
-        counting.say(format!("measuring {} pairs", answer.contacts.len()));
-        let mut solutions = Vec::with_capacity(answer.contacts.len());
-        for (&contact, pair) in answer.contacts.iter().zip(world.pairs(&answer.contacts)) {
-            let distance = distance(&scene, contact, world.request.threshold)?;
-            solutions.push((json!(pair), distance));
+        let mut answer = {
+            let mut scene = world.scene(self.method)?;
+            if self.threads != 1 {
+                scene = scene.parallel();
+            }
+            self.answer(world, &mut scene, &limit, &counting)?
+        };
+        counting.say(format!("measuring {} pairs", answer.pairs.len()));
+        // By another scene: the first one keeps the pairs for a next frame, which takes memory.
+        let pairs = self.measured(world, &world.measure()?, &mut answer, &limit)?;
+        if pairs.unmeasured() > 0 {
+            answer.stop = limit.reason();
         }
-        let elapsed = start.elapsed();
-        let late = self
-            .time
-            .map_or(Duration::ZERO, |time| searched.saturating_sub(time));
         Ok(Found {
-            report: self.report(world, &answer, solutions, (searched, elapsed), late),
+            complete: answer.complete,
+            count: answer.count.or(answer.complete.then_some(pairs.len() as u64)),
+            pairs,
+            stop: answer.stop,
             skips: answer.skips,
+            elapsed: limit.start.elapsed(),
         })
     }
 
@@ -86,130 +132,178 @@ impl Exact<'_> {
         &self,
         world: &World,
         scene: &mut scene::World,
-        start: Instant,
+        limit: &Limit<'_>,
         counting: &Counting,
     ) -> anyhow::Result<Answer> {
-        let out_of_time = || self.time.is_some_and(|time| start.elapsed() >= time);
         let stop = |found: usize| {
-            counting.show(found, start);
-            self.cancel.is_cancelled() || out_of_time()
+            counting.show(found, limit.start);
+            limit.is_reached()
         };
-        // `left`: why no more were wanted, where the question is answered by some.
-        let answer = |contacts: Vec<Contact>, left: Option<StopReason>, state: scene::Completeness| {
-            let proved = state == scene::Completeness::Proved;
+        // `enough`: why no more were wanted, if some pairs answer the question.
+        let answer = |contacts: Vec<Contact>, enough: Option<StopReason>, state: Completeness| {
+            let proved = state == Completeness::Proved;
             Answer {
-                contacts,
+                pairs: world.pairs(contacts.into_iter()).collect(),
+                known: Vec::new(),
                 skips: Skips::default(),
-                stop: match (proved, left) {
+                stop: match (proved, enough) {
                     (true, None) => StopReason::Covered,
                     (true, Some(reason)) => reason,
-                    (false, _) if self.cancel.is_cancelled() => StopReason::Cancelled,
-                    (false, _) => StopReason::Time,
+                    (false, _) => limit.reason(),
                 },
-                complete: proved && left.is_none(),
+                complete: proved && enough.is_none(),
+                count: None,
             }
         };
         Ok(match world.request.find {
             Find::Touching => {
                 let (witnesses, state) = scene.witnesses_until(&stop)?;
-                let left = (!witnesses.is_empty()).then_some(StopReason::Exhausted);
-                answer(witnesses, left, state)
+                let enough = (!witnesses.is_empty()).then_some(StopReason::Exhausted);
+                answer(witnesses, enough, state)
             }
             Find::First => {
                 let (first, state) = scene.first_until(&stop)?;
-                let left = first.is_some().then_some(StopReason::Hits);
-                answer(first.into_iter().collect(), left, state)
+                let enough = first.is_some().then_some(StopReason::Hits);
+                answer(first.into_iter().collect(), enough, state)
             }
             Find::Closest(k) => {
                 let wanted = usize::try_from(k).unwrap_or(usize::MAX);
                 let (closest, state) = scene.closest_until(wanted, &stop)?;
-                let left = (closest.len() >= wanted).then_some(StopReason::Hits);
-                let contacts = closest.into_iter().map(|(contact, _)| contact).collect();
-                answer(contacts, left, state)
-            }
-            Find::All if matches!(self.method, Method::Auto | Method::Tree) => {
-                self.pass(scene, start, counting)?
-            }
-            Find::All => {
-                let frame = scene.frame_until(&stop)?;
+                let enough = (closest.len() >= wanted).then_some(StopReason::Hits);
+                let (contacts, known) = closest.into_iter().unzip();
                 Answer {
-                    skips: frame.skips,
-                    ..answer(frame.contacts, None, frame.completeness)
+                    known,
+                    ..answer(contacts, enough, state)
                 }
             }
+            Find::All => self.all(world, scene, limit, counting)?,
         })
     }
 
-    /// Piece by piece, so that a limit and Ctrl-C keep what was found.
-    fn pass(&self, scene: &mut scene::World, start: Instant, counting: &Counting) -> anyhow::Result<Answer> {
+    /// All pairs, or those found until a limit. Those beyond `most` are counted only.
+    fn all(
+        &self,
+        world: &World,
+        scene: &mut scene::World,
+        limit: &Limit<'_>,
+        counting: &Counting,
+    ) -> anyhow::Result<Answer> {
         let wanted = self
             .hits
             .map_or(usize::MAX, |hits| usize::try_from(hits).unwrap_or(usize::MAX));
-        let mut stop = StopReason::Covered;
-        let mut pass = scene.pass();
-        scene.advance(&mut pass, &mut |found| {
-            counting.show(found, start);
-            if self.cancel.is_cancelled() {
-                stop = StopReason::Cancelled;
-            } else if found >= wanted {
-                stop = StopReason::Hits;
-            } else if self.time.is_some_and(|time| start.elapsed() >= time) {
-                stop = StopReason::Time;
-            }
-            stop != StopReason::Covered
-        })?;
-        let Frame {
-            mut contacts,
-            completeness,
+        let has_enough = |found: usize| {
+            counting.show(found, limit.start);
+            // One more than the list takes shows that there are more.
+            found >= wanted || found > self.most || limit.is_reached()
+        };
+        let (mut pairs, completeness, skips): (Vec<Pair>, _, _) =
+            if matches!(self.method, Method::Auto | Method::Tree) {
+                let mut pass = scene.pass();
+                scene.advance(&mut pass, &mut |found| has_enough(found))?;
+                let pairs = world.pairs(scene.found_by(&pass)).collect();
+                (pairs, pass.completeness(), pass.skips())
+            } else {
+                let update = scene.update_until(&has_enough)?;
+                (
+                    world.pairs(scene.contacts()).collect(),
+                    update.completeness,
+                    update.skips,
+                )
+            };
+        pairs.sort_unstable_by_key(Pair::order);
+        let found = pairs.len();
+        let complete = completeness == Completeness::Proved && found <= wanted.min(self.most);
+        pairs.truncate(wanted.min(self.most));
+        let mut answer = Answer {
+            pairs,
+            known: Vec::new(),
             skips,
-        } = scene.frame_of(&pass);
-        let complete = completeness == scene::Completeness::Proved && contacts.len() <= wanted;
-        contacts.truncate(wanted);
-        Ok(Answer {
-            contacts,
-            skips,
-            stop: if complete { StopReason::Covered } else { stop },
+            stop: match complete {
+                true => StopReason::Covered,
+                false if found >= wanted => StopReason::Hits,
+                false => limit.reason(),
+            },
             complete,
-        })
+            count: None,
+        };
+        if found > self.most && completeness == Completeness::Proved {
+            answer.stop = StopReason::Covered;
+            answer.count = Some(found as u64);
+        } else if found > self.most && found < wanted {
+            answer.pairs.shrink_to_fit();
+            let (count, state) = scene.count_until(&|found| {
+                counting.show(found, limit.start);
+                limit.is_reached()
+            })?;
+            if state == Completeness::Proved {
+                answer.stop = StopReason::Covered;
+                answer.count = Some(count);
+            }
+        }
+        Ok(answer)
     }
 
-    fn report(
+    /// The pairs with their distances, measured until the limit is reached.
+    fn measured(
         &self,
         world: &World,
-        answer: &Answer,
-        solutions: Vec<(Value, f64)>,
-        (searched, elapsed): (Duration, Duration),
-        late: Duration,
-    ) -> RunReport {
-        let hits = solutions.len() as u64;
-        // Brute force measures what there is, the others what they find.
-        let measured = if self.method == Method::BruteForce && answer.complete {
-            world.size() - answer.skips.mesh_neighbours
-        } else {
-            hits
+        measure: &Measure,
+        answer: &mut Answer,
+        limit: &Limit<'_>,
+    ) -> anyhow::Result<Pairs> {
+        let found = std::mem::take(&mut answer.pairs);
+        let mut pairs = Pairs {
+            distances: Vec::with_capacity(found.len()),
+            witnesses: self.witnesses.then(Vec::new),
+            ..Pairs::default()
         };
-        let mut spec = RunSpec::new(self.name);
-        spec.problem = PROBLEM.to_owned();
-        spec.problem_parameters = world.settings();
-        spec.budget.time = self.time;
-        spec.budget.hits = self.hits;
-        let cost = (measured, searched.as_secs_f64());
-        let mut report = RunReport::at_once(spec, world.request.threshold, solutions, cost);
-        report.elapsed_seconds = elapsed.as_secs_f64();
-        if let Some(end) = report.trace.last_mut() {
-            end.elapsed_seconds = report.elapsed_seconds;
+        let below = world.request.threshold;
+        let mut keep = |near: Option<Proximity>| {
+            let distance = near.map_or(f64::NAN, |near| capped(near.distance, below));
+            pairs.distances.push(distance);
+            if let Some(witnesses) = &mut pairs.witnesses {
+                witnesses.push(near);
+            }
+        };
+        if answer.known.is_empty() {
+            // In blocks, so that no more than the distance is kept of each pair.
+            for block in found.chunks(4096 * MEASURED_AT_ONCE) {
+                self.block(measure, block, limit)?
+                    .into_iter()
+                    .flatten()
+                    .for_each(&mut keep);
+            }
+        } else {
+            answer.known.drain(..).map(Some).for_each(&mut keep);
         }
-        report.overshoot_seconds = late.as_secs_f64();
-        report.stop_reason = answer.stop;
-        if answer.complete {
-            report.set_proved();
-            report.set_reference(Some(hits));
+        pairs.pairs = found;
+        Ok(pairs)
+    }
+
+    /// Closest points of some pairs; `None` for those that the limit came before.
+    fn block(
+        &self,
+        measure: &Measure,
+        pairs: &[Pair],
+        limit: &Limit<'_>,
+    ) -> anyhow::Result<Vec<Vec<Option<Proximity>>>> {
+        let some = |pairs: &[Pair]| -> anyhow::Result<Vec<_>> {
+            if limit.is_reached() {
+                return Ok(vec![None; pairs.len()]);
+            }
+            pairs
+                .iter()
+                .map(|pair| measure.proximity(pair).map(Some))
+                .collect()
+        };
+        match self.threads {
+            1 => pairs.chunks(MEASURED_AT_ONCE).map(some).collect(),
+            _ => pairs.par_chunks(MEASURED_AT_ONCE).map(some).collect(),
         }
-        report
     }
 }
 
-/// The distance of a contact: within one unit in the last place, and below the threshold, which it is decided to be.
-pub(super) fn distance(scene: &scene::World, contact: Contact, threshold: f64) -> anyhow::Result<f64> {
-    Ok(scene.proximity(contact)?.distance.min(threshold.next_down()))
+/// A distance, within one unit in the last place, kept below the threshold: the pair is decided to be.
+pub(super) fn capped(distance: f64, threshold: f64) -> f64 {
+    distance.min(threshold.next_down())
 }

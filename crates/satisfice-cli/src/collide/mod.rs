@@ -1,34 +1,41 @@
 //! `satisfice collide`: pairs of mesh features that are closer than a threshold.
 
 pub(crate) mod arguments;
+mod csv;
 mod exact;
+mod files;
+pub(crate) mod inputs;
+mod pairs;
 mod picture;
 mod report;
 mod scene;
 mod search;
+mod summary;
+mod verify;
 mod warnings;
+mod weld;
 
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex};
 
-use anyhow::{Context, bail};
-use satisfice::engine;
-use satisfice_catalogue::{Mismatch, RunReport, json};
+use anyhow::bail;
+use satisfice::{Cancel, engine};
+use satisfice_catalogue::json;
 use satisfice_collision::broad::Method;
-use satisfice_collision::scene::{Completeness, Contact, Skips};
-use serde::Deserialize;
+use satisfice_collision::scene::{Completeness, Skips};
 
-use crate::{interrupt, message, output, reference, summary};
+use crate::{interrupt, message, output, reference};
 use arguments::{CollideArguments, Find};
 use exact::{Exact, METHODS};
-use report::Report;
+use files::Files;
+use inputs::Inputs;
+use pairs::Pairs;
+use report::{Head, Report};
 use scene::{Pair, World};
+pub(crate) use verify::verify;
 
 /// The problem's name in a report.
 pub(crate) const PROBLEM: &str = "collide";
-/// The pairs of a scene are not counted beyond this: they would fill the memory.
-const MOST_COUNTED: usize = 100_000_000;
 
 pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     let engines = || engine::all().iter().map(|entry| entry.name);
@@ -38,58 +45,120 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         return Err(satisfice::Error::unknown("method", &arguments.method, methods).into());
     }
     check(arguments, exact.is_some())?;
-    let world = World::read(scene::Request {
-        paths: arguments.meshes.clone(),
+    let world = Arc::new(World::read(scene::Request {
+        inputs: Inputs {
+            paths: arguments.meshes.clone(),
+            format: arguments.format.clone(),
+            at: arguments.at.clone(),
+            weld: arguments.weld,
+        },
         kind: arguments.pairs.into(),
         threshold: arguments.threshold,
         within: arguments.within,
         ring_width: arguments.ring_width,
         find: arguments.find.find(),
-    })?;
-    let world = Arc::new(world);
+    })?);
     let cancel = interrupt::listen()?;
-    let (record, skips, reference, mut files) = if let Some(&(name, method)) = exact {
-        let files = Files::open(arguments)?;
-        warn(&world);
-        let (time, hits) = arguments.search.limits();
-        let found = Exact {
-            name,
-            method,
-            time,
-            hits,
-            threads: arguments.search.threads(),
-            cancel: &cancel,
-        }
-        .find(&world)?;
-        (found.report, found.skips, Vec::new(), files)
-    } else {
-        let mut spec = arguments.search.spec(&arguments.method)?;
-        if arguments.prune {
-            spec = spec.set("prune", "yes");
-        }
-        let files = Files::open(arguments)?;
-        warn(&world);
-        let mut record = search::find(&world, &spec, &cancel)?;
-        let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));
-        let (counted, kept) = (Arc::clone(&world), Arc::clone(&reference));
-        record.set_reference(reference::wait_for(
-            "the scene",
-            reference::Patience::Unlimited,
-            &cancel,
-            move || count(&counted, &kept),
-        ));
-        let (all, skips) = reference
-            .lock()
-            .map(|mut kept| std::mem::take(&mut *kept))
-            .unwrap_or_default();
-        (record, skips, all, files)
+    let mut answer = match exact {
+        Some(&(name, method)) => by_exact_method(arguments, &world, name, method, &cancel)?,
+        None => by_engine(arguments, &world, &cancel)?,
     };
+    let files = &mut answer.files;
+    let report = Report::new(answer.head, answer.pairs, &answer.skips, &world);
     if let Some(file) = &mut files.picture {
-        let contacts = world.contacts(&pairs(&record)?);
-        let missed = picture::missed(&reference, &contacts);
-        file.write(&picture::draw(&world, arguments.up, &contacts, &missed)?)?;
+        let missed = picture::missed(&answer.reference, &report.pairs.pairs);
+        file.write(&picture::draw(
+            &world,
+            arguments.up,
+            &report.pairs.pairs,
+            &missed,
+        )?)?;
     }
-    files.finish(&Report::new(record, &skips, &world)?, &world)
+    if let Some(file) = &mut files.json {
+        file.write_by(&mut |out| json::write(&report, out))?;
+    }
+    if let Some(file) = &mut files.csv {
+        file.write_by(&mut |out| csv::write(&report.pairs, &world, out))?;
+    }
+    if files.summary {
+        output::print(summary::summary(&report).as_bytes())?;
+    }
+    Ok(ExitCode::from(u8::from(report.head.hits == 0)))
+}
+
+/// What a method found, and where it goes.
+struct Answer {
+    head: Head,
+    pairs: Pairs,
+    skips: Skips,
+    /// All pairs that there are, to show which an engine missed.
+    reference: Vec<Pair>,
+    files: Files,
+}
+
+fn by_exact_method(
+    arguments: &CollideArguments,
+    world: &World,
+    name: &str,
+    method: Method,
+    cancel: &Cancel,
+) -> anyhow::Result<Answer> {
+    let files = Files::open(arguments)?;
+    warn(world);
+    let (time, hits) = arguments.search.limits();
+    let how = Exact {
+        method,
+        time,
+        hits,
+        most: usize::try_from(arguments.max_pairs).unwrap_or(usize::MAX),
+        witnesses: arguments.witnesses,
+        threads: arguments.search.threads(),
+        cancel,
+    };
+    let found = how.find(world)?;
+    if found.pairs.len() == how.most && !found.complete && hits.is_none() {
+        message::say(format_args!(
+            "warning: the list ends after {} pairs; --max-pairs N lists more, in about 40 bytes of memory each",
+            how.most
+        ));
+    }
+    Ok(Answer {
+        head: Head::of_exact(name, &how, &found, world),
+        pairs: found.pairs,
+        skips: found.skips,
+        reference: Vec::new(),
+        files,
+    })
+}
+
+fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) -> anyhow::Result<Answer> {
+    let mut spec = arguments.search.spec(&arguments.method)?;
+    if arguments.prune {
+        spec = spec.set("prune", "yes");
+    }
+    let files = Files::open(arguments)?;
+    warn(world);
+    let (mut report, pairs) = search::find(world, &spec, arguments.witnesses, cancel)?;
+    let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));
+    let (counted, kept) = (Arc::clone(world), Arc::clone(&reference));
+    let most = usize::try_from(arguments.max_pairs).unwrap_or(usize::MAX);
+    report.set_reference(reference::wait_for(
+        "the scene",
+        reference::Patience::Unlimited,
+        cancel,
+        move || count(&counted, most, &kept),
+    ));
+    let (reference, skips) = reference
+        .lock()
+        .map(|mut kept| std::mem::take(&mut *kept))
+        .unwrap_or_default();
+    Ok(Answer {
+        head: Head::of_search(report, world),
+        pairs,
+        skips,
+        reference,
+        files,
+    })
 }
 
 /// Refuses options that do not go together, before anything is read.
@@ -123,77 +192,20 @@ fn warn(world: &World) {
     }
 }
 
-/// Counts the pairs by an exact method; keeps them, and what was skipped.
-fn count(world: &World, kept: &Mutex<(Vec<Contact>, Skips)>) -> Option<u64> {
+/// Counts the pairs by an exact method; keeps them, and what was skipped, if they are at most so many.
+fn count(world: &World, most: usize, kept: &Mutex<(Vec<Pair>, Skips)>) -> Option<u64> {
     let mut scene = world.scene(Method::Auto).ok()?;
     let mut pass = scene.pass();
-    let done = scene.advance(&mut pass, &mut |found| found > MOST_COUNTED).ok()?;
+    let done = scene.advance(&mut pass, &mut |found| found > most).ok()?;
     if done != Completeness::Proved {
-        return None;
+        drop(pass);
+        return scene.count_until(&|_| false).ok().map(|(count, _)| count);
     }
-    let frame = scene.frame_of(&pass);
-    let count = frame.contacts.len() as u64;
+    let mut pairs: Vec<Pair> = world.pairs(scene.found_by(&pass)).collect();
+    pairs.sort_unstable_by_key(Pair::order);
+    let count = pairs.len() as u64;
     if let Ok(mut kept) = kept.lock() {
-        *kept = (frame.contacts, frame.skips);
+        *kept = (pairs, pass.skips());
     }
     Some(count)
-}
-
-/// The pairs that a record lists.
-fn pairs(record: &RunReport) -> anyhow::Result<Vec<Pair>> {
-    let solutions = record.solutions.iter();
-    let pairs = solutions.map(|found| Pair::deserialize(&found.solution));
-    Ok(pairs.collect::<Result<_, _>>()?)
-}
-
-/// Where the results go.
-struct Files {
-    json: Option<output::Output>,
-    csv: Option<output::Output>,
-    picture: Option<output::Output>,
-    summary: bool,
-}
-
-impl Files {
-    fn open(arguments: &CollideArguments) -> anyhow::Result<Self> {
-        let (
-            stdout,
-            CollideArguments {
-                json, out, picture, ..
-            },
-        ) = (Path::new("-"), arguments);
-        let to_stdout = [json, out, picture]
-            .into_iter()
-            .filter(|path| path.as_deref() == Some(stdout))
-            .count();
-        if to_stdout > 1 {
-            bail!("only one of --json, --out and --picture can go to stdout: name files for the others");
-        }
-        Ok(Self {
-            json: output::open(json.as_ref())?,
-            csv: output::open(out.as_ref())?,
-            picture: output::open(picture.as_ref())?,
-            summary: to_stdout == 0,
-        })
-    }
-
-    fn finish(&mut self, report: &Report, world: &World) -> anyhow::Result<ExitCode> {
-        if let Some(file) = &mut self.json {
-            file.write(&json::to_vec(report)?)?;
-        }
-        if let Some(file) = &mut self.csv {
-            file.write(report.csv().as_bytes())?;
-        }
-        if self.summary {
-            output::print(report.summary(world).as_bytes())?;
-        }
-        Ok(summary::exit_code(&report.run))
-    }
-}
-
-/// Reads the meshes of a report again and measures its pairs anew.
-pub(crate) fn verify(text: &[u8]) -> anyhow::Result<Vec<Mismatch>> {
-    let report: Report = serde_json::from_slice(text).context("the report is none of `collide --json`")?;
-    let world = World::of_report(&report.run).context("the scene of the report cannot be built")?;
-    report.verify(&world)
 }

@@ -5,8 +5,6 @@ use std::path::Path;
 
 use anyhow::bail;
 use satisfice_collision::FeatureKind;
-use satisfice_collision::broad::Method;
-use satisfice_collision::scene::Contact;
 use satisfice_picture::{Picture, Up, View};
 
 use super::arguments::Axis;
@@ -17,7 +15,7 @@ const HEIGHT: u32 = 1000;
 /// More marks than this cover each other; evenly chosen ones are drawn then.
 const MARKS: usize = 20_000;
 
-/// Refuses what is no picture, before the work begins.
+/// Refuses a file that is not a picture, before the work begins.
 pub(super) fn check(path: Option<&Path>) -> anyhow::Result<()> {
     if let Some(path) = path
         && path != Path::new("-")
@@ -30,7 +28,7 @@ pub(super) fn check(path: Option<&Path>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Which axis points upwards where nobody says so: y in OBJ and PLY, as most viewers take it, z in STL, as printers do.
+/// The axis that points upwards by default: y in most formats, as viewers take them, z in STL, as printers do.
 fn usual_up(mesh: &Path) -> Axis {
     let is_stl = mesh
         .extension()
@@ -38,15 +36,15 @@ fn usual_up(mesh: &Path) -> Axis {
     if is_stl { Axis::Z } else { Axis::Y }
 }
 
-/// The scene with the pairs that were found, and, where they are known, those that were not.
+/// The scene with the pairs that were found and, if they are known, those that were missed.
 pub(super) fn draw(
     world: &World,
     up: Option<Axis>,
-    found: &[Contact],
-    missed: &[Contact],
+    found: &[Pair],
+    missed: &[Pair],
 ) -> anyhow::Result<Vec<u8>> {
-    let first = world.request.paths.first();
-    let up = up.or(first.map(|path| usual_up(path))).unwrap_or(Axis::Z);
+    let first = world.bodies.first();
+    let up = up.or(first.map(|body| usual_up(&body.file))).unwrap_or(Axis::Z);
     let view = View {
         up: match up {
             Axis::X => Up::X,
@@ -56,30 +54,27 @@ pub(super) fn draw(
         ..View::default()
     };
     let mut picture = Picture::new(WIDTH, HEIGHT, view);
-    world.bodies.iter().for_each(|mesh| picture.body(mesh));
+    world.bodies.iter().for_each(|body| picture.body(&body.mesh));
     let (kind_a, kind_b) = world.kinds();
-    for Pair { a, b } in world.pairs(found) {
-        for (kind, Feature { body, feature }) in [(kind_a, a), (kind_b, b)] {
+    for Pair { a, b } in found {
+        for (kind, &Feature { body, feature }) in [(kind_a, a), (kind_b, b)] {
             if kind == FeatureKind::Triangle {
-                picture.highlight(body, feature);
+                picture.highlight(body as usize, feature);
             }
         }
     }
-    let scene = world.scene(Method::Auto)?;
-    for (contacts, was_found) in [(found, true), (missed, false)] {
-        for contact in contacts.iter().step_by(contacts.len().div_ceil(MARKS).max(1)) {
-            let nearest = scene.proximity(*contact)?;
+    let measure = world.measure()?;
+    for (pairs, was_found) in [(found, true), (missed, false)] {
+        for pair in pairs.iter().step_by(pairs.len().div_ceil(MARKS).max(1)) {
+            let nearest = measure.proximity(pair)?;
             picture.pair(nearest.point_a, nearest.point_b, was_found);
         }
     }
     Ok(picture.png()?)
 }
 
-/// What `all` has and `found` has not.
-pub(super) fn missed(all: &[Contact], found: &[Contact]) -> Vec<Contact> {
+/// The pairs of `all` that are not in `found`.
+pub(super) fn missed(all: &[Pair], found: &[Pair]) -> Vec<Pair> {
     let found: BTreeSet<_> = found.iter().collect();
-    all.iter()
-        .filter(|contact| !found.contains(contact))
-        .copied()
-        .collect()
+    all.iter().filter(|pair| !found.contains(pair)).copied().collect()
 }

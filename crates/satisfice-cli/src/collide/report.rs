@@ -1,219 +1,211 @@
-//! The report of a collision run: the record, its pairs by body and feature, and what was skipped.
+//! The report of a collision run: what was asked, how complete the answer is, and its pairs.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
+use std::time::Duration;
 
-use satisfice::StopReason;
-use satisfice_catalogue::RunReport;
-use satisfice_catalogue::report::Solution;
-use satisfice_catalogue::verify::{self, LISTED_BEFORE, Mismatch};
-use satisfice_collision::FeatureKind;
+use satisfice::{Completeness, Method as Estimate, StopReason};
+use satisfice_catalogue::report::{Best, recall};
+use satisfice_catalogue::{Limits, RunReport, Settings};
+use satisfice_collision::broad::Method;
 use satisfice_collision::scene::Skips;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
-use super::arguments::Find;
-use super::scene::{Feature, Pair, World};
-use crate::summary;
+use super::PROBLEM;
+use super::exact::{Exact, Found};
+use super::pairs::{Line, Pairs};
+use super::scene::World;
 
-/// What `collide --json` writes.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Report {
-    #[serde(flatten)]
-    pub(super) run: RunReport,
-    /// The pairs found, in the order of the solutions.
-    pairs: Vec<Found>,
-    /// Bodies of which a pair is listed, `[a, b]` with `a <= b`.
-    touching: BTreeSet<[usize; 2]>,
-    /// Why pairs of bodies or of features were left out, and how many.
-    skipped: BTreeMap<String, u64>,
-}
-
-/// A pair with its distance.
+/// What is said of the run as a whole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Found {
-    a: Listed,
-    b: Listed,
-    distance: f64,
+pub(super) struct Head {
+    pub(super) problem: String,
+    pub(super) problem_parameters: Settings,
+    /// The exact method or the engine.
+    pub(super) engine: String,
+    pub(super) engine_parameters: Settings,
+    /// In the unit of the meshes.
+    pub(super) threshold: f64,
+    pub(super) seed: u64,
+    pub(super) budget: Limits,
+    /// Distances that were computed; by an engine, also lower bounds and repeated pairs.
+    pub(super) evaluations: u64,
+    /// Seconds from the start to the last distance.
+    pub(super) elapsed_seconds: f64,
+    /// How much of that was beyond the time limit.
+    pub(super) overshoot_seconds: f64,
+    pub(super) stop_reason: StopReason,
+    /// How many pairs are listed.
+    pub(super) hits: u64,
+    /// How many pairs there are, if that is known.
+    pub(super) reference_hits: Option<u64>,
+    pub(super) recall: Option<f64>,
+    /// Whether all pairs are listed, as was proved.
+    pub(super) completeness: Completeness,
+    /// The closest pair that an engine saw, within the threshold or not.
+    pub(super) best: Option<Best>,
+    /// Listed pairs without a distance, because the time ended.
+    pub(super) unmeasured: u64,
+    pub(super) unseen_estimate: Option<f64>,
+    pub(super) unseen_interval: Option<(f64, Option<f64>)>,
+    pub(super) unseen_confidence: Option<f64>,
+    pub(super) unseen_method: Option<Estimate>,
+    pub(super) version: String,
 }
 
-/// A feature, with its ends if it is an edge: files do not number those.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Listed {
-    #[serde(flatten)]
-    feature: Feature,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    vertices: Option<[u32; 2]>,
-}
-
-impl Listed {
-    fn new(feature: Feature, kind: FeatureKind, world: &World) -> Self {
-        let edges = || {
-            world
-                .bodies
-                .get(feature.body)?
-                .edges()
-                .get(feature.feature as usize)
+impl Head {
+    /// Of an exact method.
+    pub(super) fn of_exact(name: &str, how: &Exact<'_>, found: &Found, world: &World) -> Self {
+        let listed = found.pairs.len() as u64;
+        // Brute force measures every pair, the others those that they find.
+        let evaluations = match found.complete && how.method == Method::BruteForce {
+            true => world.size() - found.skips.mesh_neighbours,
+            false => listed - found.pairs.unmeasured() as u64,
         };
-        let vertices = if kind == FeatureKind::Edge {
-            edges().copied()
-        } else {
-            None
-        };
-        Self { feature, vertices }
+        let late = how
+            .time
+            .map_or(Duration::ZERO, |time| found.elapsed.saturating_sub(time));
+        Self {
+            problem: PROBLEM.to_owned(),
+            problem_parameters: world.settings(),
+            engine: name.to_owned(),
+            engine_parameters: Settings::default(),
+            threshold: world.request.threshold,
+            seed: 0,
+            budget: Limits {
+                time: how.time,
+                hits: how.hits,
+                ..Limits::default()
+            },
+            evaluations,
+            elapsed_seconds: found.elapsed.as_secs_f64(),
+            overshoot_seconds: late.as_secs_f64(),
+            stop_reason: found.stop,
+            hits: listed,
+            reference_hits: found.count,
+            recall: found.count.and_then(|count| recall(listed, count)),
+            completeness: match found.complete {
+                true => Completeness::Proved,
+                false => Completeness::Unknown,
+            },
+            best: None,
+            unmeasured: found.pairs.unmeasured() as u64,
+            unseen_estimate: found.complete.then_some(0.0),
+            unseen_interval: found.complete.then_some((0.0, Some(0.0))),
+            unseen_confidence: found.complete.then_some(1.0),
+            unseen_method: found.complete.then_some(Estimate::Proved),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+
+    /// Of a search by an engine.
+    pub(super) fn of_search(report: RunReport, world: &World) -> Self {
+        Self {
+            problem: PROBLEM.to_owned(),
+            problem_parameters: world.settings(),
+            engine: report.spec.engine,
+            engine_parameters: report.spec.engine_parameters,
+            threshold: world.request.threshold,
+            seed: report.spec.seed,
+            budget: report.spec.budget,
+            evaluations: report.counts.evaluations,
+            elapsed_seconds: report.elapsed_seconds,
+            overshoot_seconds: report.overshoot_seconds,
+            stop_reason: report.stop_reason,
+            hits: report.hits,
+            reference_hits: report.reference_hits,
+            recall: report.recall,
+            completeness: report.completeness,
+            best: report.best,
+            unmeasured: 0,
+            unseen_estimate: report.unseen_estimate,
+            unseen_interval: report.unseen_interval,
+            unseen_confidence: report.unseen_confidence,
+            unseen_method: report.unseen_method,
+            version: report.version,
+        }
     }
 }
 
-impl Found {
-    fn new(solution: &Solution, world: &World) -> Result<Self, serde_json::Error> {
-        let Pair { a, b } = Pair::deserialize(&solution.solution)?;
-        let (kind_a, kind_b) = world.kinds();
-        Ok(Self {
-            a: Listed::new(a, kind_a, world),
-            b: Listed::new(b, kind_b, world),
-            distance: solution.fitness,
-        })
-    }
-
-    fn bodies(&self) -> [usize; 2] {
-        let (a, b) = (self.a.feature.body, self.b.feature.body);
-        [a.min(b), a.max(b)]
-    }
+/// A body as a report names it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct BodyLine {
+    name: String,
+    file: String,
+    vertices: usize,
+    edges: usize,
+    triangles: usize,
 }
 
-impl Report {
-    pub(super) fn new(record: RunReport, skips: &Skips, world: &World) -> anyhow::Result<Self> {
-        let solutions = record.solutions.iter();
-        let pairs = solutions
-            .map(|solution| Found::new(solution, world))
-            .collect::<Result<Vec<_>, _>>()?;
+/// A whole report.
+pub(super) struct Report<'a> {
+    pub(super) head: Head,
+    pub(super) pairs: Pairs,
+    /// Bodies of which a pair is listed, `[a, b]` with `a <= b`.
+    pub(super) touching: BTreeSet<[usize; 2]>,
+    /// Why pairs of bodies or of features were left out, and how many.
+    pub(super) skipped: BTreeMap<String, u64>,
+    pub(super) world: &'a World,
+}
+
+impl<'a> Report<'a> {
+    pub(super) fn new(head: Head, pairs: Pairs, skips: &Skips, world: &'a World) -> Self {
         let reasons = skips.by_reason().into_iter();
-        Ok(Self {
-            touching: pairs.iter().map(Found::bodies).collect(),
+        let bodies = pairs.pairs.iter().map(|pair| {
+            let [a, b] = pair.bodies();
+            [a.min(b), a.max(b)]
+        });
+        Self {
+            touching: bodies.collect(),
             skipped: reasons
                 .filter(|(_, count)| *count > 0)
                 .map(|(reason, count)| (reason.to_owned(), count))
                 .collect(),
-            run: record,
+            head,
             pairs,
-        })
-    }
-
-    /// The pairs as CSV with a head line.
-    pub(super) fn csv(&self) -> String {
-        let mut text = "a_body,a_feature,b_body,b_feature,distance\n".to_owned();
-        for Found { a, b, distance } in &self.pairs {
-            let (a, b) = (a.feature, b.feature);
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{},{},{},{},{distance}",
-                a.body, a.feature, b.body, b.feature
-            );
+            world,
         }
-        text
     }
+}
 
-    /// What a person reads.
-    pub(super) fn summary(&self, world: &World) -> String {
-        let (kind_a, kind_b) = world.kinds();
-        let name = |kind: FeatureKind, listed: &Listed| {
-            let Feature { body, feature } = listed.feature;
-            let ends = listed
-                .vertices
-                .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
-            format!("{} {feature}{ends} of body {body}", kind.name())
-        };
-        let mut text = summary::summary_with(&self.run, |solution| match Found::new(solution, world) {
-            Ok(found) => format!("{} and {}", name(kind_a, &found.a), name(kind_b, &found.b)),
-            Err(_) => solution.solution.to_string(),
+/// What `collide --json` writes. The pairs are made one by one while they are written.
+impl Serialize for Report<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        struct Listed<'r>(&'r Report<'r>);
+        impl Serialize for Listed<'_> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                self.0.pairs.serialize(self.0.world, serializer)
+            }
+        }
+        #[derive(Serialize)]
+        struct Whole<'r> {
+            #[serde(flatten)]
+            head: &'r Head,
+            bodies: Vec<BodyLine>,
+            pairs: Listed<'r>,
+            touching: &'r BTreeSet<[usize; 2]>,
+            skipped: &'r BTreeMap<String, u64>,
+        }
+        let bodies = self.world.bodies.iter().map(|body| BodyLine {
+            name: body.name.clone(),
+            file: body.file.to_string_lossy().into_owned(),
+            vertices: body.mesh.vertices().len(),
+            edges: body.mesh.edges().len(),
+            triangles: body.mesh.triangles().len(),
         });
-        let mut line = |name: &str, value: String| {
-            let _ = writeln!(text, "  {name:<13} {value}");
-        };
-        let was_stopped = matches!(self.run.stop_reason, StopReason::Cancelled | StopReason::Time);
-        let asked = match world.request.find {
-            Find::All => None,
-            Find::Touching if was_stopped => {
-                Some("one pair of each two bodies that were found to touch; others may touch as well")
-            }
-            Find::Touching => {
-                Some("one pair of each two bodies that touch; no other bodies do, that is proved")
-            }
-            Find::First => Some("one pair, whichever is found first"),
-            Find::Closest(_) if was_stopped => Some("the closest of the pairs found; others may be closer"),
-            Find::Closest(_) => Some("the closest pairs, that is proved"),
-        };
-        if let Some(asked) = asked {
-            line("listed", asked.to_owned());
+        Whole {
+            head: &self.head,
+            bodies: bodies.collect(),
+            pairs: Listed(self),
+            touching: &self.touching,
+            skipped: &self.skipped,
         }
-        if world.bodies.len() > 1 && !self.pairs.is_empty() {
-            let shown: Vec<_> = self
-                .touching
-                .iter()
-                .take(10)
-                .map(|[a, b]| format!("{a}-{b}"))
-                .collect();
-            let more = if self.touching.len() > shown.len() {
-                " ..."
-            } else {
-                ""
-            };
-            line("bodies", format!("{}{more}", shown.join(", ")));
-        }
-        for (reason, count) in &self.skipped {
-            line("skipped", format!("{count} {reason}"));
-        }
-        text
+        .serialize(serializer)
     }
+}
 
-    /// What of the report is not true of the scene.
-    pub(super) fn verify(&self, world: &World) -> anyhow::Result<Vec<Mismatch>> {
-        let mut mismatches = verify::accounting(&self.run);
-        let mut seen = BTreeSet::new();
-        // Made here, so that what fails is told as an error.
-        world.jobs()?;
-        mismatches.extend(verify::solutions_by(
-            &self.run,
-            world.request.threshold,
-            |listed| {
-                let pair = Pair::deserialize(&listed.solution).map_err(|error| error.to_string())?;
-                let known = world.has(&pair).map_err(|error| error.to_string())?;
-                if !known {
-                    return Err("a pair of features of this scene, the lesser first".to_owned());
-                }
-                if !seen.insert(pair) {
-                    return Err(LISTED_BEFORE.to_owned());
-                }
-                world.fitness(&pair).map_err(|error| error.to_string())
-            },
-        ));
-        mismatches.extend(verify::best_by(&self.run, |solution| {
-            let pair = Pair::deserialize(solution).map_err(|error| error.to_string())?;
-            world.fitness(&pair).map_err(|error| error.to_string())
-        }));
-        let solutions = self.run.solutions.iter();
-        let listed: Vec<_> = solutions
-            .filter_map(|solution| Found::new(solution, world).ok())
-            .collect();
-        if self.pairs != listed {
-            let place = self.pairs.iter().zip(&listed).position(|(a, b)| a != b);
-            let place = place.map_or_else(|| "pairs".to_owned(), |index| format!("pairs[{index}]"));
-            mismatches.push(Mismatch::new(
-                place,
-                "another pair or distance",
-                "what the solutions say",
-            ));
-        }
-        let touching: BTreeSet<_> = listed.iter().map(Found::bodies).collect();
-        if self.touching != touching {
-            mismatches.push(Mismatch::new("touching", "other bodies", "those of the pairs"));
-        }
-        // Where deciding every pair takes too long, what the report says of the number of pairs stays as it is.
-        let reference = match world.is_small() {
-            true => Some(world.reference_hits()?),
-            false => self.run.reference_hits,
-        };
-        mismatches.extend(verify::reference(&self.run, reference));
-        Ok(mismatches)
-    }
+/// The lists of a report that was read.
+#[derive(Debug, Deserialize)]
+pub(super) struct Lists {
+    pub(super) pairs: Vec<Line>,
+    pub(super) touching: BTreeSet<[usize; 2]>,
 }

@@ -1,30 +1,30 @@
-//! The scene of the command: bodies, and which of them may have pairs with which.
+//! The scene of the command: bodies, and which of them can have pairs with which.
 
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use satisfice::SatisficingProblem;
-use satisfice_catalogue::{RunReport, Settings};
+use satisfice_catalogue::Settings;
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
+use satisfice_collision::distance::Proximity;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::problem::FeaturePairs;
 use satisfice_collision::scene::{self, Body, BodyId, Contact};
-use satisfice_collision::{Mesh, io};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::arguments::Find;
+use super::inputs::{Inputs, NamedBody};
 
-/// Up to so many nanoseconds of brute force are spent on checking a report.
+/// Checking a report by brute force may take so many nanoseconds.
 const PATIENCE: u64 = 5_000_000_000;
 
 /// A feature of a body: a vertex, an edge or a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Feature {
-    /// Number of the mesh on the command line, from 0.
-    pub(super) body: usize,
+    /// Number of the body, from 0, in the order of the command line and of the files.
+    pub(super) body: u32,
     /// Number of the feature in its mesh, from 0.
     pub(super) feature: u32,
 }
@@ -34,6 +34,29 @@ pub(super) struct Feature {
 pub(super) struct Pair {
     pub(super) a: Feature,
     pub(super) b: Feature,
+}
+
+impl Pair {
+    /// The order of lists: by bodies, then by features.
+    pub(super) fn order(&self) -> [u32; 4] {
+        [self.a.body, self.b.body, self.a.feature, self.b.feature]
+    }
+
+    /// The bodies of the first and of the second feature.
+    pub(super) fn bodies(&self) -> [usize; 2] {
+        [self.a.body as usize, self.b.body as usize]
+    }
+}
+
+impl std::fmt::Display for Pair {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { a, b } = self;
+        write!(
+            f,
+            "{} of body {} and {} of body {}",
+            a.feature, a.body, b.feature, b.body
+        )
+    }
 }
 
 /// The pairs of two bodies, or of one with itself, as a problem for an engine.
@@ -46,16 +69,13 @@ pub(super) struct Job {
 impl Job {
     /// The pair of features that a solution of this job is.
     pub(super) fn pair(&self, (a, b): (u32, u32)) -> Pair {
-        let [body_a, body_b] = self.bodies;
+        let side = |body: usize, feature| Feature {
+            body: body as u32,
+            feature,
+        };
         Pair {
-            a: Feature {
-                body: body_a,
-                feature: a,
-            },
-            b: Feature {
-                body: body_b,
-                feature: b,
-            },
+            a: side(self.bodies[0], a),
+            b: side(self.bodies[1], b),
         }
     }
 }
@@ -63,7 +83,7 @@ impl Job {
 /// What makes a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Request {
-    pub(super) paths: Vec<PathBuf>,
+    pub(super) inputs: Inputs,
     pub(super) kind: PairKind,
     pub(super) threshold: f64,
     pub(super) within: bool,
@@ -75,30 +95,29 @@ pub(super) struct Request {
 #[derive(Debug)]
 pub(super) struct World {
     pub(super) request: Request,
-    pub(super) bodies: Vec<Mesh>,
+    pub(super) bodies: Vec<NamedBody>,
     pub(super) threshold: Threshold,
     jobs: OnceLock<Vec<Job>>,
 }
 
 impl World {
     pub(super) fn read(request: Request) -> anyhow::Result<Self> {
-        if request.paths.len() < 2 && !request.within {
-            bail!("one mesh has no partner: name a second one, or look for pairs within it by --self");
+        let bodies = request.inputs.read()?;
+        if bodies.is_empty() {
+            bail!("the scene has no body: no node has a mesh");
         }
-        let bodies = request
-            .paths
-            .iter()
-            .map(io::read)
-            .collect::<Result<Vec<Mesh>, _>>()?;
+        if bodies.len() < 2 && !request.within {
+            bail!("one body has no partner: name a second mesh, or look for pairs within it by --self");
+        }
         let world = Self {
             threshold: Threshold::new(request.threshold)?,
             request,
             bodies,
             jobs: OnceLock::new(),
         };
-        if world.couples().is_empty() {
+        if world.couples().next().is_none() {
             let (a, b) = world.kinds();
-            let lacks = |kind: FeatureKind| world.bodies.iter().all(|mesh| kind.count(mesh) == 0);
+            let lacks = |kind: FeatureKind| world.bodies.iter().all(|body| kind.count(&body.mesh) == 0);
             let missing = if lacks(a) { a } else { b };
             let plural = missing.plural();
             bail!(
@@ -114,9 +133,8 @@ impl World {
         Ok(world)
     }
 
-    /// The scene that a report tells of.
-    pub(super) fn of_report(record: &RunReport) -> anyhow::Result<Self> {
-        let parameters = &record.spec.problem_parameters;
+    /// The scene with these [settings](Self::settings), read again.
+    pub(super) fn of_settings(parameters: &Settings) -> anyhow::Result<Self> {
         let parameter = |name| {
             parameters
                 .get(name)
@@ -127,9 +145,21 @@ impl World {
                 .as_str()
                 .with_context(|| format!("`{name}` is no text"))
         };
-        Self::read(Request {
+        let optional = |name| parameters.get(name).cloned().unwrap_or(Value::Null);
+        let inputs = Inputs {
             paths: serde_json::from_value(parameter("meshes")?.clone())
                 .context("`meshes` is no list of files")?,
+            format: None,
+            at: serde_json::from_value::<Option<_>>(optional("at"))
+                .context("`at` is no list of placements")?
+                .unwrap_or_default(),
+            weld: serde_json::from_value(optional("weld")).context("`weld` is no number")?,
+        };
+        if inputs.reads_stdin() {
+            bail!("a mesh was read from standard input, which cannot be read again");
+        }
+        Self::read(Request {
+            inputs,
             kind: text("pairs")?.parse()?,
             threshold: parameter("threshold")?
                 .as_f64()
@@ -154,9 +184,16 @@ impl World {
     /// What a report repeats.
     pub(super) fn settings(&self) -> Settings {
         let mut settings = Settings::default();
-        let paths = self.request.paths.iter();
+        let inputs = &self.request.inputs;
+        let paths = inputs.paths.iter();
         let meshes: Vec<Value> = paths.map(|path| path.to_string_lossy().into()).collect();
         settings.set("meshes", meshes);
+        if !inputs.at.is_empty() {
+            settings.set("at", inputs.at.iter().map(|at| json!(at)).collect::<Vec<Value>>());
+        }
+        if let Some(distance) = inputs.weld {
+            settings.set("weld", distance);
+        }
         settings.set("pairs", self.request.kind.name());
         settings.set("threshold", self.request.threshold);
         settings.set("self", self.request.within);
@@ -176,30 +213,36 @@ impl World {
         self.request.kind.features()
     }
 
+    /// Whether a file holds several bodies, so that names say more than numbers.
+    pub(super) fn has_scenes(&self) -> bool {
+        self.bodies.len() > self.request.inputs.paths.len()
+    }
+
     /// The bodies of the first and of the second feature, for every combination that can have pairs.
-    fn couples(&self) -> Vec<[usize; 2]> {
+    fn couples(&self) -> impl Iterator<Item = [usize; 2]> {
         let (kind_a, kind_b) = self.kinds();
-        let all = 0..self.bodies.len();
-        let couples = all.clone().flat_map(|a| all.clone().map(move |b| [a, b]));
-        couples
-            .filter(|&[a, b]| (a != b || self.request.within) && (a <= b || kind_a != kind_b))
-            .filter(|&[a, b]| kind_a.count(&self.bodies[a]) > 0 && kind_b.count(&self.bodies[b]) > 0)
-            .collect()
+        let with = move |kind: FeatureKind| {
+            let bodies = 0..self.bodies.len();
+            bodies.filter(move |&body| kind.count(&self.bodies[body].mesh) > 0)
+        };
+        with(kind_a)
+            .flat_map(move |a| with(kind_b).map(move |b| [a, b]))
+            .filter(move |&[a, b]| (a != b || self.request.within) && (a <= b || kind_a != kind_b))
     }
 
     /// The bodies without a feature of this kind.
     pub(super) fn without(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
         let bodies = self.bodies.iter().enumerate();
-        bodies.filter_map(move |(body, mesh)| (kind.count(mesh) == 0).then_some(body))
+        bodies.filter_map(move |(number, body)| (kind.count(&body.mesh) == 0).then_some(number))
     }
 
-    /// The meshes that have a feature of a pair. They are the bodies of the scene, in this order.
+    /// The bodies that have a feature of a pair. They are the bodies of the scene, in this order.
     fn present(&self) -> Vec<usize> {
         let (kind_a, kind_b) = self.kinds();
-        let has = |&body: &usize| {
+        let has = |body: &usize| {
             [kind_a, kind_b]
                 .iter()
-                .any(|&kind| kind.count(&self.bodies[body]) > 0)
+                .any(|kind| kind.count(&self.bodies[*body].mesh) > 0)
         };
         (0..self.bodies.len()).filter(has).collect()
     }
@@ -208,7 +251,7 @@ impl World {
     pub(super) fn scene(&self, method: Method) -> anyhow::Result<scene::World> {
         let mut scene = scene::World::new(self.request.kind, self.threshold).with_method(method);
         for body in self.present() {
-            let mesh = self.bodies[body].clone();
+            let mesh = (*self.bodies[body].mesh).clone();
             scene.add(if self.request.within {
                 Body::deforming(mesh).beyond_ring(self.ring_width())
             } else {
@@ -218,38 +261,29 @@ impl World {
         Ok(scene)
     }
 
-    /// Contacts of the scene as pairs of features of meshes.
-    pub(super) fn pairs(&self, contacts: &[Contact]) -> Vec<Pair> {
-        let present = self.present();
-        let feature = |body: BodyId, feature| Feature {
-            body: present[body.index()],
-            feature,
-        };
-        let contacts = contacts.iter();
-        let pair = |contact: &Contact| Pair {
-            a: feature(contact.body_a, contact.a),
-            b: feature(contact.body_b, contact.b),
-        };
-        contacts.map(pair).collect()
+    /// Measures pairs that are known.
+    pub(super) fn measure(&self) -> anyhow::Result<Measure> {
+        let mut scene = scene::World::new(self.request.kind, self.threshold);
+        let mut ids = vec![None; self.bodies.len()];
+        for body in self.present() {
+            ids[body] = Some(scene.add(Body::fixed((*self.bodies[body].mesh).clone()))?);
+        }
+        Ok(Measure { scene, ids })
     }
 
-    /// Pairs of features of meshes as contacts of the scene; a mesh that is not there is a body that the scene refuses.
-    pub(super) fn contacts(&self, pairs: &[Pair]) -> Vec<Contact> {
+    /// Contacts of a [scene](Self::scene) as pairs of features of the bodies.
+    pub(super) fn pairs(&self, contacts: impl Iterator<Item = Contact>) -> impl Iterator<Item = Pair> {
         let present = self.present();
-        let body = |mesh: usize| {
-            let place = present
-                .binary_search(&mesh)
-                .ok()
-                .and_then(|at| u32::try_from(at).ok());
-            BodyId::nth(place.unwrap_or(u32::MAX))
-        };
-        let contact = |pair: &Pair| Contact {
-            body_a: body(pair.a.body),
-            body_b: body(pair.b.body),
-            a: pair.a.feature,
-            b: pair.b.feature,
-        };
-        pairs.iter().map(contact).collect()
+        contacts.map(move |contact| {
+            let side = |body: BodyId, feature| Feature {
+                body: present[body.index()] as u32,
+                feature,
+            };
+            Pair {
+                a: side(contact.body_a, contact.a),
+                b: side(contact.body_b, contact.b),
+            }
+        })
     }
 
     /// A problem for every combination of bodies, made when it is first asked for.
@@ -258,11 +292,12 @@ impl World {
             return Ok(jobs);
         }
         let Request { kind, threshold, .. } = self.request;
-        let jobs = self.couples().into_iter().map(|[a, b]| {
+        let jobs = self.couples().map(|[a, b]| {
+            let [first, second] = [a, b].map(|body| &*self.bodies[body].mesh);
             let problem = if a == b {
-                FeaturePairs::within(kind, &self.bodies[a], threshold, self.ring_width())
+                FeaturePairs::within(kind, first, threshold, self.ring_width())
             } else {
-                FeaturePairs::between(kind, &self.bodies[a], &self.bodies[b], threshold)
+                FeaturePairs::between(kind, first, second, threshold)
             };
             problem.map(|problem| Job {
                 bodies: [a, b],
@@ -276,18 +311,25 @@ impl World {
     /// How many pairs of features there are, excluded ones of one body included.
     pub(super) fn size(&self) -> u64 {
         let (kind_a, kind_b) = self.kinds();
-        self.couples().into_iter().fold(0, |sum, [a, b]| {
-            let (m, n) = (
-                kind_a.count(&self.bodies[a]) as u64,
-                kind_b.count(&self.bodies[b]) as u64,
-            );
-            let pairs = if a == b && kind_a == kind_b {
-                m * (m - 1) / 2
-            } else {
-                m.saturating_mul(n)
-            };
-            sum.saturating_add(pairs)
-        })
+        let counts = || {
+            let of = |kind: FeatureKind, body: &NamedBody| kind.count(&body.mesh) as u128;
+            self.bodies
+                .iter()
+                .map(move |body| (of(kind_a, body), of(kind_b, body)))
+        };
+        let sum = |part: fn((u128, u128)) -> u128| counts().map(part).sum::<u128>();
+        let (all, own) = (sum(|(m, _)| m) * sum(|(_, n)| n), sum(|(m, n)| m * n));
+        let between = if kind_a == kind_b {
+            (all - own) / 2
+        } else {
+            all - own
+        };
+        let within = match self.request.within {
+            false => 0,
+            true if kind_a == kind_b => sum(|(m, _)| m * m.saturating_sub(1) / 2),
+            true => own,
+        };
+        u64::try_from(between + within).unwrap_or(u64::MAX)
     }
 
     /// Whether deciding every pair is a matter of seconds.
@@ -308,7 +350,7 @@ impl World {
     /// Whether this is a pair of features of this scene, the first one first.
     pub(super) fn has(&self, pair: &Pair) -> anyhow::Result<bool> {
         let jobs = self.jobs()?;
-        let Some(job) = jobs.iter().find(|job| job.bodies == [pair.a.body, pair.b.body]) else {
+        let Some(job) = jobs.iter().find(|job| job.bodies == pair.bodies()) else {
             return Ok(false);
         };
         let solution = (pair.a.feature, pair.b.feature);
@@ -321,8 +363,30 @@ impl World {
     /// F of a pair that there is: its distance, or what a pair that counts as none has.
     pub(super) fn fitness(&self, pair: &Pair) -> anyhow::Result<f64> {
         let jobs = self.jobs()?;
-        let job = jobs.iter().find(|job| job.bodies == [pair.a.body, pair.b.body]);
+        let job = jobs.iter().find(|job| job.bodies == pair.bodies());
         let job = job.context("a pair of bodies of this scene")?;
         Ok(job.problem.fitness(&(pair.a.feature, pair.b.feature)))
+    }
+}
+
+/// Distances of pairs, without the memory that a search for them needs.
+pub(super) struct Measure {
+    scene: scene::World,
+    ids: Vec<Option<BodyId>>,
+}
+
+impl Measure {
+    /// Distance and closest points of a pair of features.
+    pub(super) fn proximity(&self, pair: &Pair) -> anyhow::Result<Proximity> {
+        let id = |body: u32| self.ids.get(body as usize).copied().flatten();
+        let (Some(body_a), Some(body_b)) = (id(pair.a.body), id(pair.b.body)) else {
+            bail!("{pair}: no pair of this scene");
+        };
+        Ok(self.scene.proximity(Contact {
+            body_a,
+            body_b,
+            a: pair.a.feature,
+            b: pair.b.feature,
+        })?)
     }
 }

@@ -5,25 +5,35 @@ use std::time::Duration;
 use anyhow::bail;
 use satisfice::{Cancel, SatisficingProblem, StopReason};
 use satisfice_catalogue::{Limits, Progress, RunControl, RunReport, RunSpec, run};
-use satisfice_collision::broad::Method;
 use serde_json::json;
 
-use super::PROBLEM;
-use super::exact::distance;
+use super::exact::capped;
+use super::pairs::Pairs;
 use super::scene::World;
 use crate::progress::Bar;
 
-/// Searches each combination of bodies in turn. Time and evaluations are shared out evenly.
-pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Result<RunReport> {
-    // What has no pairs at all shall take no time from the others.
+/// Searches each combination of bodies in turn. Time and evaluations are divided evenly. The solutions of the report are
+/// moved into the pairs.
+pub(super) fn find(
+    world: &World,
+    spec: &RunSpec,
+    witnesses: bool,
+    cancel: &Cancel,
+) -> anyhow::Result<(RunReport, Pairs)> {
+    // Combinations without any pair must not take time from the others.
     let all_jobs = world.jobs()?;
     let mut jobs: Vec<_> = all_jobs.iter().filter(|job| job.problem.has_pairs()).collect();
     if jobs.is_empty() {
         jobs = all_jobs.iter().collect();
     }
     let parts = jobs.len() as u64;
-    let scene = world.scene(Method::Auto)?;
+    let measure = world.measure()?;
     let bar = Bar::new();
+    let mut pairs = Pairs {
+        witnesses: witnesses.then(Vec::new),
+        found: Some(Vec::new()),
+        ..Pairs::default()
+    };
     let mut all: Option<RunReport> = None;
     for (part, job) in (0..).zip(jobs) {
         let mut share = spec.clone();
@@ -44,13 +54,22 @@ pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Re
             ..RunControl::until(cancel)
         };
         let mut report = run(&job.problem, share, control)?;
-        for found in &mut report.solutions {
-            let pair = serde_json::from_value(found.solution.take())?;
-            let pair = job.pair(pair);
-            found.solution = json!(pair);
+        let (evaluations, seconds) = all
+            .as_ref()
+            .map_or((0, 0.0), |all| (all.counts.evaluations, all.elapsed_seconds));
+        for solution in report.solutions.drain(..) {
+            let pair = job.pair(serde_json::from_value(solution.solution)?);
             // As the exact methods give it: to the last digit, where F has ten.
-            for contact in world.contacts(&[pair]) {
-                found.fitness = distance(&scene, contact, world.request.threshold)?;
+            let near = measure.proximity(&pair)?;
+            pairs.pairs.push(pair);
+            pairs
+                .distances
+                .push(capped(near.distance, world.request.threshold));
+            if let Some(witnesses) = &mut pairs.witnesses {
+                witnesses.push(Some(near));
+            }
+            if let Some(found) = &mut pairs.found {
+                found.push((evaluations + solution.evaluation, seconds + solution.seconds));
             }
         }
         if let Some(best) = &mut report.best {
@@ -58,9 +77,7 @@ pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Re
             let pair = job.pair(job.problem.canonical(&pair).unwrap_or(pair));
             best.solution = json!(pair);
             if best.fitness < world.request.threshold {
-                for contact in world.contacts(&[pair]) {
-                    best.fitness = distance(&scene, contact, world.request.threshold)?;
-                }
+                best.fitness = capped(measure.proximity(&pair)?.distance, world.request.threshold);
             }
         }
         let stop = report.stop_reason;
@@ -75,16 +92,10 @@ pub(super) fn find(world: &World, spec: &RunSpec, cancel: &Cancel) -> anyhow::Re
     let Some(all) = all else {
         bail!("the scene has no pair of bodies")
     };
-    Ok(RunReport {
-        spec: RunSpec {
-            problem: PROBLEM.to_owned(),
-            problem_parameters: world.settings(),
-            budget: Limits {
-                evaluations: spec.budget.evaluations.map(|total| total.max(parts)),
-                ..spec.budget
-            },
-            ..all.spec
-        },
-        ..all
-    })
+    let budget = Limits {
+        evaluations: spec.budget.evaluations.map(|total| total.max(parts)),
+        ..spec.budget
+    };
+    let spec = RunSpec { budget, ..all.spec };
+    Ok((RunReport { spec, ..all }, pairs))
 }

@@ -1,8 +1,9 @@
-//! What looks like a slip of units or of scale; the pairs are exact for the numbers as they are all the same.
+//! Signs of wrong units, wrong scales and seams. The pairs are exact for the numbers as they are all the same.
 
-use satisfice_collision::Mesh;
+use satisfice_catalogue::quantity::shown;
 
 use super::scene::World;
+use super::weld;
 
 /// A file in single precision leaves fewer than 3 digits inside a body that lies so many sizes from the origin.
 const FAR: f64 = 1e4;
@@ -12,9 +13,9 @@ const UNLIKE: f64 = 999.0;
 /// One line each, for stderr.
 pub(super) fn warnings(world: &World) -> Vec<String> {
     let mut said = Vec::new();
-    let name = |body: usize| world.request.paths[body].display();
+    let name = |body: usize| &world.bodies[body].name;
     let bodies = || world.bodies.iter().enumerate();
-    let sizes: Vec<f64> = world.bodies.iter().map(Mesh::size).collect();
+    let sizes: Vec<f64> = world.bodies.iter().map(|body| body.mesh.size()).collect();
     let (kind_a, kind_b) = world.kinds();
     for kind in if kind_a == kind_b {
         vec![kind_a]
@@ -34,8 +35,10 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
     let largest = sizes.iter().fold(0.0_f64, |most, &size| most.max(size));
     if largest > 0.0 && threshold > largest {
         said.push(format!(
-            "the threshold {threshold} is larger than every body (the largest is {largest} long), so that most pairs will be found: \
-             is it in the unit of the meshes?"
+            "the threshold {} is larger than every body (the largest is {} long), so that most pairs will be found: \
+             is it in the unit of the meshes?",
+            readable(threshold),
+            readable(largest)
         ));
     }
 
@@ -46,14 +49,14 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
         && most / least > UNLIKE
     {
         said.push(format!(
-            "{} is {:.0} times as large as {}: are both in the same unit?",
+            "{} is {} times as large as {}: are both in the same unit?",
             name(large),
-            most / least,
+            readable(most / least),
             name(small)
         ));
     }
 
-    for (body, mesh) in bodies() {
+    for (body, mesh) in bodies().map(|(number, body)| (number, &body.mesh)) {
         let bounds = mesh.bounds();
         let reach = bounds
             .min
@@ -63,19 +66,74 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
         let step = f64::EPSILON * reach;
         if step > threshold {
             said.push(format!(
-                "{} has coordinates up to {reach:.3e}, where neighbouring numbers are {step:.1e} apart, more than the threshold: \
-                 move it near the origin before it is written",
-                name(body)
+                "{} has coordinates up to {}, where neighbouring numbers are {} apart, more than the threshold: move it near the \
+                 origin before it is written",
+                name(body),
+                readable(reach),
+                readable(step)
             ));
         } else if reach > FAR * mesh.size().max(threshold) {
             said.push(format!(
-                "{} lies {reach:.3e} from the origin, {:.0e} times its size: in a file of single precision (STL, most PLY) its \
-                 coordinates are steps of {:.1e}; move it near the origin before it is written",
+                "{} lies {} from the origin, {} times its size: in a file of single precision (STL, most PLY) its coordinates \
+                 are steps of {}; move it near the origin before it is written",
                 name(body),
-                reach / mesh.size().max(threshold),
-                f64::from(f32::EPSILON) * reach
+                readable(reach),
+                readable(reach / mesh.size().max(threshold)),
+                readable(f64::from(f32::EPSILON) * reach)
             ));
         }
     }
+    said.extend(seams(world));
     said
+}
+
+/// Seams make pairs of a body with itself: the vertices on both sides are not neighbours on the mesh.
+fn seams(world: &World) -> Vec<String> {
+    if !world.request.within || world.request.inputs.weld.is_some() {
+        return Vec::new();
+    }
+    let said = world.bodies.iter().filter_map(|body| {
+        let (count, distance) = weld::seams(&body.mesh).ok()?;
+        (count > 0).then(|| {
+            format!(
+                "{} has {} vertices that lie on others, as at seams: the features on both sides make pairs; --weld {} joins them",
+                body.name,
+                readable(count as f64),
+                readable(distance)
+            )
+        })
+    });
+    said.collect()
+}
+
+/// Three digits, thousands apart, and powers of ten where they are shorter.
+fn readable(x: f64) -> String {
+    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
+    match rounded.abs() {
+        0.0 => "0".to_owned(),
+        v if (1e-3..1e3).contains(&v) => format!("{rounded}"),
+        v if (1e3..1e7).contains(&v) => shown::count(v as u64),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_readable() {
+        for (x, text) in [
+            (0.0, "0"),
+            (1.999_999_9, "2"),
+            (2.5, "2.5"),
+            (5000.0, "5,000"),
+            (1e6, "1,000,000"),
+            (1.000_01e13, "1e13"),
+            (2.22e-4, "2.22e-4"),
+            (540.0, "540"),
+        ] {
+            assert_eq!(readable(x), text);
+        }
+    }
 }

@@ -23,6 +23,7 @@ mod body;
 mod body_tree;
 mod changes;
 mod contact;
+mod count;
 mod deforming;
 mod filter;
 mod membership;

@@ -10,14 +10,14 @@ use crate::broad::{Pair, Watch, inflate, intersection};
 use crate::distance::{Proximity, Threshold};
 
 /// Visits of a tree between two looks at the watch.
-const VISITS: usize = 4096;
+pub(super) const VISITS: usize = 4096;
 /// Contacts of an earlier frame that are tried before a search.
 const LIKELY: usize = 64;
 
 /// Told how many there are by now; says whether to stop.
-type Stop<'a> = &'a (dyn Fn(usize) -> bool + Sync);
+pub(super) type Stop<'a> = &'a (dyn Fn(usize) -> bool + Sync);
 
-fn completeness(watch: &Watch<'_>) -> Completeness {
+pub(super) fn completeness(watch: &Watch<'_>) -> Completeness {
     if watch.stopped() {
         Completeness::Unknown
     } else {
@@ -165,7 +165,7 @@ impl World {
     }
 
     /// The records of the present frame in the order of their bodies.
-    fn by_bodies(&mut self) -> Vec<u32> {
+    pub(super) fn by_bodies(&mut self) -> Vec<u32> {
         self.settle();
         let mut records: Vec<_> = self
             .pairs

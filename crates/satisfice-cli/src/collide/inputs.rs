@@ -1,0 +1,196 @@
+//! The bodies named on the command line: files, scenes, standard input, their placements, and welding.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use satisfice_collision::Mesh;
+use satisfice_collision::io::{self, Format, PlacedMesh};
+use serde::{Deserialize, Serialize};
+
+use super::weld;
+
+/// Where the bodies come from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Inputs {
+    pub(super) paths: Vec<PathBuf>,
+    /// The format of standard input.
+    pub(super) format: Option<String>,
+    pub(super) at: Vec<At>,
+    /// Vertices of a body that are equal or closer than this become one.
+    pub(super) weld: Option<f64>,
+}
+
+/// A body and what it is called in messages.
+#[derive(Debug, Clone)]
+pub(super) struct NamedBody {
+    pub(super) name: String,
+    /// The file it comes from.
+    pub(super) file: PathBuf,
+    pub(super) mesh: Arc<Mesh>,
+}
+
+/// A placement of `--at`: `BODY:x,y,z[,rx,ry,rz[,scale]]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct At {
+    /// Number or name of the body.
+    body: String,
+    to: [f64; 3],
+    /// Degrees about x, then y, then z.
+    turn: [f64; 3],
+    scale: f64,
+}
+
+/// Reads the value of `--at`.
+pub(crate) fn at(text: &str) -> Result<At, String> {
+    const FORM: &str = "write BODY:x,y,z[,rx,ry,rz[,scale]], e.g. 1:0,0,2.5 or arm:1,0,0,0,0,90";
+    let (body, numbers) = text.rsplit_once(':').ok_or(FORM)?;
+    let numbers: Vec<f64> = numbers
+        .split(',')
+        .map(|word| word.trim().parse().ok().filter(|x: &f64| x.is_finite()))
+        .collect::<Option<_>>()
+        .ok_or(FORM)?;
+    let [x, y, z, ref rest @ ..] = numbers[..] else {
+        return Err(FORM.to_owned());
+    };
+    let (turn, scale) = match *rest {
+        [] => ([0.0; 3], 1.0),
+        [a, b, c] => ([a, b, c], 1.0),
+        [a, b, c, scale] if scale != 0.0 => ([a, b, c], scale),
+        _ => return Err(FORM.to_owned()),
+    };
+    Ok(At {
+        body: body.to_owned(),
+        to: [x, y, z],
+        turn,
+        scale,
+    })
+}
+
+impl Inputs {
+    /// Whether a path is standard input.
+    fn is_stdin(path: &Path) -> bool {
+        path == Path::new("-")
+    }
+
+    /// Whether standard input is among them.
+    pub(super) fn reads_stdin(&self) -> bool {
+        self.paths.iter().any(|path| Self::is_stdin(path))
+    }
+
+    /// Reads all bodies, in the order of the command line and of their files.
+    pub(super) fn read(&self) -> anyhow::Result<Vec<NamedBody>> {
+        self.check()?;
+        let mut files = Vec::new();
+        for path in &self.paths {
+            let bodies = if Self::is_stdin(path) {
+                let format = Format::named(self.format.as_deref().unwrap_or_default())?;
+                io::read_scene_from(std::io::stdin().lock(), format, "stdin", ".")?
+            } else {
+                io::read_scene(path)?
+            };
+            files.extend(bodies.into_iter().map(|body| (path.clone(), body)));
+        }
+        let stems: Vec<String> = files.iter().map(|(_, body)| body.name.clone()).collect();
+        for (path, body) in &mut files {
+            // A mesh is called like its file, a body of a scene as the scene calls it.
+            if Format::of_path(&*path).is_ok_and(|format| !format.is_scene()) {
+                body.name = path.display().to_string();
+            }
+        }
+        for at in &self.at {
+            place(at, &stems, &mut files)?;
+        }
+        let several_of_one_name = repeated(&files);
+        files
+            .into_iter()
+            .enumerate()
+            .map(|(number, (file, body))| {
+                let mesh = body.placed().with_context(|| body.name.clone())?;
+                let mesh = match self.weld {
+                    Some(distance) => Arc::new(weld::welded(&mesh, distance)?),
+                    None => mesh,
+                };
+                // Two files of one name in two folders.
+                let name = match several_of_one_name.contains(&body.name) {
+                    true => format!("{}#{number}", body.name),
+                    false => body.name,
+                };
+                Ok(NamedBody { name, file, mesh })
+            })
+            .collect()
+    }
+
+    fn check(&self) -> anyhow::Result<()> {
+        let stdin = self.paths.iter().filter(|path| Self::is_stdin(path)).count();
+        match (stdin, &self.format) {
+            (2.., _) => bail!("standard input can be read once only: name files for the other meshes"),
+            (1, None) => {
+                bail!("standard input has no extension: name its format by --format, e.g. --format ply")
+            }
+            (0, Some(_)) => bail!("--format is for standard input: name it as `-`"),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Places the body of this name, with or without the extension of its file, or number.
+fn place(at: &At, stems: &[String], bodies: &mut [(PathBuf, PlacedMesh)]) -> anyhow::Result<()> {
+    let named = bodies.iter().position(|(_, body)| body.name == at.body);
+    let named = named.or_else(|| stems.iter().position(|stem| *stem == at.body));
+    let numbered = at.body.parse().ok().filter(|number| *number < bodies.len());
+    let Some(number) = named.or(numbered) else {
+        bail!(
+            "--at {}: there is no such body; name one of 0 to {} or by its name, e.g. {}",
+            at.body,
+            bodies.len().saturating_sub(1),
+            bodies.first().map_or("", |(_, body)| &body.name)
+        );
+    };
+    let body = &mut bodies[number].1;
+    *body = body.moved(at.to, at.turn, at.scale)?;
+    Ok(())
+}
+
+/// The names that several bodies have.
+fn repeated(bodies: &[(PathBuf, PlacedMesh)]) -> Vec<String> {
+    let mut names: Vec<&String> = bodies.iter().map(|(_, body)| &body.name).collect();
+    names.sort_unstable();
+    let mut repeated: Vec<String> = names
+        .windows(2)
+        .filter(|pair| pair[0] == pair[1])
+        .map(|pair| pair[0].clone())
+        .collect();
+    repeated.dedup();
+    repeated
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn placements_have_three_six_or_seven_numbers() {
+        let full = at("C:arm:1,2,-3, 0,0,90,2").unwrap();
+        assert_eq!(
+            (full.body.as_str(), full.to, full.turn, full.scale),
+            ("C:arm", [1.0, 2.0, -3.0], [0.0, 0.0, 90.0], 2.0)
+        );
+        assert_eq!(at("0:1,2,3").unwrap().scale, 1.0);
+        for text in [
+            "",
+            "0",
+            "0:",
+            "0:1,2",
+            "0:1,2,3,4",
+            "0:1,2,x",
+            "0:1,2,inf",
+            "0:1,2,3,0,0,0,0",
+            "0:1,2,3,4,5,6,7,8",
+        ] {
+            assert!(at(text).unwrap_err().starts_with("write BODY:"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! What a person reads after a collision run: how many pairs, how far apart, and which.
+
+use std::fmt::Write;
+
+use satisfice::{Completeness, StopReason};
+use satisfice_catalogue::quantity::shown;
+use satisfice_collision::FeatureKind;
+
+use super::arguments::Find;
+use super::pairs::Side;
+use super::report::Report;
+
+/// So many pairs are shown; the report has all of them.
+const SHOWN_PAIRS: usize = 5;
+const SHOWN_BODIES: usize = 10;
+
+struct Lines(String);
+
+impl Lines {
+    fn line(&mut self, name: &str, value: &str) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "  {name:<13} {value}");
+    }
+}
+
+pub(super) fn summary(report: &Report<'_>) -> String {
+    let head = &report.head;
+    let mut lines = Lines(format!(
+        "{} pairs closer than {} by {}\n",
+        report.world.request.kind.name(),
+        head.threshold,
+        head.engine
+    ));
+    lines.line("pairs", &count(report));
+    lines.line("completeness", &completeness(report));
+    if let Some((least, most)) = report.pairs.range() {
+        let unmeasured = match head.unmeasured {
+            0 => String::new(),
+            some => format!("; {} not measured, the time was over", shown::count(some)),
+        };
+        lines.line(
+            "distances",
+            &format!("{} to {}{unmeasured}", digits(least), digits(most)),
+        );
+    } else if head.unmeasured > 0 {
+        lines.line("distances", "not measured, the time was over");
+    }
+    if let (0, Some(best)) = (head.hits, &head.best) {
+        lines.line("closest seen", &format!("{} apart", digits(best.fitness)));
+    }
+    lines.line("time", &time(report));
+    if let Some(asked) = asked(report) {
+        lines.line("listed", asked);
+    }
+    if report.world.bodies.len() > 1 && !report.touching.is_empty() {
+        lines.line("bodies", &bodies(report));
+    }
+    for index in 0..report.pairs.len().min(SHOWN_PAIRS) {
+        lines.line(&format!("pair {}", index + 1), &pair(report, index));
+    }
+    if report.pairs.len() > SHOWN_PAIRS {
+        let more = shown::count((report.pairs.len() - SHOWN_PAIRS) as u64);
+        lines.line(
+            "",
+            &format!("and {more} more; --json FILE or --out FILE.csv lists all"),
+        );
+    }
+    for (reason, count) in &report.skipped {
+        lines.line("skipped", &format!("{} {reason}", shown::count(*count)));
+    }
+    lines.0
+}
+
+fn count(report: &Report<'_>) -> String {
+    let head = &report.head;
+    let hits = shown::count(head.hits);
+    match (head.reference_hits, head.recall) {
+        (Some(all), Some(recall)) if all != head.hits => {
+            format!("{hits} of {} ({:.1} %)", shown::count(all), 100.0 * recall)
+        }
+        (Some(_), _) => hits,
+        (None, _) => format!("{hits} (how many there are is not known)"),
+    }
+}
+
+fn completeness(report: &Report<'_>) -> String {
+    let head = &report.head;
+    if head.completeness == Completeness::Proved {
+        return "proved: these are all".to_owned();
+    }
+    let searched_all = head.stop_reason == StopReason::Covered && head.reference_hits.is_some();
+    if searched_all {
+        return "all are counted, but not all are listed: --max-pairs N lists more".to_owned();
+    }
+    match (head.unseen_estimate, head.unseen_interval) {
+        (Some(unseen), Some((low, high))) => {
+            let high = high.map_or_else(|| "no known bound".to_owned(), |high| format!("{high:.0}"));
+            format!("unknown: about {unseen:.0} more pairs, {low:.0} to {high}")
+        }
+        _ => "unknown: there may be more".to_owned(),
+    }
+}
+
+fn time(report: &Report<'_>) -> String {
+    let head = &report.head;
+    let late = match head.overshoot_seconds {
+        late if late > 0.0 => format!(", {} beyond the limit", shown::seconds(late)),
+        _ => String::new(),
+    };
+    let why = match head.stop_reason {
+        StopReason::Covered => "finished".to_owned(),
+        reason => format!("stopped by {}", format!("{reason:?}").to_lowercase()),
+    };
+    format!("{}{late}, {why}", shown::seconds(head.elapsed_seconds))
+}
+
+/// What the list is, if it is not all pairs.
+fn asked(report: &Report<'_>) -> Option<&'static str> {
+    let was_stopped = matches!(report.head.stop_reason, StopReason::Cancelled | StopReason::Time);
+    match report.world.request.find {
+        Find::All => None,
+        Find::Touching if was_stopped => {
+            Some("one pair of each two bodies that were found to touch; others may touch as well")
+        }
+        Find::Touching => Some(
+            "one pair of each two bodies that touch, which means: closer than the threshold; no other bodies do, that is proved",
+        ),
+        Find::First => Some("one pair, whichever is found first"),
+        Find::Closest(_) if was_stopped => Some("the closest of the pairs found; others may be closer"),
+        Find::Closest(_) => Some("the closest pairs, that is proved"),
+    }
+}
+
+fn bodies(report: &Report<'_>) -> String {
+    let name = |body: usize| &report.world.bodies[body].name;
+    let mut text: Vec<String> = report
+        .touching
+        .iter()
+        .take(SHOWN_BODIES)
+        .map(|&[a, b]| format!("{} - {}", name(a), name(b)))
+        .collect();
+    let more = report.touching.len() - text.len();
+    if more > 0 {
+        text.push(format!("and {} more", shown::count(more as u64)));
+    }
+    text.join(", ")
+}
+
+fn pair(report: &Report<'_>, index: usize) -> String {
+    let (kind_a, kind_b) = report.world.kinds();
+    let line = report.pairs.line(index, report.world);
+    let apart = line.distance.map_or_else(
+        || "not measured".to_owned(),
+        |distance| format!("{} apart", digits(distance)),
+    );
+    format!(
+        "{} and {}, {apart}",
+        side(report, kind_a, &line.a),
+        side(report, kind_b, &line.b)
+    )
+}
+
+fn side(report: &Report<'_>, kind: FeatureKind, side: &Side) -> String {
+    let ends = side
+        .vertices
+        .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
+    let body = &report.world.bodies[side.body].name;
+    format!("{} {}{ends} of {body}", kind.name(), side.feature)
+}
+
+/// A distance with six significant digits.
+fn digits(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        v if !(1e-3..1e6).contains(&v) => format!("{x:.5e}"),
+        v => {
+            let decimals = (5.0 - v.log10().floor()).max(0.0) as usize;
+            let text = format!("{x:.decimals$}");
+            match text.contains('.') {
+                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => text,
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_have_six_digits() {
+        for (x, text) in [
+            (0.0, "0"),
+            (0.25, "0.25"),
+            (1.0 / 3.0, "0.333333"),
+            (12_345.678_9, "12345.7"),
+            (100.0, "100"),
+            (1e-7, "1.00000e-7"),
+            (2.5e9, "2.50000e9"),
+        ] {
+            assert_eq!(digits(x), text);
+        }
+    }
+}

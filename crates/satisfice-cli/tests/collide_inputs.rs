@@ -1,0 +1,305 @@
+//! What `collide` reads: scenes, standard input, placements, welding; and what it refuses to overwrite.
+
+#![allow(clippy::unwrap_used, missing_docs)]
+
+mod common;
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+use common::{Done, command, error_in, satisfice_in};
+use satisfice_collision::{Placement, generate, io};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("triangle.obj"), TRIANGLE).unwrap();
+    fs::write(
+        folder.path().join("above.obj"),
+        TRIANGLE.replace(" 0\n", " 0.25\n"),
+    )
+    .unwrap();
+    folder
+}
+
+fn json_of(folder: &Path, arguments: &str) -> Value {
+    let done = satisfice_in(folder, &format!("{arguments} --json -"));
+    assert!(done.code <= 1, "{arguments}: {}", done.stderr);
+    serde_json::from_str(&done.stdout).unwrap()
+}
+
+fn from_stdin(folder: &Path, arguments: &str, input: &[u8]) -> Done {
+    let mut child = command(folder, arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input).unwrap();
+    child.wait_with_output().unwrap().into()
+}
+
+/// A document of two triangles as nodes, one of them far away, and a third node that touches the first.
+fn gltf() -> String {
+    json!({
+        "asset": { "version": "2.0" },
+        "nodes": [
+            { "name": "left, \"front\"", "mesh": 0 },
+            { "name": "far", "mesh": 0, "translation": [9, 0, 0] },
+            { "name": "lid", "mesh": 0, "translation": [0, 0, 0.125] },
+        ],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+        "buffers": [{ "byteLength": 36, "uri": "triangle.bin" }],
+    })
+    .to_string()
+}
+
+#[test]
+fn scenes_name_their_nodes() {
+    let folder = folder();
+    let mut bytes = Vec::new();
+    for c in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        bytes.extend(c.to_le_bytes());
+    }
+    fs::write(folder.path().join("triangle.bin"), bytes).unwrap();
+    fs::write(folder.path().join("scene.gltf"), gltf()).unwrap();
+    fs::write(
+        folder.path().join("scene.toml"),
+        "[[bodies]]\nmesh = \"triangle.obj\"\nname = \"left, \\\"front\\\"\"\n\n[[bodies]]\nmesh = \"triangle.obj\"\nname = \"far\"\n\
+         at = [9, 0, 0]\n\n[[bodies]]\nmesh = \"triangle.obj\"\nname = \"lid\"\nat = [0, 0, 0.125]\n",
+    )
+    .unwrap();
+    for scene in ["scene.gltf", "scene.toml"] {
+        let call = format!("collide {scene} --threshold 0.2 --pairs triangle-triangle --touching");
+        let done = satisfice_in(folder.path(), &call);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        assert!(
+            done.stdout.contains("  bodies        left, \"front\" - lid\n"),
+            "{}",
+            done.stdout
+        );
+        let report = json_of(folder.path(), &call);
+        assert_eq!(report["touching"], json!([[0, 2]]));
+        assert_eq!(report["bodies"][2]["name"], "lid");
+        assert_eq!(report["pairs"][0]["distance"], 0.125);
+
+        let done = satisfice_in(
+            folder.path(),
+            &format!("{call} --out pairs.csv --json report.json"),
+        );
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        assert_eq!(
+            fs::read_to_string(folder.path().join("pairs.csv")).unwrap(),
+            "a_body,a_feature,b_body,b_feature,distance,a_name,b_name\n0,0,2,0,0.125,\"left, \"\"front\"\"\",lid\n"
+        );
+        let verified = satisfice_in(folder.path(), "verify report.json");
+        assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
+    }
+    fs::remove_file(folder.path().join("triangle.bin")).unwrap();
+    let line = error_in(folder.path(), "collide scene.gltf --threshold 1");
+    assert!(
+        line.contains("left, \"front\": cannot read triangle.bin"),
+        "{line}"
+    );
+}
+
+#[test]
+fn a_mesh_may_come_from_standard_input() {
+    let folder = folder();
+    let call = "collide - above.obj --format obj --threshold 0.3 --json -";
+    let done = from_stdin(folder.path(), call, TRIANGLE.as_bytes());
+    let report: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert_eq!(
+        (&report["hits"], &report["bodies"][0]["name"]),
+        (&3.into(), &"stdin".into())
+    );
+
+    let without = from_stdin(folder.path(), "collide - above.obj --threshold 0.3", b"");
+    assert!(
+        without.code == 2 && without.stderr.contains("--format"),
+        "{}",
+        without.stderr
+    );
+    for (arguments, reason) in [
+        ("collide - - --format obj --threshold 1", "read once only"),
+        (
+            "collide triangle.obj above.obj --format obj --threshold 1",
+            "name it as `-`",
+        ),
+        (
+            "collide - above.obj --format step --threshold 1",
+            "the known extensions are obj",
+        ),
+    ] {
+        let line = error_in(folder.path(), arguments);
+        assert!(line.contains(reason), "{line}");
+    }
+}
+
+#[test]
+fn bodies_can_be_placed() {
+    let folder = folder();
+    let distance = |at: &str| {
+        let call = format!("collide triangle.obj above.obj --threshold 50 --pairs triangle-triangle {at}");
+        json_of(folder.path(), &call)["pairs"][0]["distance"]
+            .as_f64()
+            .unwrap()
+    };
+    assert_eq!(distance(""), 0.25);
+    assert_eq!(distance("--at 1:0,0,-2.25"), 2.0);
+    assert_eq!(distance("--at above:0,0,2 --at triangle.obj:0,0,1"), 1.25);
+    // Twice as high, then turned upside down.
+    assert!((distance("--at above:0,0,0,180,0,0,2") - 0.5).abs() < 1e-12);
+    let line = error_in(
+        folder.path(),
+        "collide triangle.obj above.obj --threshold 1 --at lid:0,0,0",
+    );
+    assert!(
+        line.contains("--at lid: there is no such body; name one of 0 to 1"),
+        "{line}"
+    );
+
+    let call = "collide triangle.obj above.obj --threshold 50 --at above:0,0,1,90,0,0 --weld 0.001 --json report.json";
+    assert_eq!(satisfice_in(folder.path(), call).code, 0);
+    let verified = satisfice_in(folder.path(), "verify report.json");
+    assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
+}
+
+#[test]
+fn seams_are_warned_of_and_can_be_welded() {
+    let folder = folder();
+    // Two squares that share an edge, each with its own vertices there.
+    let square = |x: f64| format!("v {x} 0 0\nv {} 0 0\nv {} 1 0\nv {x} 1 0\n", x + 1.0, x + 1.0);
+    let text = format!("{}{}f 1 2 3 4\nf 5 6 7 8\n", square(0.0), square(1.0));
+    fs::write(folder.path().join("seam.obj"), text).unwrap();
+    let done = satisfice_in(folder.path(), "collide seam.obj --self --threshold 0.1");
+    assert!(done.stdout.contains("  pairs         2\n"), "{}", done.stdout);
+    assert_eq!(
+        done.stderr,
+        "warning: seam.obj has 2 vertices that lie on others, as at seams: the features on both sides make pairs; --weld 2e-9 joins them\n"
+    );
+    for weld in ["0", "2e-9", "0.01"] {
+        let done = satisfice_in(
+            folder.path(),
+            &format!("collide seam.obj --self --threshold 0.1 --weld {weld}"),
+        );
+        assert_eq!((done.code, done.stderr.as_str()), (1, ""), "{}", done.stdout);
+    }
+}
+
+#[test]
+fn the_teapot_of_patches_has_no_pairs_once_it_is_welded() {
+    let folder = folder();
+    let teapot = generate::teapot(4).unwrap();
+    // Every triangle with vertices of its own, as STL has them.
+    let corners = (0..teapot.triangles().len())
+        .flat_map(|t| teapot.triangle(t))
+        .collect::<Vec<_>>();
+    let triangles = (0..corners.len() as u32 / 3)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect();
+    let soup = satisfice_collision::Mesh::new(corners, vec![], triangles).unwrap();
+    io::save_obj(&soup, folder.path().join("soup.obj")).unwrap();
+    let call = "collide soup.obj --self --threshold 1e-9";
+    assert!(json_of(folder.path(), call)["hits"].as_u64() > Some(1000));
+    assert_eq!(json_of(folder.path(), &format!("{call} --weld 1e-9"))["hits"], 0);
+}
+
+#[test]
+fn inputs_and_other_outputs_are_not_overwritten() {
+    let folder = folder();
+    let scene = "collide triangle.obj above.obj --threshold 1";
+    for (arguments, reason) in [
+        (
+            "--out above.obj",
+            "--out above.obj would overwrite an input: choose another file",
+        ),
+        (
+            "--json ./triangle.obj",
+            "--json ./triangle.obj would overwrite an input",
+        ),
+        (
+            "--json x --out x",
+            "--json and --out both write x: choose two files",
+        ),
+        (
+            "--json x --out ./x",
+            "--json and --out both write ./x: choose two files",
+        ),
+        (
+            "--picture x.png --out x.png",
+            "--out and --picture both write x.png: choose two files",
+        ),
+        (
+            "--out new/pairs.csv",
+            "cannot write new/pairs.csv: its folder does not exist",
+        ),
+    ] {
+        let line = error_in(folder.path(), &format!("{scene} {arguments}"));
+        assert!(line.contains(reason), "{line}");
+    }
+    assert_eq!(
+        fs::read_to_string(folder.path().join("triangle.obj")).unwrap(),
+        TRIANGLE
+    );
+    assert!(!folder.path().join("new").exists() && !folder.path().join("x").exists());
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("above.obj", folder.path().join("link.csv")).unwrap();
+        let line = error_in(folder.path(), &format!("{scene} --out link.csv"));
+        assert!(line.contains("would overwrite an input"), "{line}");
+    }
+}
+
+#[test]
+fn compressed_meshes_are_read_by_the_command() {
+    let folder = folder();
+    let packed = std::process::Command::new("gzip")
+        .arg("above.obj")
+        .current_dir(folder.path())
+        .status();
+    if !packed.is_ok_and(|status| status.success()) {
+        eprintln!("skipped: there is no gzip");
+        return;
+    }
+    let report = json_of(folder.path(), "collide triangle.obj above.obj.gz --threshold 0.3");
+    assert_eq!(report["hits"], 3);
+}
+
+#[test]
+fn two_bodies_of_one_name_are_told_apart() {
+    let folder = folder();
+    let ball = generate::icosphere(1.0, 1).unwrap();
+    for name in ["one", "two"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+        let at = Placement::from_translation([if name == "one" { 0.0 } else { 0.01 }, 0.0, 0.0]).unwrap();
+        io::save_obj(
+            &at.place(&ball).unwrap(),
+            folder.path().join(name).join("ball.obj"),
+        )
+        .unwrap();
+    }
+    let names = |call: &str| -> Vec<String> {
+        let report = json_of(folder.path(), call);
+        let bodies = report["bodies"].as_array().unwrap();
+        bodies
+            .iter()
+            .map(|body| body["name"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    assert_eq!(
+        names("collide one/ball.obj two/ball.obj --threshold 0.1"),
+        ["one/ball.obj", "two/ball.obj"]
+    );
+    assert_eq!(
+        names("collide one/ball.obj one/ball.obj --threshold 0.1"),
+        ["one/ball.obj#0", "one/ball.obj#1"]
+    );
+}

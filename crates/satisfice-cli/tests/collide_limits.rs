@@ -1,0 +1,227 @@
+//! How `collide` keeps to its limits: memory, the number of pairs listed, and time; and what it says of closest points.
+
+#![allow(clippy::unwrap_used, missing_docs)]
+
+mod common;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use common::satisfice_in;
+use satisfice_collision::{Placement, generate, io};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+fn json_of(folder: &Path, arguments: &str) -> Value {
+    let done = satisfice_in(folder, &format!("{arguments} --json -"));
+    assert!(done.code <= 1, "{arguments}: {}", done.stderr);
+    serde_json::from_str(&done.stdout).unwrap()
+}
+
+/// Two balls that cross.
+fn balls(depth: u32) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = generate::icosphere(1.0, depth).unwrap();
+    let turned = Placement::from_axis_angle([1.0, 2.0, 3.0], 0.7).unwrap();
+    let other = turned.moved([1.5, 0.1, 0.2]).unwrap().place(&ball).unwrap();
+    io::save_obj(&ball, folder.path().join("a.obj")).unwrap();
+    io::save_obj(&other, folder.path().join("b.obj")).unwrap();
+    folder
+}
+
+#[test]
+fn beyond_max_pairs_all_are_counted_and_fewer_listed() {
+    let folder = balls(3);
+    for kind in ["vertex-vertex", "edge-edge", "triangle-triangle"] {
+        for method in ["exact", "brute-force", "tree --threads 2"] {
+            let scene = format!("collide a.obj b.obj --threshold 0.2 --pairs {kind} --method {method}");
+            let all = json_of(folder.path(), &scene);
+            let count = all["hits"].as_u64().unwrap();
+            assert!(count > 100, "{scene}");
+            let few = json_of(folder.path(), &format!("{scene} --max-pairs 100"));
+            assert_eq!(
+                (&few["hits"], &few["reference_hits"], &few["completeness"]),
+                (&100.into(), &count.into(), &"Unknown".into()),
+                "{scene}"
+            );
+            let listed = few["pairs"].as_array().unwrap();
+            assert!(
+                listed.len() == 100
+                    && listed
+                        .iter()
+                        .all(|pair| all["pairs"].as_array().unwrap().contains(pair))
+            );
+            let enough = json_of(folder.path(), &format!("{scene} --max-pairs {count}"));
+            assert_eq!(
+                (&enough["pairs"], &enough["completeness"]),
+                (&all["pairs"], &"Proved".into())
+            );
+        }
+    }
+    let scene = "collide a.obj b.obj --threshold 0.2 --max-pairs 10";
+    let done = satisfice_in(folder.path(), scene);
+    assert!(
+        done.stderr
+            .starts_with("warning: the list ends after 10 pairs; --max-pairs N lists more"),
+        "{}",
+        done.stderr
+    );
+    assert!(
+        done.stdout.contains("all are counted, but not all are listed"),
+        "{}",
+        done.stdout
+    );
+    // The pairs of one body, without neighbours on the mesh.
+    let own = "collide a.obj --self --ring-width 2 --pairs vertex-triangle --threshold 0.4";
+    let count = json_of(folder.path(), own)["hits"].clone();
+    assert_eq!(
+        json_of(folder.path(), &format!("{own} --max-pairs 7"))["reference_hits"],
+        count
+    );
+    fs::write(
+        folder.path().join("report.json"),
+        json_of(folder.path(), &format!("{own} --max-pairs 7")).to_string(),
+    )
+    .unwrap();
+    let verified = satisfice_in(folder.path(), "verify report.json");
+    assert_eq!(verified.code, 0, "{}", verified.stdout);
+}
+
+/// 300,000 pairs in 300 MB of address space.
+#[cfg(unix)]
+#[test]
+fn many_pairs_take_little_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = (0..550).fold(String::new(), |mut text, k| {
+        writeln!(text, "v {} 0 0", f64::from(k) * 1e-6).unwrap();
+        text
+    });
+    for name in ["a.obj", "b.obj"] {
+        fs::write(folder.path().join(name), &points).unwrap();
+    }
+    let done = std::process::Command::new("sh")
+        .arg("-c")
+        .arg(format!(
+            "ulimit -v 300000; exec {} collide a.obj b.obj --threshold 1 --json report.json --out pairs.csv",
+            env!("CARGO_BIN_EXE_satisfice")
+        ))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(
+        done.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    let csv = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 550 * 550);
+    let stdout = String::from_utf8(done.stdout).unwrap();
+    assert!(stdout.contains("  pairs         302,500\n"), "{stdout}");
+}
+
+#[test]
+fn a_time_limit_covers_measuring() {
+    let folder = balls(5);
+    let scene = "collide a.obj b.obj --threshold 0.3 --pairs triangle-triangle";
+    for limit in ["1ms", "30ms", "100ms", "300ms"] {
+        let report = json_of(folder.path(), &format!("{scene} --time {limit}"));
+        let [elapsed, overshoot, time] =
+            ["elapsed_seconds", "overshoot_seconds", "budget"].map(|key| match key {
+                "budget" => report[key]["time_seconds"].as_f64().unwrap(),
+                key => report[key].as_f64().unwrap(),
+            });
+        assert!(
+            (overshoot - (elapsed - time).max(0.0)).abs() < 1e-9,
+            "{limit}: {elapsed} {overshoot}"
+        );
+        let nulls = report["pairs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|pair| pair["distance"].is_null());
+        let unmeasured = nulls.count();
+        assert_eq!(report["unmeasured"], unmeasured);
+        if unmeasured > 0 {
+            assert_eq!(report["stop_reason"], "Time");
+            fs::write(folder.path().join("report.json"), report.to_string()).unwrap();
+        }
+    }
+    // The first limit ends while pairs are listed, so that none of them is measured.
+    let report = json_of(folder.path(), &format!("{scene} --time 100us"));
+    let pairs = report["pairs"].as_array().unwrap();
+    assert!(pairs.iter().all(|pair| pair["distance"].is_null()));
+}
+
+#[test]
+fn witnesses_are_written_to_json_and_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("a.obj"),
+        "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("b.obj"),
+        "v 0.5 0.5 0.25\nv 0.5 0.5 9\nv 0.75 0.5 9\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("c.obj"),
+        "v 0.5 0.5 -1\nv 0.5 0.5 1\nv 0.75 0.5 1\nf 1 2 3\n",
+    )
+    .unwrap();
+    let scene = "collide a.obj b.obj --threshold 1 --pairs triangle-triangle --witnesses";
+    let expected = json!({
+        "point_a": [0.5, 0.5, 0.0], "point_b": [0.5, 0.5, 0.25], "normal": [0.0, 0.0, 1.0],
+        "part_a": "face", "part_b": "vertex 0",
+    });
+    for method in [
+        "exact",
+        "exact --threads 2",
+        "random --evaluations 50",
+        "exact --closest 1",
+    ] {
+        let report = json_of(folder.path(), &format!("{scene} --method {method}"));
+        assert_eq!(report["pairs"][0]["witness"], expected, "{method}");
+    }
+    let done = satisfice_in(folder.path(), &format!("{scene} --out -"));
+    assert_eq!(
+        done.stdout,
+        "a_body,a_feature,b_body,b_feature,distance,ax,ay,az,bx,by,bz,nx,ny,nz,a_part,b_part\n\
+         0,0,1,0,0.25,0.5,0.5,0,0.5,0.5,0.25,0,0,1,face,vertex 0\n"
+    );
+    // Where the triangles cross there is no normal.
+    let crossing = json_of(folder.path(), &scene.replace("b.obj", "c.obj"));
+    assert_eq!(
+        (
+            &crossing["pairs"][0]["distance"],
+            &crossing["pairs"][0]["witness"]["normal"]
+        ),
+        (&0.0.into(), &Value::Null)
+    );
+    let without = json_of(folder.path(), &scene.replace(" --witnesses", ""));
+    assert_eq!(without["pairs"][0]["witness"], Value::Null);
+}
+
+#[test]
+fn the_summary_speaks_of_pairs_and_distances() {
+    let folder = balls(2);
+    let done = satisfice_in(
+        folder.path(),
+        "collide a.obj b.obj --threshold 0.15 --pairs vertex-edge",
+    );
+    for part in [
+        "vertex-edge pairs closer than 0.15 by exact\n",
+        "  pairs  ",
+        "  distances  ",
+        " apart\n",
+        ", finished\n",
+    ] {
+        assert!(done.stdout.contains(part), "{part}: {}", done.stdout);
+    }
+    for part in ["F =", "evaluation", "fitness", "seed", "hit 1"] {
+        assert!(!done.stdout.contains(part), "{part}: {}", done.stdout);
+    }
+}
