@@ -2,9 +2,8 @@
 //!
 //! Nothing depends on the guess being right; `extended` and `exact` prove or replace it.
 
-use super::Point;
-use super::vector::{add, cross, dot, scale, sub};
-use super::vertex_edge::parameter;
+use super::vector::{dot, scale, sub};
+use super::{Point, Triangle, closest};
 
 /// Barycentric weights of a point on each feature, padded with zeros.
 #[derive(Debug, Clone, Copy)]
@@ -36,15 +35,15 @@ pub(super) fn nearest(a: &[Point], b: &[Point]) -> Guess {
         }
         for &[j, k] in edges(b.len()) {
             let e = sub(b[k], b[j]);
-            let t = parameter(p, b[j], e);
+            let t = closest::on_segment(p, b[j], e);
             best.consider(
                 sub(sub(p, b[j]), scale(e, t)),
                 &[(i, 1.0)],
                 &[(j, 1.0 - t), (k, t)],
             );
         }
-        if let [q, r, s] = *b
-            && let Some((v, [x, y, z])) = face(p, q, r, s)
+        if let Ok(face) = <&Triangle>::try_from(b)
+            && let Some((v, [x, y, z])) = closest::inside_triangle(p, face)
         {
             best.consider(v, &[(i, 1.0)], &[(0, x), (1, y), (2, z)]);
         }
@@ -52,22 +51,22 @@ pub(super) fn nearest(a: &[Point], b: &[Point]) -> Guess {
     for (j, &q) in b.iter().enumerate() {
         for &[i, k] in edges(a.len()) {
             let e = sub(a[k], a[i]);
-            let t = parameter(q, a[i], e);
+            let t = closest::on_segment(q, a[i], e);
             best.consider(
                 sub(sub(a[i], q), scale(e, -t)),
                 &[(i, 1.0 - t), (k, t)],
                 &[(j, 1.0)],
             );
         }
-        if let [p, r, s] = *a
-            && let Some((v, [x, y, z])) = face(q, p, r, s)
+        if let Ok(face) = <&Triangle>::try_from(a)
+            && let Some((v, [x, y, z])) = closest::inside_triangle(q, face)
         {
             best.consider(scale(v, -1.0), &[(0, x), (1, y), (2, z)], &[(j, 1.0)]);
         }
     }
     for &[i, k] in edges(a.len()) {
         for &[j, l] in edges(b.len()) {
-            if let Some((v, s, t)) = crossing(a[i], a[k], b[j], b[l]) {
+            if let Some((v, s, t)) = closest::inside_segments(&[a[i], a[k]], &[b[j], b[l]]) {
                 best.consider(v, &[(i, 1.0 - s), (k, s)], &[(j, 1.0 - t), (l, t)]);
             }
         }
@@ -99,25 +98,4 @@ fn spread(weights: &[(usize, f64)]) -> [f64; 3] {
         all[k] = weight;
     }
     all
-}
-
-/// Difference and weights if `p` projects into the inside of the triangle.
-fn face(p: Point, q: Point, r: Point, s: Point) -> Option<(Point, [f64; 3])> {
-    let (x, y, w) = (sub(r, q), sub(s, q), sub(p, q));
-    let n = cross(x, y);
-    let nn = dot(n, n);
-    let (t, u) = (dot(n, cross(w, y)) / nn, dot(n, cross(x, w)) / nn);
-    (t > 0.0 && u > 0.0 && t + u < 1.0).then(|| (scale(n, dot(n, w) / nn), [1.0 - t - u, t, u]))
-}
-
-/// Difference and parameters if the lines `p q` and `r s` come nearest inside both segments.
-fn crossing(p: Point, q: Point, r: Point, s: Point) -> Option<(Point, f64, f64)> {
-    let (d, e, w) = (sub(q, p), sub(s, r), sub(p, r));
-    let n = cross(d, e);
-    let nn = dot(n, n);
-    let (x, y) = (dot(n, cross(e, w)) / nn, dot(n, cross(d, w)) / nn);
-    (x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0).then(|| {
-        let v = sub(add(w, scale(d, x)), scale(e, y));
-        (v, x, y)
-    })
 }

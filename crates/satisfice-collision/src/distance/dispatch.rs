@@ -91,9 +91,14 @@ pub fn proximity(a: &Shape, b: &Shape) -> Proximity {
     if swapped { proximity.swapped() } else { proximity }
 }
 
-/// The distance of two features within [`measure::ACCURACY`](super::measure::ACCURACY).
+/// The distance of two features within a relative error of [`ACCURACY`](super::ACCURACY), faster than a proximity; 0 exactly
+/// if they meet; NaN if a coordinate is not finite.
+///
+/// A convergent iteration (GJK) stops between two proved bounds; where they stay apart the answer is that of
+/// [`proximity`].
 #[inline]
-pub(super) fn measure(a: &Shape, b: &Shape) -> f64 {
+#[must_use]
+pub fn measure(a: &Shape, b: &Shape) -> f64 {
     ask(Measure, a, b).0
 }
 
@@ -121,7 +126,7 @@ mod tests {
                     assert_eq!(within(&two, &one, threshold), expected);
                 }
                 let relative = (measure(&one, &two) - there.distance).abs() / there.distance;
-                assert!(relative <= super::super::measure::ACCURACY);
+                assert!(relative <= super::super::ACCURACY);
             }
         }
     }

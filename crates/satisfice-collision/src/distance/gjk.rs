@@ -4,10 +4,10 @@
 //! It seeks the point nearest to 0 of the hull of all differences `a_i - b_j`. A step may go wrong by rounding or on
 //! degenerate input: then no certificate speaks, and the slower stages decide.
 
-use super::Point;
 use super::candidates::Guess;
 use super::frame::{self, Frame, Limits, Verdict};
 use super::vector::{add, cross, dot, scale, sub};
+use super::{Point, closest};
 
 /// Steps before giving up. The median need is 2; pairs in the band around delta never end.
 const STEPS: usize = 12;
@@ -189,7 +189,7 @@ impl Simplex {
 /// The point of triangle `p q r` nearest to 0 and the vertices it needs.
 #[inline(always)]
 fn triangle(p: Point, q: Point, r: Point) -> (Point, [Point; 3], usize) {
-    let weights = super::vertex_triangle::weights([0.0; 3], &[p, q, r]);
+    let weights = closest::on_triangle([0.0; 3], &[p, q, r]);
     let mut kept = [[0.0; 3]; 3];
     let mut len = 0;
     let mut v = [0.0; 3];

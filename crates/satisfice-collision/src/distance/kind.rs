@@ -96,7 +96,7 @@ pub trait FeaturePair {
     /// Distance and closest points.
     fn proximity(a: &Self::A, b: &Self::B) -> Proximity;
 
-    /// The distance within a relative error of [`measure::ACCURACY`](super::measure::ACCURACY), faster than a proximity.
+    /// The distance within a relative error of [`ACCURACY`](super::ACCURACY), faster than a proximity.
     fn measure(a: &Self::A, b: &Self::B) -> f64;
 
     /// Whether the distance is below the threshold; `false` if a coordinate is not finite.

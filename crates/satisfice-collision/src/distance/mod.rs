@@ -26,6 +26,7 @@
 
 mod batch;
 mod candidates;
+mod closest;
 mod dispatch;
 pub mod edge_edge;
 pub mod edge_triangle;
@@ -36,7 +37,7 @@ mod gjk;
 mod kernel;
 mod kind;
 mod lanes;
-pub mod measure;
+mod measure;
 mod resolve;
 mod threshold;
 pub mod triangle_triangle;
@@ -46,10 +47,11 @@ pub mod vertex_triangle;
 pub mod vertex_vertex;
 
 pub use batch::TriangleBatch;
-pub use dispatch::{decide, proximity, within};
+pub use dispatch::{decide, measure, proximity, within};
 pub use edge_edge::EdgeEdge;
 pub use edge_triangle::EdgeTriangle;
 pub use kind::{FeaturePair, PairKind};
+pub use measure::ACCURACY;
 pub use threshold::Threshold;
 pub use triangle_triangle::TriangleTriangle;
 pub use vertex_edge::VertexEdge;

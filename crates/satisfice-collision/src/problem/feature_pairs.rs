@@ -8,7 +8,7 @@ use super::metric::{PointMetric, far};
 use super::ranges;
 use super::side::Side;
 use crate::broad::{FeatureTree, TreeJoin};
-use crate::distance::{self, PairKind, Threshold, measure};
+use crate::distance::{self, PairKind, Threshold};
 use crate::error::Error;
 use crate::mesh::{Adjacency, Mesh, Shape};
 use crate::order::VertexOrder;
@@ -21,7 +21,7 @@ use crate::placement::Placement;
 /// two integer axes, the positions of the features' middles along a Hilbert curve.
 ///
 /// * `F < delta` holds exactly where it holds for the coordinates as they are; F itself is within a relative 1e-10
-///   ([`measure::ACCURACY`]), of vertex pairs within a few units in the last place. Cost of F: 3 ns (vertices) to
+///   ([`distance::ACCURACY`]), of vertex pairs within a few units in the last place. Cost of F: 3 ns (vertices) to
 ///   some 150 ns (triangles), 1 us where features nearly meet.
 /// * Of one body with itself, features that share a vertex, or whose vertices are within the excluded ring, are no pairs:
 ///   their F is finite, at least delta and at least every distance of the body. Of equal kinds `(i, j)` and `(j, i)` are one
@@ -294,8 +294,8 @@ impl SatisficingProblem for FeaturePairs {
             return self.points.distance(p, q);
         }
         // Only so near to delta can a rounded distance be on the wrong side.
-        const BAND: f64 = 4.0 * measure::ACCURACY;
-        let (distance, delta) = (measure::distance(&one, &two).min(f64::MAX), self.threshold.get());
+        const BAND: f64 = 4.0 * distance::ACCURACY;
+        let (distance, delta) = (distance::measure(&one, &two).min(f64::MAX), self.threshold.get());
         if (distance - delta).abs() > BAND * delta {
             distance
         } else if self.is_within(i, j) {
@@ -385,7 +385,7 @@ impl Bounds<f64> for FeaturePairs {
         // But for vertices F is only within its accuracy.
         Some(match self.kind {
             PairKind::VertexVertex => bound,
-            _ => bound * (1.0 - measure::ACCURACY),
+            _ => bound * (1.0 - distance::ACCURACY),
         })
     }
 }

@@ -7,7 +7,7 @@ use satisfice::catalogue::{Catalogued, Params};
 use satisfice::{Budget, Completeness, SatisficingProblem, Search, engine, testing};
 
 use super::*;
-use crate::distance::{PairKind, measure};
+use crate::distance::{self, PairKind};
 use crate::{Mesh, Placement, generate};
 
 /// Two balls that cross, turned so that nothing is symmetric.
@@ -227,5 +227,5 @@ fn bodies_without_the_feature_and_bad_thresholds_are_refused() {
     assert!(!problem.encoding().unwrap().encode(&(0, 320), &mut [0.0; 2]));
     let neighbourhood = problem.neighbourhood().unwrap();
     neighbourhood.neighbours(&(u32::MAX, 0), &mut |_| panic!("no feature has no neighbours"));
-    assert!(problem.fitness(&(0, 0)) == 0.0 && measure::ACCURACY < 1e-9);
+    assert!(problem.fitness(&(0, 0)) == 0.0 && distance::ACCURACY < 1e-9);
 }
