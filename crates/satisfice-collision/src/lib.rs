@@ -16,6 +16,7 @@ mod placement;
 pub mod problem;
 pub mod sampling;
 pub mod scene;
+mod simd;
 
 pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, FeatureKind, Mesh, Shape};

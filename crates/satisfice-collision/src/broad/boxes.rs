@@ -4,7 +4,7 @@
 
 use super::clip::{four, greater, lesser, wide};
 use super::frame::Frame;
-use super::lanes::{Eight, Lanes, Work, dispatch};
+use crate::simd::{Eight, Lanes, Work, dispatch};
 
 /// A box of `f32` coordinates; empty if a lower side lies above its upper one.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! What of a body can have a partner: boxes of runs of points, and the points inside a region brought into a frame.
 
 use super::frame::Frame;
-use super::lanes::{Lanes, Work, dispatch};
+use crate::simd::{Lanes, Work, dispatch};
 use crate::{Aabb, Error};
 
 /// Points a run has. Meshes number neighbours closely, so a run of 128 is small and is skipped or taken as a whole.

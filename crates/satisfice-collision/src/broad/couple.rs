@@ -2,13 +2,13 @@
 
 use super::boxes::Moved;
 use super::features::FeatureTree;
-use super::lanes::dispatch;
 use super::pair::Pair;
 use super::relative::Relative;
 use super::separate::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
 use super::trees::TreeWork;
 use crate::distance::{self, Threshold, Triangle, TriangleBatch};
+use crate::simd::dispatch;
 use crate::{Error, FeatureKind, Placement};
 
 /// Which pairs of features count at all; `None` for all of them.

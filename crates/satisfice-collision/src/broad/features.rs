@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::boxes::{Box32, BoxTree};
 use super::clip::Runs;
 use super::frame::Frame;
-use super::lanes::{Lanes, Work, dispatch};
 use super::separate::{self, Directions, Triangles};
 use crate::mesh::{Features, Point, Shape, Topology, Triangle};
+use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, FeatureKind, Mesh};
 
 /// A box tree over the features of one kind of one body, in the body's own coordinates.

@@ -7,9 +7,9 @@ use super::clip::{greater, lesser};
 use super::exact::Decide;
 use super::frame::Filter;
 use super::groups::Groups;
-use super::lanes::{Eight, Lanes, Work};
 use super::pair::Pair;
 use super::watch::Watch;
+use crate::simd::{Eight, Lanes, Work};
 
 /// Tests between two looks at the watch: some 20 us, or 0.2 ms where most are pairs.
 const LOOK: u64 = 1 << 16;

@@ -9,7 +9,6 @@ mod features;
 mod frame;
 mod groups;
 mod join;
-mod lanes;
 mod overlap;
 mod pair;
 mod points;

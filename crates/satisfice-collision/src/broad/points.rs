@@ -6,13 +6,13 @@ use super::exact::Decide;
 use super::frame::{Filter, Frame};
 use super::groups::Groups;
 use super::join::{Clump, Join, Scratch};
-use super::lanes::dispatch;
 use super::overlap::Overlap;
 use super::pair::Pair;
 use super::sieve::Sieve;
 use super::sorting::Sorter;
 use super::watch::Watch;
 use crate::distance::Threshold;
+use crate::simd::dispatch;
 use crate::{Aabb, Error};
 
 /// How deep clumps are looked at in frames of their own; each is at most half as wide as the one before.

@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use super::boxes::{BoxTree, Group, Moved};
 use super::frame::Filter;
-use super::lanes::{Eight, Lanes, Work};
 use super::relative::Relative;
+use crate::simd::{Eight, Lanes, Work};
 
 /// A group of one tree against a group of the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,12 +5,15 @@
 //! filter in double precision; what that leaves open is decided pair by pair.
 
 use super::kernel::{Kernel, Limits, Vector, Verdicts};
-use super::lanes::{Unit, Work, dispatch, dispatch_single};
 use super::vector::{exponent, ldexp};
 use super::{DecidedBy, Decision, Threshold, Triangle, triangle_triangle};
+use crate::simd::{Floats as _, Lanes, Work, dispatch};
 
 /// Lanes of a batch.
 const LANES: usize = 8;
+
+/// The greatest binary exponent of a scale in one factor, so that neither it nor its inverse is denormal.
+const LARGEST_SHIFT: i32 = 1000;
 
 /// Collects triangle pairs and decides eight at a time whether they are within a threshold.
 ///
@@ -33,7 +36,7 @@ const LANES: usize = 8;
 #[derive(Debug, Clone)]
 pub struct TriangleBatch<T> {
     threshold: Threshold,
-    single: Option<Scaled>,
+    single: Scaled,
     a: [Triangle; LANES],
     b: [Triangle; LANES],
     tags: [T; LANES],
@@ -94,9 +97,12 @@ impl<T: Copy + Default> TriangleBatch<T> {
 
     fn filter(&self) -> Verdicts {
         let (a, b) = (&self.a, &self.b);
-        let mut verdicts = match self.single {
-            Some(scaled) => dispatch_single(InSingle { a, b, scaled }),
-            None => Verdicts::default(),
+        let scaled = self.single;
+        let mut verdicts = if scaled.first == 1.0 {
+            dispatch(InSingle { a, b, scaled })
+        } else {
+            let (a, b) = (&scaled.prepared(a), &scaled.prepared(b));
+            dispatch(InSingle { a, b, scaled })
         };
         let all = (1 << self.len) - 1;
         if verdicts.in_range & all != all {
@@ -115,20 +121,29 @@ impl<T: Copy + Default> TriangleBatch<T> {
 /// How single precision sees a threshold: times a power of two, between 1 and 2.
 #[derive(Debug, Clone, Copy)]
 struct Scaled {
+    /// The power of two is `first * scale`; `first` is 1 unless no single factor is enough.
+    first: f64,
     scale: f64,
     limits: Limits,
 }
 
 impl Scaled {
-    /// `None` for a threshold that no power of two brings there.
-    fn new(threshold: Threshold) -> Option<Self> {
-        let scale = ldexp(1.0, -exponent(threshold.get()).clamp(-1000, 1000));
-        let delta = threshold.get() * scale;
+    fn new(threshold: Threshold) -> Self {
+        let wanted = -exponent(threshold.get());
+        let second = wanted.clamp(-LARGEST_SHIFT, LARGEST_SHIFT);
+        let (first, scale) = (ldexp(1.0, wanted - second), ldexp(1.0, second));
+        let delta = threshold.get() * first * scale;
         let limits = Limits {
             below: f64::from((delta as f32).next_down()),
             squared_above: f64::from(((delta * delta).next_up() as f32).next_up()),
         };
-        (1.0..2.0).contains(&delta).then_some(Self { scale, limits })
+        Self { first, scale, limits }
+    }
+
+    /// Pairs multiplied by `first`, where that is not 1. Growing is exact unless it overflows, and what overflows is out of
+    /// range. What shrinking rounds off is less than 2^-1000 of delta.
+    fn prepared(&self, triangles: &[Triangle; LANES]) -> [Triangle; LANES] {
+        triangles.map(|triangle| triangle.map(|p| p.map(|x| x * self.first)))
     }
 }
 
@@ -139,12 +154,13 @@ struct InSingle<'p> {
     scaled: Scaled,
 }
 
-impl Work<[f32; 8]> for InSingle<'_> {
+impl Work for InSingle<'_> {
     type Output = Verdicts;
 
     #[inline(always)]
-    fn run<U: Unit<Lanes = [f32; 8]>>(self, unit: U) -> Verdicts {
-        let Scaled { scale, limits } = self.scaled;
+    fn run<L: Lanes>(self, lanes: L) -> Verdicts {
+        let unit = lanes.single();
+        let Scaled { scale, limits, .. } = self.scaled;
         // [triangle][vertex][axis][pair]
         let mut local = [[[[0.0_f32; LANES]; 3]; 3]; 2];
         for (lane, (a, b)) in self.a.iter().zip(self.b).enumerate() {
@@ -155,7 +171,7 @@ impl Work<[f32; 8]> for InSingle<'_> {
                 }
             }
         }
-        let point = |of: &[[f32; LANES]; 3]| -> Vector<U> {
+        let point = |of: &[[f32; LANES]; 3]| -> Vector<L::Single> {
             [unit.load(&of[0]), unit.load(&of[1]), unit.load(&of[2])]
         };
         let triangle = |of: &[[[f32; LANES]; 3]; 3]| [point(&of[0]), point(&of[1]), point(&of[2])];
@@ -170,11 +186,12 @@ struct InDouble<'p> {
     threshold: Threshold,
 }
 
-impl Work<[f64; 4]> for InDouble<'_> {
+impl Work for InDouble<'_> {
     type Output = Verdicts;
 
     #[inline(always)]
-    fn run<U: Unit<Lanes = [f64; 4]>>(self, unit: U) -> Verdicts {
+    fn run<L: Lanes>(self, lanes: L) -> Verdicts {
+        let unit = lanes.double();
         let mut all = Verdicts::default();
         let limits = Limits {
             below: self.threshold.get(),
@@ -182,7 +199,7 @@ impl Work<[f64; 4]> for InDouble<'_> {
         };
         for half in 0..LANES / 4 {
             let kernel = Kernel { unit };
-            let load = |of: &[Triangle; LANES], vertex: usize| -> Vector<U> {
+            let load = |of: &[Triangle; LANES], vertex: usize| -> Vector<L::Double> {
                 let axis = |axis: usize| {
                     let lane = |lane: usize| of[4 * half + lane][vertex][axis];
                     unit.load(&[lane(0), lane(1), lane(2), lane(3)])
@@ -205,8 +222,8 @@ impl Work<[f64; 4]> for InDouble<'_> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::lanes::{Portable, Single};
     use super::*;
+    use crate::simd::Portable;
 
     /// Machines with and without AVX2 give the same bits, and single precision says nothing that double precision denies.
     #[test]
@@ -228,12 +245,12 @@ mod tests {
             let threshold = Threshold::new(0.02 + 0.0005 * f64::from(round)).unwrap();
             let (a, b) = (&a, &b);
             let double = || InDouble { a, b, threshold };
-            let scaled = Scaled::new(threshold).unwrap();
+            let scaled = Scaled::new(threshold);
             let single = || InSingle { a, b, scaled };
             let in_double = dispatch(double());
             assert_eq!(in_double, double().run(Portable));
-            let in_single = dispatch_single(single());
-            assert_eq!(in_single, single().run(Single(Portable)));
+            let in_single = dispatch(single());
+            assert_eq!(in_single, single().run(Portable));
             assert_eq!(in_single.in_range, in_double.in_range);
             for verdicts in [in_single, in_double] {
                 assert_eq!(verdicts.within & verdicts.apart, 0);

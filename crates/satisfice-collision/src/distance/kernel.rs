@@ -14,7 +14,8 @@
 //! of them and their difference, `2 * 6.1 + 2.02`: 15. A foot `x f + y g + z h` with x, y, z >= 0 and x = fl(fl(1 - y) - z), a sum
 //! of weights within 2u of 1: data 1, products and sums 3.03, the weights 2.01; with the vertex and the difference, 10.
 
-use super::lanes::Unit;
+use super::precision::{Bounds, Precision};
+use crate::simd::Floats;
 
 /// Steps of the method; the error bound allows 8.
 const STEPS: usize = 8;
@@ -25,7 +26,7 @@ pub(super) struct Kernel<U> {
 }
 
 /// Points of as many pairs as a unit has lanes, in registers.
-pub(super) type Vector<U> = [<U as Unit>::Number; 3];
+pub(super) type Vector<U> = [<U as Floats>::Number; 3];
 
 /// Delta in the unit of the coordinates, in the precision of a unit.
 #[derive(Debug, Clone, Copy)]
@@ -47,11 +48,30 @@ pub(super) struct Verdicts {
     pub(super) in_range: u32,
 }
 
-impl<U: Unit> Kernel<U> {
+impl<U: Floats<Scalar: Precision>> Kernel<U> {
+    const BOUNDS: Bounds = <U::Scalar as Precision>::BOUNDS;
+
+    #[inline(always)]
+    fn splat(&self, x: f64) -> U::Number {
+        self.unit.splat(U::Scalar::round(x))
+    }
+
     #[inline(always)]
     pub(super) fn sub(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
         let u = self.unit;
         [u.sub(p[0], q[0]), u.sub(p[1], q[1]), u.sub(p[2], q[2])]
+    }
+
+    /// Lanes with `x < y`, as bits.
+    #[inline(always)]
+    fn below(&self, x: U::Number, y: U::Number) -> u32 {
+        self.unit.bits(self.unit.less(x, y))
+    }
+
+    /// Lanes with `x <= y`, as bits.
+    #[inline(always)]
+    fn at_most(&self, x: U::Number, y: U::Number) -> u32 {
+        self.unit.bits(self.unit.at_most(x, y))
     }
 
     #[inline(always)]
@@ -63,7 +83,7 @@ impl<U: Unit> Kernel<U> {
     #[inline(always)]
     fn third(&self, p: Vector<U>, q: Vector<U>, r: Vector<U>) -> Vector<U> {
         let u = self.unit;
-        let third = u.splat(1.0 / 3.0);
+        let third = self.splat(1.0 / 3.0);
         let mean = |k: usize| u.add(u.add(u.mul(p[k], third), u.mul(q[k], third)), u.mul(r[k], third));
         [mean(0), mean(1), mean(2)]
     }
@@ -72,7 +92,7 @@ impl<U: Unit> Kernel<U> {
     #[inline(always)]
     fn extent(&self, rho: U::Number, p: Vector<U>) -> U::Number {
         let u = self.unit;
-        u.greatest(u.greatest(u.abs(p[0]), u.abs(p[1])), u.greatest(u.abs(p[2]), rho))
+        u.max(u.max(u.abs(p[0]), u.abs(p[1])), u.max(u.abs(p[2]), rho))
     }
 
     /// The first of three points whose height is `height`.
@@ -95,32 +115,35 @@ impl<U: Unit> Kernel<U> {
         limits: Limits,
     ) -> Verdicts {
         let u = self.unit;
-        let zero = u.splat(0.0);
+        let zero = self.splat(0.0);
         let of_a = self.extent(self.extent(zero, a1), a2);
         let of_b = self.extent(self.extent(self.extent(zero, b0), b1), b2);
-        let rho = u.greatest(of_a, of_b);
+        let rho = u.max(of_a, of_b);
         let mut v = self.sub(self.third(a0, a1, a2), self.third(b0, b1, b2));
         let squared = self.dot(v, v);
         // The last term asks for NaN.
-        let in_range = u.at_most(u.splat(U::BOUNDS.least_rho), rho)
-            & u.at_most(rho, u.splat(U::BOUNDS.greatest_rho))
-            & u.at_most(squared, squared);
+        let in_range = self.at_most(self.splat(Self::BOUNDS.least_rho), rho)
+            & self.at_most(rho, self.splat(Self::BOUNDS.greatest_rho))
+            & self.at_most(squared, squared);
 
-        let margin = u.sub(u.splat(limits.below), u.mul(rho, u.splat(U::BOUNDS.span_error)));
+        let margin = u.sub(
+            self.splat(limits.below),
+            u.mul(rho, self.splat(Self::BOUNDS.span_error)),
+        );
         // Where the margin is not above 0 its square is replaced by 0, which no square is below.
-        let margin = u.greatest(margin, zero);
+        let margin = u.max(margin, zero);
         let reach = u.mul(margin, margin);
-        let gap_error = u.mul(rho, u.splat(U::BOUNDS.gap_error));
-        let limit = u.splat(limits.squared_above);
+        let gap_error = u.mul(rho, self.splat(Self::BOUNDS.gap_error));
+        let limit = self.splat(limits.squared_above);
 
         let (mut within, mut apart) = (0, 0);
         for _ in 0..STEPS {
             let squared = self.dot(v, v);
-            within |= u.below(u.mul(squared, u.splat(U::BOUNDS.above_one)), reach);
+            within |= self.below(u.mul(squared, self.splat(Self::BOUNDS.above_one)), reach);
             let heights_a = [self.dot(v, a0), self.dot(v, a1), self.dot(v, a2)];
             let heights_b = [self.dot(v, b0), self.dot(v, b1), self.dot(v, b2)];
-            let height_a = u.least(u.least(heights_a[0], heights_a[1]), heights_a[2]);
-            let height_b = u.greatest(u.greatest(heights_b[0], heights_b[1]), heights_b[2]);
+            let height_a = u.min(u.min(heights_a[0], heights_a[1]), heights_a[2]);
+            let height_b = u.max(u.max(heights_b[0], heights_b[1]), heights_b[2]);
             let gap = u.sub(height_a, height_b);
             apart |= self.apart(v, squared, gap, gap_error, limit);
             if (within | apart) & in_range == in_range {
@@ -133,7 +156,7 @@ impl<U: Unit> Kernel<U> {
             let e = self.sub(w, v);
             let t = u.div(u.sub(zero, self.dot(v, e)), self.dot(e, e));
             // In this order a NaN (0 / 0: v is w) becomes 0.
-            let t = u.least(u.greatest(t, zero), u.splat(1.0));
+            let t = u.min(u.max(t, zero), self.splat(1.0));
             v = [
                 u.add(v[0], u.mul(t, e[0])),
                 u.add(v[1], u.mul(t, e[1])),
@@ -150,11 +173,11 @@ impl<U: Unit> Kernel<U> {
             let squared = self.dot(n, n);
             let heights_a = [self.dot(n, a0), self.dot(n, a1), self.dot(n, a2)];
             let heights_b = [self.dot(n, b0), self.dot(n, b1), self.dot(n, b2)];
-            let least_a = u.least(u.least(heights_a[0], heights_a[1]), heights_a[2]);
-            let greatest_a = u.greatest(u.greatest(heights_a[0], heights_a[1]), heights_a[2]);
-            let least_b = u.least(u.least(heights_b[0], heights_b[1]), heights_b[2]);
-            let greatest_b = u.greatest(u.greatest(heights_b[0], heights_b[1]), heights_b[2]);
-            let gap = u.greatest(u.sub(least_a, greatest_b), u.sub(least_b, greatest_a));
+            let least_a = u.min(u.min(heights_a[0], heights_a[1]), heights_a[2]);
+            let greatest_a = u.max(u.max(heights_a[0], heights_a[1]), heights_a[2]);
+            let least_b = u.min(u.min(heights_b[0], heights_b[1]), heights_b[2]);
+            let greatest_b = u.max(u.max(heights_b[0], heights_b[1]), heights_b[2]);
+            let gap = u.max(u.sub(least_a, greatest_b), u.sub(least_b, greatest_a));
             apart |= self.apart(n, squared, gap, gap_error, limit);
         }
         // Most of the rest are within: where triangles do not meet, two edges are closest or a vertex and a face.
@@ -168,7 +191,7 @@ impl<U: Unit> Kernel<U> {
             }
             for j in 0..3 {
                 let v = self.edges([a[i], a[(i + 1) % 3]], [b[j], b[(j + 1) % 3]]);
-                within |= u.below(u.mul(self.dot(v, v), u.splat(U::BOUNDS.above_one)), reach);
+                within |= self.below(u.mul(self.dot(v, v), self.splat(Self::BOUNDS.above_one)), reach);
             }
         }
         Verdicts {
@@ -203,7 +226,7 @@ impl<U: Unit> Kernel<U> {
     #[inline(always)]
     fn share(&self, x: U::Number, y: U::Number) -> U::Number {
         let u = self.unit;
-        u.least(u.greatest(u.div(x, y), u.splat(0.0)), u.splat(1.0))
+        u.min(u.max(u.div(x, y), self.splat(0.0)), self.splat(1.0))
     }
 
     /// Lanes that a vertex of `points` and its foot on `face`, whose normal is `n`, prove within.
@@ -218,20 +241,20 @@ impl<U: Unit> Kernel<U> {
     ) -> u32 {
         let u = self.unit;
         let (d, e) = (self.sub(face[1], face[0]), self.sub(face[2], face[0]));
-        let inverse = u.div(u.splat(1.0), self.dot(n, n));
+        let inverse = u.div(self.splat(1.0), self.dot(n, n));
         let mut within = 0;
         for p in points {
             let r = self.sub(p, face[0]);
             let y = u.mul(self.dot(self.cross(r, e), n), inverse);
             let z = u.mul(self.dot(self.cross(d, r), n), inverse);
-            let x = u.sub(u.sub(u.splat(1.0), y), z);
-            let inside = u.at_most(zero, x) & u.at_most(zero, y) & u.at_most(zero, z);
+            let x = u.sub(u.sub(self.splat(1.0), y), z);
+            let inside = self.at_most(zero, x) & self.at_most(zero, y) & self.at_most(zero, z);
             let foot = |k: usize| {
                 let sum = u.add(u.mul(x, face[0][k]), u.mul(y, face[1][k]));
                 u.add(sum, u.mul(z, face[2][k]))
             };
             let v = self.sub([foot(0), foot(1), foot(2)], p);
-            within |= inside & u.below(u.mul(self.dot(v, v), u.splat(U::BOUNDS.above_one)), reach);
+            within |= inside & self.below(u.mul(self.dot(v, v), self.splat(Self::BOUNDS.above_one)), reach);
         }
         within
     }
@@ -249,8 +272,8 @@ impl<U: Unit> Kernel<U> {
         let u = self.unit;
         let taxicab = u.add(u.add(u.abs(v[0]), u.abs(v[1])), u.abs(v[2]));
         let g = u.sub(gap, u.mul(gap_error, taxicab));
-        let needed = u.mul(u.mul(limit, squared), u.splat(U::BOUNDS.above_one));
-        u.below(u.splat(U::BOUNDS.least_gap), g) & u.at_most(needed, u.mul(g, g))
+        let needed = u.mul(u.mul(limit, squared), self.splat(Self::BOUNDS.above_one));
+        self.below(self.splat(Self::BOUNDS.least_gap), g) & self.at_most(needed, u.mul(g, g))
     }
 
     #[inline(always)]
