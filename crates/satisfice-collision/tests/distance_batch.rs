@@ -81,3 +81,40 @@ fn one_bad_vertex_harms_no_other_lane() {
         }
     }
 }
+
+/// Coordinates and delta times a power of two: the same answers, and not one of them by a slower stage, down to scales at
+/// which every coordinate is denormal.
+#[test]
+fn no_scale_leaves_the_fast_filter() {
+    // Few bits, so that scaling is exact.
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(11);
+    let mut point = || [0, 1, 2].map(|_| (below(&mut rng, 4096) as f64 - 2048.0) / 64.0);
+    let pairs: Vec<(Triangle, Triangle)> = (0..400)
+        .map(|_| ([point(), point(), point()], [point(), point(), point()]))
+        .collect();
+    let delta = 19.0 / 64.0;
+    let at_one: Vec<Decision> = answers(&pairs, Threshold::new(delta).unwrap())
+        .into_iter()
+        .map(|(_, decision)| decision)
+        .collect();
+    assert!(at_one.iter().any(|d| d.within) && at_one.iter().any(|d| !d.within));
+    for power in [-1068, -1060, -1030, -1000, -400, -99, 99, 400, 1000, 1016] {
+        let (half, rest) = (2.0_f64.powi(power / 2), 2.0_f64.powi(power - power / 2));
+        let scaled: Vec<_> = pairs
+            .iter()
+            .map(|pair| {
+                let scale = |t: Triangle| t.map(|p| p.map(|x| x * half * rest));
+                (scale(pair.0), scale(pair.1))
+            })
+            .collect();
+        let threshold = Threshold::new(delta * half * rest).unwrap();
+        for ((k, decision), (a, b)) in answers(&scaled, threshold).into_iter().zip(&scaled) {
+            assert_eq!(decision, at_one[k], "2^{power}: {a:?} {b:?}");
+            let single = triangle_triangle::decide(a, b, threshold);
+            assert_eq!(single.within, decision.within);
+            if decision.by == DecidedBy::Filter {
+                assert_eq!(single.by, DecidedBy::Filter, "2^{power}: {a:?} {b:?}");
+            }
+        }
+    }
+}

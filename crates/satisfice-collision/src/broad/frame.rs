@@ -50,9 +50,10 @@ impl Frame {
         frame
     }
 
-    /// The frame for points inside `bounds` in which coordinates are below 2, axes as in the world.
+    /// The frame for points inside `bounds` in which coordinates are below 2, and at least 1 for the largest of them unless all
+    /// are denormal; axes as in the world.
     pub(crate) fn unit(bounds: &Aabb) -> Self {
-        Self::new(bounds, 1000, 0)
+        Self::new(bounds, 1022, 0)
     }
 
     /// Scaled by `2^wanted`, but so that coordinates stay below `2^(most + 1)`.
@@ -61,7 +62,7 @@ impl Frame {
         let half = (0..3)
             .map(|k| (bounds.max[k] - origin[k]).max(origin[k] - bounds.min[k]))
             .fold(0.0, f64::max);
-        let scale = power_of_two(wanted.min(most - exponent(half)).clamp(-1000, 1000));
+        let scale = power_of_two(wanted.min(most - exponent(half)).clamp(-1022, 1022));
         let half = half * scale;
         let error = half * (U + U * U) + power_of_two(-149);
         Self {

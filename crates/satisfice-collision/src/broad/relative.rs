@@ -1,16 +1,17 @@
 //! How one body lies in the frame of another: a rotation, a scale and a shift in `f32`, and what their rounding costs.
 //!
 //! With world = R p + t, the frame of b holds q = (R_b^T (R_a p + t_a - t_b) - o_b) s_b. Errors on every axis, in the unit of
-//! that frame, with r = s_b / s_a <= 1 and c the shift: e_b for b's own coordinates; sqrt(3) r e_a for a's; the `f32` matrix,
-//! three products and three sums of numbers up to 2 sqrt(3) r and c: below 8u (4 r + |c|); the `f64` arithmetic of posing and
-//! of this composition: below 2^-46 times all lengths involved (a rotation matrix made from a rounded quaternion is
-//! orthonormal within 2^-50). A box turned with its centre and the absolute matrix is wrong by no more.
+//! that frame, with r = s_b / s_a <= 1, h the largest coordinate of a in its own frame and c the shift: e_b for b's own
+//! coordinates; sqrt(3) r e_a for a's; the `f32` matrix, three products and three sums of numbers up to sqrt(3) r h and c:
+//! below 8u (2 r h + |c|); the `f64` arithmetic of posing and of this composition: below 2^-46 times all lengths involved (a
+//! rotation matrix made from a rounded quaternion is orthonormal within 2^-50). A box turned with its centre and the absolute
+//! matrix is wrong by no more. h is below 2 unless the body is larger than any power of two can bring there.
 
 use super::boxes::Group;
 use super::frame::{Filter, Frame, U, power_of_two};
-use super::lanes::Eight;
 use super::separate::Directions;
 use crate::Placement;
+use crate::simd::Eight;
 
 /// Brings coordinates of one frame into another.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +73,7 @@ impl Relative {
         let c = largest(&shift);
         let error = b.error
             + 1.7321 * ratio * a.error
-            + 8.0 * U * (4.0 * ratio + c)
+            + 8.0 * U * (2.0 * ratio * a.half + c)
             + power_of_two(-46) * lengths
             + power_of_two(-140);
         let scaled = delta * b.scale;
@@ -93,7 +94,8 @@ impl Relative {
                 0.0
             },
         };
-        (relative, Filter::new(scaled, error, c + 4.0))
+        let half = c + 2.0 * (ratio * a.half).max(b.half);
+        (relative, Filter::new(scaled, error, half))
     }
 
     /// Within one frame.

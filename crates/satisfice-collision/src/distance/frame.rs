@@ -33,7 +33,7 @@
 //! `|v^| < delta_ - E` and the distance, at most `|v^| + E`, is below delta. (Underflow in `v^.v^` moves `|v^|` by less than
 //! 2^-536, the slack of 24 u rho is at least 2^-149.)
 
-use super::vector::{cross, dot, exponent, ldexp, scale, sub};
+use super::vector::{cross, dot, exponent, ldexp, power_of_two, scale, sub};
 use super::{Point, Threshold};
 
 /// 1 + 8u.
@@ -135,11 +135,13 @@ impl<const M: usize, const N: usize> Frame<M, N> {
             return Err(NoFrame::Coincident);
         }
         let shift = exponent(frame.rho);
-        let shrink = |p: Point| p.map(|x| ldexp(x, -shift));
+        // Two factors, each a power of two in the normal range.
+        let (first, second) = (power_of_two(-(shift / 2)), power_of_two(shift / 2 - shift));
+        let bring = |x: f64| x * first * second;
         Ok(Self {
-            a: frame.a.map(shrink),
-            b: frame.b.map(shrink),
-            rho: ldexp(frame.rho, -shift),
+            a: frame.a.map(|p| p.map(bring)),
+            b: frame.b.map(|p| p.map(bring)),
+            rho: bring(frame.rho),
             exponent: frame.exponent + shift,
         })
     }

@@ -51,7 +51,7 @@ pub(super) fn ldexp(x: f64, exponent: i32) -> f64 {
 }
 
 /// `2^exponent` for an exponent of the normal range, -1022 to 1023.
-const fn power_of_two(exponent: i32) -> f64 {
+pub(super) const fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
