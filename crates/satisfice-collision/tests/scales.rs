@@ -1,18 +1,21 @@
-//! Scenes at every scale that `f64` holds: the tree and the grid find what deciding every pair finds.
+//! Worlds at every scale that `f64` holds: the tree and the grid find what deciding every pair finds.
 #![allow(clippy::unwrap_used)]
 
 use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
-use satisfice_collision::scene::{Body, Contact, Scene};
+use satisfice_collision::scene::{Body, Contact, World};
 use satisfice_collision::{Mesh, Placement, generate};
 
 fn contacts(kind: PairKind, method: Method, bodies: &[(Mesh, Placement)], delta: f64) -> Vec<Contact> {
-    let mut scene = Scene::new(kind, Threshold::new(delta).unwrap()).with_method(method);
+    let mut world = World::new(kind, Threshold::new(delta).unwrap()).with_method(method);
     for (mesh, placement) in bodies {
-        let body = scene.add(Body::rigid(mesh.clone()));
-        scene.place(body, *placement).unwrap();
+        let body = world.add(Body::rigid(mesh.clone())).unwrap();
+        world.place(body, *placement).unwrap();
     }
-    scene.contacts().unwrap().contacts
+    world.update().unwrap();
+    let mut contacts: Vec<Contact> = world.contacts().collect();
+    contacts.sort_unstable();
+    contacts
 }
 
 #[test]

@@ -102,14 +102,6 @@ pub(crate) trait Lanes: Copy + Send + Sync {
         s.bits(s.less(s.square([way(0), way(1), way(2)]), s.splat(limit)))
     }
 
-    /// Lanes in which the squared distance of two points is below `limit`.
-    #[inline(always)]
-    fn each_closer(self, a: &[Eight; 3], b: &[Eight; 3], limit: f32) -> u32 {
-        let s = self.single();
-        let way = |k: usize| s.sub(s.load(&a[k]), s.load(&b[k]));
-        s.bits(s.less(s.square([way(0), way(1), way(2)]), s.splat(limit)))
-    }
-
     /// Lanes inside the closed box `min..=max`.
     #[inline(always)]
     fn inside(self, c: [&Eight; 3], min: [f32; 3], max: [f32; 3]) -> u32 {
