@@ -179,7 +179,7 @@ fn a_representative_is_listed_with_its_own_fitness() {
         )
         .unwrap();
     let mut listed: Vec<_> = report.hits().map(|hit| (*hit.solution, hit.fitness)).collect();
-    listed.sort_by(|a, b| a.0.cmp(&b.0));
+    listed.sort_by_key(|hit| hit.0);
     assert_eq!(listed, [(0, 0.0), (2, 2.0), (5, 5.0), (6, 6.0), (8, 8.0)]);
     assert_eq!(report.best().unwrap().fitness, 0.0);
 }

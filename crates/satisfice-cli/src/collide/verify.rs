@@ -98,16 +98,15 @@ fn pairs(lists: &Lists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
             continue;
         }
         let distance = world.fitness(&pair)?;
-        if !(distance < threshold) {
+        let is_pair = distance < threshold; // never true of NaN
+        let agrees = |given: f64| (given - distance).abs() <= ROUNDING * threshold;
+        if !is_pair {
             wrong.push(Mismatch::new(
                 place,
                 format!("{pair}, {distance} apart"),
                 format!("less than {threshold}"),
             ));
-        } else if line
-            .distance
-            .is_some_and(|given| !((given - distance).abs() <= ROUNDING * threshold))
-        {
+        } else if line.distance.is_some_and(|given| !agrees(given)) {
             let given = line.distance.unwrap_or_default();
             wrong.push(Mismatch::new(place, format!("the distance {given}"), distance));
         }

@@ -151,11 +151,14 @@ impl Transform {
     }
 }
 
+/// A mesh by its address, and the bits of a matrix.
+type Shape = (usize, [u64; 9]);
+
 /// Meshes in the scales and shears that a scene uses, each made once.
 #[derive(Default)]
 pub(super) struct Instances {
     /// By the address of the mesh, which is kept alive beside, and the bits of the matrix.
-    shaped: BTreeMap<(usize, [u64; 9]), (Arc<Mesh>, Arc<Mesh>)>,
+    shaped: BTreeMap<Shape, (Arc<Mesh>, Arc<Mesh>)>,
 }
 
 impl Instances {

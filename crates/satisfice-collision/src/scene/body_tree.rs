@@ -78,11 +78,12 @@ impl Node {
     fn overlaps(&self, b: &Box32) -> u32 {
         let mut gap = [f32::NEG_INFINITY; 8];
         for k in 0..3 {
-            for lane in 0..8 {
-                let below = self.lower[k][lane] - b.max[k];
-                let above = b.min[k] - self.upper[k][lane];
+            let sides = self.lower[k].iter().zip(&self.upper[k]);
+            for (gap, (lower, upper)) in gap.iter_mut().zip(sides) {
+                let below = lower - b.max[k];
+                let above = b.min[k] - upper;
                 let wider = if below > above { below } else { above };
-                gap[lane] = if wider > gap[lane] { wider } else { gap[lane] };
+                *gap = if wider > *gap { wider } else { *gap };
             }
         }
         (0..8).fold(0, |mask, lane| mask | u32::from(gap[lane] <= 0.0) << lane)

@@ -1,6 +1,6 @@
 //! Which bodies are in a world, and which of them may collide: adding, removing, groups and exclusions.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::body::{Body, BodyId};
 use super::narrow::Workspace;
@@ -15,7 +15,7 @@ pub(super) struct Membership {
     /// Excluded pairs of slots, both ways.
     excluded: BTreeSet<(u32, u32)>,
     /// How many bodies there are with these groups and this mask.
-    classes: HashMap<(u32, u32), u64>,
+    classes: BTreeMap<(u32, u32), u64>,
     /// Pairs of bodies that are kept apart, and pairs that may collide, if they have been counted since the last change.
     counted: Option<(u64, u64)>,
     /// Fixed and rigid bodies.

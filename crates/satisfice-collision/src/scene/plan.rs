@@ -73,10 +73,9 @@ impl Situation {
         match self.method {
             Method::BruteForce => Plan::All,
             Method::Grid if self.is_points => Plan::Grid,
-            Method::Grid | Method::Tree => tree,
             Method::Auto if few => Plan::All,
             Method::Auto if self.is_points && self.prefers_grid() => Plan::Grid,
-            Method::Auto => tree,
+            Method::Grid | Method::Tree | Method::Auto => tree,
         }
     }
 

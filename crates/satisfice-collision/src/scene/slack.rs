@@ -3,7 +3,7 @@
 //! Rigid bodies are expected to go on as they do. A contact whose distance, with the bodies in the expected places, is below the
 //! threshold by more than the bodies are away from these places still holds, whatever else is the case.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::pairs::{Record, Status};
 use super::{State, World};
@@ -32,7 +32,7 @@ impl World {
     /// bodies' motion alone which of them still hold. For the time between frames: no answer changes by it. Cost: one distance a
     /// contact.
     pub fn measure_contacts(&mut self) {
-        let expected: HashMap<u32, Placement> = self
+        let expected: BTreeMap<u32, Placement> = self
             .came_from
             .iter()
             .map(|(slot, from)| (*slot, self.next_place(*slot, from)))
@@ -59,7 +59,7 @@ impl World {
         step.and_then(|step| now.then(&step)).unwrap_or(now)
     }
 
-    fn measure(&self, record: &Record, expected: &HashMap<u32, Placement>) -> Slack {
+    fn measure(&self, record: &Record, expected: &BTreeMap<u32, Placement>) -> Slack {
         let [a, b] = record.bodies;
         let delta = self.threshold.get();
         let place = |slot: u32| expected.get(&slot).copied().unwrap_or(self.state(slot).placement);

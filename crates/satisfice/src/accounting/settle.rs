@@ -206,7 +206,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// Inserts a hit of a lane, as of now; returns whether it was new.
-    pub(crate) fn insert_from_lane(&mut self, hit: Hit<'_, T>, observer: &mut dyn Observer<T>) -> bool {
+    pub(crate) fn insert_from_lane(&mut self, hit: &Hit<'_, T>, observer: &mut dyn Observer<T>) -> bool {
         let seconds = self.clock.elapsed().as_secs_f64();
         let entered = self.archive.enter(
             hit.solution.clone(),

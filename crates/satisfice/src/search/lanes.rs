@@ -154,7 +154,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
                 if common.ledger.stops_before_more() {
                     return true;
                 }
-                if common.ledger.insert_from_lane(hit, observer) {
+                if common.ledger.insert_from_lane(&hit, observer) {
                     finders.push(i);
                 }
             }

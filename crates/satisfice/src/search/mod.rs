@@ -298,7 +298,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         }
         self.dimension = Some(now);
         self.problem = Some(Fingerprint::of(problem));
-        let running = self.begin(problem, budget, probes, rule)?;
+        let running = self.begin(problem, budget, &probes, rule)?;
         Ok(Stepper::new(self, problem, running))
     }
 
@@ -342,7 +342,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         &mut self,
         problem: &P,
         budget: &Budget,
-        probes: Probes,
+        probes: &Probes,
         rule: WarmStart,
     ) -> Result<Running<P::Scalar, P::Solution>, Error> {
         let (dimension, count) = (problem.space().dimension(), self.lanes.len());

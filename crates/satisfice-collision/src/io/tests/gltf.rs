@@ -21,6 +21,10 @@ fn data() -> Vec<u8> {
 }
 
 /// A document with one triangle as mesh 0 and these nodes.
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "every caller makes the nodes on the spot"
+)]
 fn document(nodes: Value) -> Value {
     let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(data()));
     json!({
@@ -198,7 +202,8 @@ fn gltf_that_is_incomplete_or_contradicts_itself_gives_one_clear_error() {
         change(&mut value);
         say(&value)
     };
-    let cases: [(&dyn Fn(&mut Value), &str); 14] = [
+    type Case<'a> = (&'a dyn Fn(&mut Value), &'a str);
+    let cases: [Case<'_>; 14] = [
         (
             &|v| v["buffers"][0]["uri"] = json!("missing.bin"),
             "a: cannot read ./missing.bin: No such file or directory (os error 2)",

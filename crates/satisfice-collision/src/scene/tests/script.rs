@@ -226,8 +226,8 @@ impl Script {
                 let mut points = soft.vertices().to_vec();
                 let some = if corner { points.len() / 4 } else { points.len() };
                 for point in &mut points[..some] {
-                    for k in 0..3 {
-                        point[k] += actor.way[k];
+                    for (x, step) in point.iter_mut().zip(actor.way) {
+                        *x += step;
                     }
                 }
                 points[0][2] += jitter[2];

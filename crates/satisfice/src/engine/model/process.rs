@@ -129,9 +129,10 @@ impl Process {
     #[inline(always)]
     fn accumulate(&self, block: &mut Block, from: usize) {
         for (solved, z) in block.solved[from..].iter().zip(&self.solved[from..]) {
-            for lane in 0..LANES {
-                block.mean[lane] += solved[lane] * z;
-                block.explained[lane] += solved[lane] * solved[lane];
+            let sums = block.mean.iter_mut().zip(&mut block.explained);
+            for ((mean, explained), solved) in sums.zip(solved) {
+                *mean += solved * z;
+                *explained += solved * solved;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
+use super::local::{Given, Model};
 use super::low_discrepancy;
-use super::model::{Given, Model};
 use super::pool::Pool;
 use super::process::Process;
 use super::record::{Kind, Record};

@@ -38,7 +38,8 @@ impl<S: Real> Probe<S> {
     pub(super) fn around(engine: &ConfiguredEngine<S>) -> (ConfiguredEngine<S>, Findings) {
         let findings = Findings::default();
         let (engine, shared) = (engine.clone(), findings.clone());
-        let probe = ConfiguredEngine::custom(&engine.name().to_owned(), move || Self {
+        let name = engine.name().to_owned();
+        let probe = ConfiguredEngine::custom(&name, move || Self {
             inner: engine.build_unchecked(),
             findings: shared.clone(),
         });
@@ -97,7 +98,8 @@ impl<S: Real> Restored<S> {
     pub(super) fn around(engine: &ConfiguredEngine<S>, every: usize) -> (ConfiguredEngine<S>, Findings) {
         let findings = Findings::default();
         let (engine, shared) = (engine.clone(), findings.clone());
-        let restored = ConfiguredEngine::custom(&engine.name().to_owned(), move || Self {
+        let name = engine.name().to_owned();
+        let restored = ConfiguredEngine::custom(&name, move || Self {
             inner: engine.build_unchecked(),
             spare: (0..SPARE).map(|_| engine.build_unchecked()).collect(),
             every,
