@@ -1,4 +1,4 @@
-//! Interval arithmetic for [`lower_bound`](crate::SatisficingProblem::lower_bound): F of a region in one evaluation.
+//! Interval arithmetic for [`lower_bound`](crate::Bounds): F of a region in one evaluation.
 //!
 //! A fitness in closed form, written once more with [`Interval`]s instead of numbers, encloses all its values in a region:
 //! the lower end is a bound. The arithmetic is that of [`maryada`], which rounds outward (IEEE Std 1788.1-2017).

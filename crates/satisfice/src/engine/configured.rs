@@ -227,7 +227,7 @@ impl<S: Real> ConfiguredEngine<S> {
     /// The engine, and beside it a flood fill: from every hit its neighbours, their neighbours where they are hits, and so
     /// on, breadth first. Reports show the parameter `exhaust`.
     ///
-    /// Neighbours are the [problem's own](crate::SatisficingProblem::neighbours), or else the next lattice points; on
+    /// Neighbours are the [problem's own](crate::Neighbourhood), or else the next lattice points; on
     /// continuous axes, the nearest points in both directions of each axis that are not known hits. They get at most every
     /// other evaluation, so that the engine goes on discovering, and all of them once the engine has nothing more to propose.
     /// The engine is told of the hits among them.
@@ -240,7 +240,7 @@ impl<S: Real> ConfiguredEngine<S> {
     }
 
     /// The engine, kept out of regions without hits where the problem
-    /// [offers bounds](crate::SatisficingProblem::lower_bound). Reports show the parameter `prune`.
+    /// [offers bounds](crate::Bounds). Reports show the parameter `prune`.
     ///
     /// The space is split where the engine looks and finds nothing; a half whose bound is at least delta is excluded. A
     /// proposal there is not evaluated, and the engine is told that its F is not finite. If all proposals of an engine are
