@@ -1,10 +1,9 @@
-//! Brute force over all vertex pairs: the referee of everything cleverer, and the reference count of small scenes.
+//! Brute force over all vertex pairs: the reference for every faster method.
 
 use crate::distance::{Threshold, vertex_vertex};
 use crate::mesh::Adjacency;
 
-/// All pairs `[i, j]` with `|a_i - b_j| < delta`, sorted. Exact for all finite coordinates. O(|a| |b|), about 1 ns a
-/// pair.
+/// All pairs `[i, j]` with `|a_i - b_j| < delta`, sorted. Exact for all finite coordinates. Cost: O(|a| |b|).
 ///
 /// ```
 /// use satisfice_collision::{distance::Threshold, oracle};
@@ -30,7 +29,7 @@ pub fn pairs_between(a: &[[f64; 3]], b: &[[f64; 3]], threshold: Threshold) -> Ve
 }
 
 /// All pairs `[i, j]` of one body with `i < j`, `|a_i - a_j| < delta` and `j` not among the `excluded` of `i`, sorted.
-/// Exact for all finite coordinates. O(|a|^2 / 2).
+/// Exact for all finite coordinates. Cost: O(|a|^2 / 2).
 #[must_use]
 pub fn pairs_within(a: &[[f64; 3]], excluded: &Adjacency, threshold: Threshold) -> Vec<[u32; 2]> {
     let columns = Columns::new(a);
@@ -48,7 +47,7 @@ pub fn pairs_within(a: &[[f64; 3]], excluded: &Adjacency, threshold: Threshold) 
     pairs
 }
 
-/// Coordinates by axis, which the compiler turns into vector instructions.
+/// Coordinates by axis, so that the compiler can use vector instructions.
 struct Columns {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -65,10 +64,10 @@ impl Columns {
         }
     }
 
-    /// How many of the points from `start` on may be closer to `p` than the threshold: never fewer than are.
+    /// An upper bound of the number of points from `start` on that are closer to `p` than the threshold.
     fn candidates(&self, p: [f64; 3], start: usize, threshold: Threshold) -> u32 {
-        // Six roundings make the computed square too large by a factor below 1 + 4 EPSILON, underflow by less than the
-        // least normal number.
+        // Six roundings make the computed square too large by a factor below 1 + 4 EPSILON; underflow adds less than the
+        // smallest normal number.
         let limit = threshold.squared_above() * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
         let [x, y, z] = [&self.x[start..], &self.y[start..], &self.z[start..]];
         let mut count = 0;

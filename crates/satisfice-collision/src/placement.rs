@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// A rigid motion `x -> R x + t`: first turned about the origin, then moved. All in `f64`.
+/// A rigid motion `x -> R x + t`: a rotation about the origin, then a translation, in `f64`.
 ///
 /// ```
 /// use satisfice_collision::Placement;
@@ -20,7 +20,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Leaves every point where it is, to the bit.
+    /// The identity. It leaves every bit of a point unchanged.
     pub const IDENTITY: Self = Self {
         quaternion: [1.0, 0.0, 0.0, 0.0],
         rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -74,7 +74,7 @@ impl Placement {
         Self::from_quaternion([c, s * x, s * y, s * z])
     }
 
-    /// The same placement moved further by `offset`.
+    /// The same placement, then a translation by `offset`.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the translation is not finite.
@@ -109,7 +109,7 @@ impl Placement {
         Self::from_quaternion(product)?.moved(next.apply(self.translation))
     }
 
-    /// The placement that takes every point back, up to rounding; a translation exactly.
+    /// The inverse motion: exact for a translation, within rounding otherwise.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the translation overflows.
@@ -141,7 +141,7 @@ impl Placement {
         self.translation
     }
 
-    /// Where a point goes. Without a rotation this is exactly `p + t`, rounded once.
+    /// The image of a point. Without a rotation it is `p + t`, rounded once.
     #[must_use]
     pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| {
@@ -150,7 +150,7 @@ impl Placement {
         })
     }
 
-    /// The mesh in its place; edges and triangles are shared with the original.
+    /// The mesh after the motion. It shares edges and triangles with the original.
     ///
     /// # Errors
     /// [`Error::NonFiniteVertex`] if a coordinate overflows.
@@ -165,8 +165,8 @@ impl Default for Placement {
     }
 }
 
-/// `v` at length 1, or `None` for zero. Divided by its greatest component first, so that no square overflows or
-/// vanishes.
+/// `v` scaled to length 1, or `None` for zero. It is divided by its largest component first, so that no square overflows
+/// or underflows.
 fn unit<const N: usize>(v: [f64; N]) -> Option<[f64; N]> {
     let greatest = v.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if greatest == 0.0 {
@@ -209,7 +209,7 @@ mod tests {
         (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Rodrigues' formula, the referee of the quaternion.
+    /// Rodrigues' formula, the reference for the quaternion.
     fn rodrigues(axis: [f64; 3], angle: f64, p: [f64; 3]) -> [f64; 3] {
         let length = distance(axis, [0.0; 3]);
         let [x, y, z] = axis.map(|c| c / length);

@@ -1,8 +1,8 @@
-//! Many triangle pairs at once: eight lanes, AVX2 where the machine has it (chosen at run time), one answer for all.
+//! Decisions for many triangle pairs, eight at a time on the vector unit.
 //!
-//! First in single precision, in coordinates local to each pair and scaled by a power of two so that delta is between 1 and 2:
-//! next to no pair is so close to delta that this leaves it open. Pairs of a size for which it is not made go through the same
-//! filter in double precision; what that leaves open is decided pair by pair.
+//! The first filter runs in single precision, in coordinates local to each pair and scaled by a power of two so that delta is
+//! between 1 and 2. It leaves open only the few pairs that are very close to delta. Pairs that are too large or too small for
+//! it go through the same filter in double precision. Pairs that remain open are decided one by one.
 
 use super::kernel::{Kernel, Limits, Vector, Verdicts};
 use super::vector::{exponent, ldexp};
@@ -17,8 +17,8 @@ const LARGEST_SHIFT: i32 = 1000;
 
 /// Collects triangle pairs and decides eight at a time whether they are within a threshold.
 ///
-/// Answers come in the order of the pairs, each with the tag it was pushed with; after the last pair call
-/// [`finish`](Self::finish). They are those of [`triangle_triangle::decide`]. Cost: 20 to 250 ns a pair, the most where two triangles are near each other.
+/// Answers come in the order of the pairs, each with the tag of its pair; call [`finish`](Self::finish) after the last pair.
+/// They are within the threshold exactly if [`triangle_triangle::decide`] says so.
 ///
 /// ```
 /// use satisfice_collision::distance::{Threshold, TriangleBatch};
@@ -57,7 +57,7 @@ impl<T: Copy + Default> TriangleBatch<T> {
         }
     }
 
-    /// Adds a pair. Every eighth call hands the answers of eight pairs to `answer`.
+    /// Adds a pair. Every eighth call passes the answers of eight pairs to `answer`.
     #[inline]
     pub fn push(&mut self, a: &Triangle, b: &Triangle, tag: T, answer: impl FnMut(T, Decision)) {
         let lane = self.len;
@@ -70,7 +70,7 @@ impl<T: Copy + Default> TriangleBatch<T> {
         }
     }
 
-    /// Hands the answers of the pairs that wait to `answer`; the batch is empty afterwards.
+    /// Passes the answers of the remaining pairs to `answer` and empties the batch.
     pub fn finish(&mut self, mut answer: impl FnMut(T, Decision)) {
         if self.len == 0 {
             return;
@@ -225,7 +225,7 @@ mod tests {
     use super::*;
     use crate::simd::Portable;
 
-    /// Machines with and without AVX2 give the same bits, and single precision says nothing that double precision denies.
+    /// Machines with and without AVX2 give the same bits, and no answer in single precision contradicts double precision.
     #[test]
     fn neither_the_vector_unit_nor_the_precision_changes_an_answer() {
         let (mut a, mut b) = ([[[0.0; 3]; 3]; LANES], [[[0.0; 3]; 3]; LANES]);

@@ -1,6 +1,6 @@
-//! A careful floating-point guess of the nearest pair of features: every pair of their parts is tried and the best kept.
+//! A floating-point guess of the closest points: every pair of parts is tried and the best kept.
 //!
-//! Nothing depends on the guess being right; `extended` and `exact` prove or replace it.
+//! No answer depends on the guess; `extended` and `exact` prove or replace it.
 
 use super::vector::{dot, scale, sub};
 use super::{Point, Triangle, closest};
@@ -22,7 +22,7 @@ pub(super) fn edges(vertices: usize) -> &'static [[usize; 2]] {
     }
 }
 
-/// The nearest pair of points among all critical pairs of parts, in floating point.
+/// The closest pair of points among all critical pairs of parts, in floating point.
 pub(super) fn nearest(a: &[Point], b: &[Point]) -> Guess {
     let mut best = Guess {
         squared: f64::INFINITY,
@@ -75,7 +75,7 @@ pub(super) fn nearest(a: &[Point], b: &[Point]) -> Guess {
 }
 
 impl Guess {
-    /// A guess of the parts alone: vertices with a weight above 0.
+    /// A guess of the parts alone: those vertices with a positive weight.
     pub(super) fn of_parts(a: [f64; 3], b: [f64; 3]) -> Self {
         Self { squared: 0.0, a, b }
     }

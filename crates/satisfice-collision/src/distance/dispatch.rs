@@ -61,7 +61,7 @@ impl Question for Measure {
     }
 }
 
-/// Whether the distance of two features is below delta, and how that is known.
+/// Whether the distance of two features is below delta, and the stage that proved it.
 #[inline]
 #[must_use]
 pub fn decide(a: &Shape, b: &Shape, threshold: Threshold) -> Decision {

@@ -16,7 +16,7 @@ impl Hulls<2, 3> for EdgeTriangle {
     }
 }
 
-/// Whether the distance is below delta, and how that is known. Cost: about 100 ns.
+/// Whether the distance is below delta, and the stage that proved it.
 #[inline]
 pub fn decide(a: &Segment, b: &Triangle, threshold: Threshold) -> Decision {
     resolve::decide::<EdgeTriangle, 2, 3>(a, b, threshold)

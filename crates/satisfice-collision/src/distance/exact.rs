@@ -17,7 +17,7 @@ use super::vector::{exponent, ldexp};
 
 type Vector = [IBig; 3];
 
-/// The nearest pair of points.
+/// The closest pair of points.
 #[derive(Debug, Clone)]
 pub(super) struct Nearest {
     pub(super) distance: f64,
@@ -28,8 +28,8 @@ pub(super) struct Nearest {
 /// Vertex numbers of a part.
 type Part<'p> = &'p [usize];
 
-/// A critical pair of parts: its squared distance `numerator / denominator` and the weights
-/// `steps[k] / step_unit` of the later vertices of each part.
+/// A critical pair of parts: its squared distance `numerator / denominator`, and the weights `steps[k] / step_unit` of all but
+/// the first vertex of each part.
 struct Critical {
     numerator: IBig,
     denominator: IBig,
@@ -211,7 +211,7 @@ fn try_parts(
 }
 
 /// Whether all steps are above 0 and those of each part (the first `split`, the others) sum to below `unit`.
-/// False for a `unit` of 0, the mark of dependent directions.
+/// False for a `unit` of 0, which means dependent directions.
 fn is_inside(steps: &[IBig], split: usize, unit: &IBig) -> bool {
     let (of_a, of_b) = steps.split_at(split);
     steps.iter().all(|step| *step > IBig::ZERO)

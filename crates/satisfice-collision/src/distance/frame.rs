@@ -1,7 +1,7 @@
 //! The floating-point filter: local coordinates and two certificates with proved error bounds.
 //!
-//! Features are convex hulls of `M` and `N` points. Whatever method proposes a pair of points or a direction, it is only
-//! believed through one of two certificates, so that no wrong choice of a feature can make a wrong decision:
+//! Features are convex hulls of `M` and `N` points. Any method may propose a pair of points or a direction. Only one of two
+//! certificates turns a proposal into a decision, so that a poor proposal cannot make a wrong decision:
 //!
 //! * **upper bound**: any point of A and any point of B are at least as far apart as the features;
 //! * **lower bound**: for any direction v, `gap(v) = min_i v.a_i - max_j v.b_j` gives `distance >= gap(v) / |v|`.
@@ -48,7 +48,7 @@ pub(super) const LEAST_GAP: f64 = f64::from_bits((1023 - 300) << 52);
 pub(super) const LEAST_RHO: f64 = f64::from_bits((1023 - 100) << 52);
 pub(super) const GREATEST_RHO: f64 = f64::from_bits((1023 + 100) << 52);
 
-/// What a certificate says.
+/// The result of the certificates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     Within,
@@ -103,7 +103,7 @@ impl<const M: usize, const N: usize> Frame<M, N> {
         let origin = a[0];
         let a = a.map(|p| sub(p, origin));
         let b = b.map(|p| sub(p, origin));
-        // A chain an axis; NaN passes unseen here and is caught where a difference of points is judged.
+        // One chain of maxima per axis. NaN passes unnoticed here; `has_nan` finds it later.
         let mut most = [0.0_f64; 3];
         for p in a[1..].iter().chain(&b) {
             for k in 0..3 {
@@ -118,7 +118,7 @@ impl<const M: usize, const N: usize> Frame<M, N> {
         }
     }
 
-    /// The rare frame that a power of two must bring into range.
+    /// The rare frame that needs a power of two to be in range.
     #[cold]
     #[inline(never)]
     fn scaled(a: &[Point; M], b: &[Point; N]) -> Result<Self, NoFrame> {
@@ -165,8 +165,8 @@ impl<const M: usize, const N: usize> Frame<M, N> {
         }
     }
 
-    /// Whether a coordinate is NaN. Every difference of points then has a NaN (even a weight of 0 passes it on), so
-    /// that no certificate speaks; this is asked afterwards.
+    /// Whether a coordinate is NaN. Every difference of points is then NaN (even with a weight of 0), so that no certificate
+    /// holds; therefore this test may come afterwards.
     pub(super) fn has_nan(&self) -> bool {
         self.a.iter().chain(&self.b).flatten().any(|x| x.is_nan())
     }
@@ -224,13 +224,13 @@ impl Limits {
     }
 }
 
-/// The greater of two numbers, one instruction; `x` if `y` is NaN.
+/// The larger of two numbers in one instruction; `x` if `y` is NaN.
 #[inline(always)]
 fn greatest(x: f64, y: f64) -> f64 {
     if y > x { y } else { x }
 }
 
-/// The lesser of two numbers, one instruction; the operands are finite.
+/// The smaller of two finite numbers in one instruction.
 #[inline(always)]
 pub(super) fn least(x: f64, y: f64) -> f64 {
     if x < y { x } else { y }
@@ -260,8 +260,8 @@ pub(super) fn piercing(hull: &[Point], edges: &[[usize; 2]], t: &[Point; 3], rho
     })
 }
 
-/// Where the segment `p q` crosses the plane of `t`: the parameter on the segment and barycentric weights, approximately.
-/// Meaningful for an edge from `piercing`.
+/// The point in which the segment `p q` crosses the plane of `t`: the parameter on the segment and the barycentric weights,
+/// approximately. Meaningful for an edge from `piercing`.
 pub(super) fn crossing(p: Point, q: Point, t: &[Point; 3]) -> (f64, [f64; 3]) {
     let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
     let (from, to) = (dot(n, sub(p, t[0])).abs(), dot(n, sub(q, t[0])).abs());

@@ -1,15 +1,15 @@
-//! The fast filter of hulls with up to nine differences: GJK (Gilbert, Johnson, Keerthi 1988, doi:10.1109/56.2083) that
-//! stops as soon as a certificate of `frame` speaks, far from converged as a rule.
+//! The fast filter of hulls with up to nine differences: GJK (Gilbert, Johnson, Keerthi 1988, doi:10.1109/56.2083), which
+//! stops as soon as a certificate of `frame` holds, usually long before it converges.
 //!
-//! It seeks the point nearest to 0 of the hull of all differences `a_i - b_j`. A step may go wrong by rounding or on
-//! degenerate input: then no certificate speaks, and the slower stages decide.
+//! It searches the hull of all differences `a_i - b_j` for the point closest to 0. Rounding or degenerate input may mislead a
+//! step: then no certificate holds, and the slower stages decide.
 
 use super::candidates::Guess;
 use super::frame::{self, Frame, Limits, Verdict};
 use super::vector::{add, cross, dot, scale, sub};
 use super::{Point, closest};
 
-/// Steps before giving up. The median need is 2; pairs in the band around delta never end.
+/// The most steps. Most pairs need about two; those in the band around delta never end.
 const STEPS: usize = 12;
 
 #[inline(always)]
@@ -44,17 +44,17 @@ pub(super) fn filter<const M: usize, const N: usize>(frame: &Frame<M, N>, limits
 }
 
 /// The distance in the frame's unit, wrong by at most `accuracy` of itself: the upper bound `|v| + E` and the lower bound
-/// `gap / |v|` agree that far. `None` where they never do.
+/// `gap / |v|` agree that far. `None` if they never do.
 pub(super) fn distance<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) -> Option<f64> {
     let (squared, _) = converge(frame, accuracy)?;
     let distance = squared.sqrt();
     (frame::SPAN_ERROR * frame.rho <= accuracy * distance).then_some(distance)
 }
 
-/// The vertices that the nearest points of two features that do not meet are made of, with weights of no meaning but that they
-/// are positive. `None` where that is not seen.
+/// The vertices whose hulls contain the closest points of two disjoint features, each with an arbitrary positive weight.
+/// `None` if the iteration does not find them.
 pub(super) fn parts<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Option<Guess> {
-    // Near enough that further steps would rarely change the parts; whether they are right is proved elsewhere.
+    // So close that further steps would rarely change the parts; `extended` proves whether they are right.
     const NEAR: f64 = 1e-12;
     let (_, simplex) = converge(frame, NEAR)?;
     let (mut a, mut b) = ([0.0; 3], [0.0; 3]);

@@ -1,11 +1,11 @@
-//! The filter for triangle pairs side by side, one a lane, in the precision of the unit.
+//! The filter for several triangle pairs, one per lane, in the precision of the unit.
 //!
-//! Each lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point nearest to 0 of the hull of the differences
-//! `a_i - b_j`: a step goes to the best point between v and the difference w lowest in direction v, which takes no
-//! branch. The certificates of `frame` stop it; what they leave open after [`STEPS`] steps is decided pair by pair.
+//! Each lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point closest to 0 in the hull of the
+//! differences `a_i - b_j`: a step goes to the best point between v and the difference w that is lowest in direction v, which
+//! needs no branch. The certificates of `frame` stop it; pairs still open after [`STEPS`] steps are decided one by one.
 //!
-//! What the steps and the normals of both planes leave open is mostly within: the vertices over the faces and the nine pairs of
-//! edges then offer a v each.
+//! Pairs that the steps and the normals of both planes leave open are mostly within: then the vertices above the faces and the
+//! nine pairs of edges propose one v each.
 //!
 //! **Error of v**, in units of `u rho` a component: 12.2 at the start (two centroids: data 2, products and sums
 //! `2 * 3.01`, weights 1/3 rounded 2.02, difference 2.01); a step `v + t (w - v)` adds at most 2.1 to the greater of the
@@ -44,7 +44,7 @@ pub(super) struct Verdicts {
     pub(super) within: u32,
     /// Proved apart.
     pub(super) apart: u32,
-    /// Of which anything can be proved: neither NaN nor too large or too small.
+    /// Lanes to which the proofs apply: neither NaN nor too large or too small.
     pub(super) in_range: u32,
 }
 
@@ -163,7 +163,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
                 u.add(v[2], u.mul(t, e[2])),
             ];
         }
-        // What is left mostly faces a plane of one of the triangles: the planes' normals, in both senses.
+        // Most open pairs face the plane of one of the triangles: try the planes' normals, in both directions.
         let of_a = self.cross(a1, a2);
         let of_b = self.cross(self.sub(b1, b0), self.sub(b2, b0));
         for n in [of_a, of_b] {
@@ -180,7 +180,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
             let gap = u.max(u.sub(least_a, greatest_b), u.sub(least_b, greatest_a));
             apart |= self.apart(n, squared, gap, gap_error, limit);
         }
-        // Most of the rest are within: where triangles do not meet, two edges are closest or a vertex and a face.
+        // Most of the rest are within. Of triangles that do not meet, two edges are closest, or a vertex and a face.
         let (a, b) = ([a0, a1, a2], [b0, b1, b2]);
         if (within | apart) & in_range != in_range {
             within |= self.faces(a, b, of_a, zero, reach) | self.faces(b, a, of_b, zero, reach);
@@ -201,8 +201,8 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         }
     }
 
-    /// The difference of the points closest to each other of two edges; of some two points where rounding misleads, as on edges
-    /// that are parallel.
+    /// The difference of the closest points of two edges. Where rounding misleads, as for parallel edges, it is the difference
+    /// of some two points of them.
     #[inline(always)]
     fn edges(&self, [p, p1]: [Vector<U>; 2], [q, q1]: [Vector<U>; 2]) -> Vector<U> {
         let u = self.unit;
@@ -222,7 +222,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         self.sub(along(p, d, s), along(q, e, t))
     }
 
-    /// A quotient brought into 0 to 1; NaN becomes 0.
+    /// A quotient clamped to 0..=1; NaN becomes 0.
     #[inline(always)]
     fn share(&self, x: U::Number, y: U::Number) -> U::Number {
         let u = self.unit;

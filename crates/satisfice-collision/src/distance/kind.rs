@@ -1,4 +1,4 @@
-//! The kinds of feature pairs, as data and as types for generic code.
+//! The kinds of feature pairs, as a value and as types for generic code.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,14 @@ use super::{Decision, Proximity, Threshold};
 use crate::Error;
 use crate::mesh::FeatureKind;
 
-/// What is tested against what.
+/// A kind of pair of features.
+///
+/// ```
+/// use satisfice_collision::{FeatureKind, distance::PairKind};
+/// let kind: PairKind = "vertex-triangle".parse()?;
+/// assert_eq!(kind.features(), (FeatureKind::Vertex, FeatureKind::Triangle));
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PairKind {
     /// Point against point.
@@ -25,7 +32,7 @@ pub enum PairKind {
 }
 
 impl PairKind {
-    /// Every kind, in the order of growing features.
+    /// Every kind, from the smallest features to the largest.
     pub const ALL: [Self; 6] = [
         Self::VertexVertex,
         Self::VertexEdge,
@@ -81,16 +88,16 @@ impl FromStr for PairKind {
     }
 }
 
-/// A kind of feature pair as a type, for code that is generic over it (a broad phase, a scene).
+/// A kind of feature pair as a type, for code that is generic over it.
 pub trait FeaturePair {
     /// The first feature: `Point`, `Segment` or `Triangle`.
     type A: Copy;
     /// The second feature.
     type B: Copy;
-    /// The kind as data.
+    /// The kind as a value.
     const KIND: PairKind;
 
-    /// Whether the distance is below the threshold, and how that is known.
+    /// Whether the distance is below the threshold, and the stage that proved it.
     fn decide(a: &Self::A, b: &Self::B, threshold: Threshold) -> Decision;
 
     /// Distance and closest points.

@@ -1,18 +1,20 @@
 //! Exact proximity of feature pairs: vertices, edges and triangles as points, segments and triangles of `[f64; 3]`.
 //!
-//! Two questions, both about the numbers exactly as given (each coordinate and delta is the rational number it is):
+//! There are two questions. Both treat each coordinate and delta as the rational number that it is:
 //!
-//! * **Decision** `distance < delta`: right for every finite input. Three stages, each giving an answer only where it
-//!   has proved it: a floating-point filter (`frame`), the same certificates in double-double (`extended`), and integers
-//!   of any size (`exact`). [`DecidedBy`] says which one spoke.
-//! * **Proximity**: distance, closest points, the features they lie on. The distance is within one unit in the last
-//!   place of the true one, always; 0 is returned exactly if and only if the features meet (or the true distance is
-//!   below half the least denormal).
+//! * **Decision** `distance < delta`: correct for every finite input. Three stages each answer only what they prove: a
+//!   floating-point filter (`frame`), the same certificates in double-double arithmetic (`extended`), and integers of any
+//!   size (`exact`). [`DecidedBy`] names the stage that answered.
+//! * **Proximity**: the distance, the closest points and the features on which they lie. The distance is always within one
+//!   unit in the last place of the true one. It is exactly 0 if and only if the features meet, or the true distance is below
+//!   half the smallest denormal.
 //!
-//! Many triangle pairs are decided fastest through [`TriangleBatch`]; the answers are the same.
+//! [`within`], [`decide`], [`proximity`] and [`measure()`] take features of any kind as a [`Shape`](crate::Shape); a module per
+//! kind of pair has the same functions for one kind. [`TriangleBatch`] decides many triangle pairs faster, with the same
+//! answers.
 //!
-//! A triangle with collinear or coinciding vertices is the segment or the point it geometrically is, likewise an edge.
-//! No absolute epsilon occurs anywhere.
+//! A triangle with collinear or coincident vertices counts as the segment or the point that it is geometrically; the same
+//! holds for edges. There is no absolute epsilon.
 //!
 //! ```
 //! use satisfice_collision::distance::{triangle_triangle, Threshold};
@@ -69,11 +71,11 @@ pub enum DecidedBy {
     Extended,
     /// Integer arithmetic without rounding.
     Exact,
-    /// A coordinate is NaN or infinite, so there is no answer: a decision is then never a hit, a distance is NaN.
+    /// A coordinate is NaN or infinite. The pair is then not within the threshold, and its distance is NaN.
     NotFinite,
 }
 
-/// Whether a pair is within the threshold, and how that is known.
+/// Whether a pair is within the threshold, and the stage that proved it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Decision {
     /// `distance < delta`.
@@ -89,7 +91,7 @@ pub enum Feature {
     Vertex(u8),
     /// The edge from the vertex with this number to the next one, cyclically.
     Edge(u8),
-    /// The inside of the triangle.
+    /// The interior of the triangle.
     Face,
 }
 
@@ -99,7 +101,7 @@ pub struct Proximity {
     /// The distance, within one unit in the last place; NaN if a coordinate is not finite; infinite if it exceeds
     /// `f64::MAX`.
     pub distance: f64,
-    /// A closest point of the first feature (one of them, if there are several), rounded.
+    /// A closest point of the first feature, rounded; any one of them if there are several.
     pub point_a: Point,
     /// A closest point of the second feature, rounded.
     pub point_b: Point,
@@ -107,16 +109,16 @@ pub struct Proximity {
     pub weights_a: [f64; 3],
     /// Barycentric weights of `point_b`.
     pub weights_b: [f64; 3],
-    /// Where `point_a` lies.
+    /// The part of the first feature on which `point_a` lies.
     pub feature_a: Feature,
-    /// Where `point_b` lies.
+    /// The part of the second feature on which `point_b` lies.
     pub feature_b: Feature,
     /// The stage that proved `distance`.
     pub by: DecidedBy,
 }
 
 impl Proximity {
-    /// The same about the pair in the other order.
+    /// The proximity of the pair in the other order.
     #[must_use]
     pub fn swapped(self) -> Self {
         Self {

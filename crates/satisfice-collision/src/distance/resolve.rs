@@ -1,4 +1,4 @@
-//! The way of a pair: filter, extended precision, integers; and a distance put together from what was proved.
+//! The stages of a decision (filter, extended precision, integers), and a proximity from what they proved.
 
 use super::candidates::{self, edges};
 use super::extended::Pair;
@@ -111,7 +111,7 @@ pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Poi
             );
         }
     };
-    // The cheap guess is right for nearly all features that do not meet.
+    // The cheap guess is right for nearly all disjoint features.
     if let Some(guess) = gjk::parts(&frame)
         && let Some(proximity) = proved(a, b, &frame, &guess)
     {
@@ -135,7 +135,7 @@ pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Poi
     )
 }
 
-/// What a guess comes to, if it is proved to be the nearest.
+/// The proximity of a guess, if it is proved to be the closest pair.
 fn proved<const M: usize, const N: usize>(
     a: &[Point; M],
     b: &[Point; N],
@@ -199,14 +199,15 @@ fn assemble<const M: usize, const N: usize>(
     }
 }
 
-/// The weighted point, measured from the heaviest vertex, so that a vertex comes back unchanged and offsets cost nothing.
+/// The weighted point, computed relative to the vertex with the largest weight, so that a vertex is returned unchanged and an
+/// offset costs no precision.
 fn point(points: &[Point], weights: [f64; 3]) -> Point {
     let heaviest = (0..points.len()).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
     let base = points[heaviest];
     let mut sum = [0.0; 3];
     for (k, &p) in points.iter().enumerate() {
         if k != heaviest && weights[k] != 0.0 {
-            // Halves, so that a difference of two huge coordinates stays finite.
+            // Halves keep the difference of two huge coordinates finite.
             sum = add(sum, scale(sub(scale(p, 0.5), scale(base, 0.5)), weights[k]));
         }
     }

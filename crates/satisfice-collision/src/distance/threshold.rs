@@ -1,8 +1,15 @@
-//! The threshold delta, checked once, with what every decision needs of it.
+//! The threshold delta, checked once, with the bounds of its square that every decision needs.
 
 use crate::Error;
 
-/// A distance threshold delta: finite and above 0. A pair is within it if its distance is strictly below.
+/// A distance threshold delta: finite and positive. A pair is within it if its distance is strictly less.
+///
+/// ```
+/// use satisfice_collision::distance::Threshold;
+/// assert_eq!(Threshold::new(0.25)?.get(), 0.25);
+/// assert!(Threshold::new(0.0).is_err());
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Threshold {
     delta: f64,
@@ -39,13 +46,13 @@ impl Threshold {
         self.delta
     }
 
-    /// A number at most delta squared; below 0 if the square underflows.
+    /// A lower bound of delta squared; negative if the square underflows.
     #[inline]
     pub fn squared_below(self) -> f64 {
         self.squared_below
     }
 
-    /// A number at least delta squared; infinite if the square overflows.
+    /// An upper bound of delta squared; infinite if the square overflows.
     #[inline]
     pub fn squared_above(self) -> f64 {
         self.squared_above

@@ -16,9 +16,8 @@ impl Hulls<3, 3> for TriangleTriangle {
     }
 }
 
-/// Whether the distance is below delta, and how that is known. Cost: 80 to 200 ns in double precision, some
-/// 1 us in the band around delta, tens of us where only integers decide. [`TriangleBatch`](super::TriangleBatch) is 2 to 5
-/// times faster for many pairs.
+/// Whether the distance is below delta, and the stage that proved it. For many pairs
+/// [`TriangleBatch`](super::TriangleBatch) is faster.
 #[inline]
 pub fn decide(a: &Triangle, b: &Triangle, threshold: Threshold) -> Decision {
     resolve::decide::<TriangleTriangle, 3, 3>(a, b, threshold)

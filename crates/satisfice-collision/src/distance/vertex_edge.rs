@@ -18,7 +18,7 @@ impl Hulls<1, 2> for VertexEdge {
     }
 }
 
-/// Whether the distance is below delta, and how that is known. Cost: about 10 ns.
+/// Whether the distance is below delta, and the stage that proved it.
 #[inline]
 pub fn decide(a: &Point, b: &Segment, threshold: Threshold) -> Decision {
     resolve::decide::<VertexEdge, 1, 2>(&[*a], b, threshold)

@@ -18,7 +18,7 @@ impl Hulls<1, 3> for VertexTriangle {
     }
 }
 
-/// Whether the distance is below delta, and how that is known. Cost: about 15 ns.
+/// Whether the distance is below delta, and the stage that proved it.
 #[inline]
 pub fn decide(a: &Point, b: &Triangle, threshold: Threshold) -> Decision {
     resolve::decide::<VertexTriangle, 1, 3>(&[*a], b, threshold)

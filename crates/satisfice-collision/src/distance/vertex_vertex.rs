@@ -13,7 +13,7 @@ pub struct VertexVertex;
 /// square in relation to it, the comparison's own product adds 1u.
 const SLACK: f64 = 4.0 * f64::EPSILON;
 
-/// Whether `|a - b| < delta`, and how that is known. Cost: about 2 ns.
+/// Whether `|a - b| < delta`, and the stage that proved it.
 #[inline]
 pub fn decide(a: &Point, b: &Point, threshold: Threshold) -> Decision {
     let v = sub(*a, *b);

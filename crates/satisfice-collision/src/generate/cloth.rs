@@ -5,7 +5,13 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 
 /// A flat cloth of `columns` x `rows` vertices in the plane z = 0, `width` (x) by `height` (y), centred on the origin,
-/// numbered row by row; the diagonals of its cells alternate, so that it has no preferred direction.
+/// numbered row by row. The diagonals of its cells alternate, so that the cloth has no preferred direction.
+///
+/// ```
+/// let cloth = satisfice_collision::generate::cloth(2.0, 1.0, 5, 3)?;
+/// assert_eq!((cloth.vertices().len(), cloth.triangles().len()), (15, 16));
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::Parameter`] unless both lengths are finite and above 0, both counts at least 2, and the vertices at most

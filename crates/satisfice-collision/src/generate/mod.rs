@@ -1,4 +1,4 @@
-//! Generated bodies: the Utah teapot, spheres, the torus, a cloth and a pleated one.
+//! Generated bodies: the Utah teapot, spheres, a torus, a cloth and a pleated cloth.
 
 mod cloth;
 mod pleats;
@@ -15,7 +15,7 @@ pub use torus::torus;
 
 use crate::error::Error;
 
-/// More vertices than this are taken for a slip of the keyboard.
+/// The most vertices of a generated body. A larger number is taken for a typing error.
 pub const MAX_VERTICES: usize = 1 << 24;
 
 fn checked_length(parameter: &'static str, value: f64) -> Result<f64, Error> {
@@ -39,7 +39,7 @@ fn checked_count(
     }
 }
 
-/// `a * b + c` vertices, if they are not too many.
+/// Returns `a * b + c` if a body may have so many vertices.
 fn checked_vertices(a: usize, b: usize, c: usize) -> Result<usize, Error> {
     a.checked_mul(b)
         .and_then(|n| n.checked_add(c))
@@ -47,7 +47,7 @@ fn checked_vertices(a: usize, b: usize, c: usize) -> Result<usize, Error> {
         .ok_or_else(|| Error::parameter("number of vertices", format!("{a} x {b} + {c}"), "at most 2^24"))
 }
 
-/// A vertex number; [`checked_vertices`] has made sure that it fits.
+/// A vertex number. It fits because [`checked_vertices`] limits the count.
 fn number(i: usize) -> u32 {
     i as u32
 }

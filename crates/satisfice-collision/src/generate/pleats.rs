@@ -1,4 +1,4 @@
-//! A cloth laid in pleats: layers that lie upon each other and touch here and there.
+//! A pleated cloth: layers that lie on each other and nearly touch in places.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,18 +6,19 @@ use super::{checked_count, checked_length, checked_vertices, cloth};
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// The waves' height in gaps: two layers may come as near as 0.1 gaps, and as far apart as 1.9.
+/// The height of the waves in gaps: the distance of two layers is between 0.1 and 1.9 gaps.
 const HEIGHT: f64 = 0.45;
-/// Waves along the cloth's whole length, and across it.
+/// The number of waves along the cloth and across it.
 const WAVES: [f64; 2] = [7.3, 2.0];
 
-/// A cloth 3 long and 1 wide, of `columns` x `rows` vertices, laid in `layers` layers a `gap` apart, joined by half
-/// circles. Waves run through it, so that neighbouring layers come as near as a tenth of the gap in some places; `phase`, in
-/// turns, moves the waves, from 0 to 1 once around. The same numbers but for `phase` give frames of one deforming body.
+/// A cloth of length 3 and width 1 with `columns` x `rows` vertices, folded into `layers` layers with a distance of `gap`,
+/// which half circles join. Waves run through it, so that neighbouring layers are as close as a tenth of the gap in some
+/// places. `phase`, in turns, moves the waves: from 0 to 1 once around. Calls that differ in `phase` alone give frames of one
+/// deforming body.
 ///
 /// # Errors
-/// [`Error::Parameter`] unless `gap` and `phase` are finite, `gap` above 0 and such that the turns do not use up the cloth, all
-/// counts are large enough (2 vertices, 1 layer), and the vertices at most 2^24.
+/// [`Error::Parameter`] unless `gap` and `phase` are finite, `gap` positive and so small that the half circles
+/// do not need the whole length, all counts large enough (2 vertices, 1 layer), and the vertices at most 2^24.
 pub fn pleats(columns: usize, rows: usize, layers: usize, gap: f64, phase: f64) -> Result<Mesh, Error> {
     const LENGTH: f64 = 3.0;
     checked_length("gap", gap)?;

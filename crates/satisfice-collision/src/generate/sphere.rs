@@ -1,4 +1,4 @@
-//! Spheres about the origin: by longitude and latitude, and from the icosahedron.
+//! Spheres around the origin: by longitude and latitude, and from the icosahedron.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,7 +6,7 @@ use super::{checked_count, checked_length, checked_vertices, number};
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// A sphere about the origin with `meridians` vertices on each of `parallels - 1` circles of latitude and one at each
+/// A sphere around the origin with `meridians` vertices on each of `parallels - 1` circles of latitude and one at each
 /// pole, which lie on the z axis.
 ///
 /// # Errors
@@ -43,8 +43,8 @@ pub fn uv_sphere(radius: f64, meridians: usize, parallels: usize) -> Result<Mesh
     Mesh::new(vertices, vec![], triangles)
 }
 
-/// A sphere about the origin: an icosahedron whose triangles are quartered `subdivisions` times, every new vertex
-/// pushed out to the radius. 10 * 4^k + 2 vertices of nearly even spacing.
+/// A sphere around the origin: an icosahedron whose triangles are quartered `subdivisions` times, with every new vertex
+/// moved to the radius. It has 10 * 4^k + 2 vertices with nearly even spacing.
 ///
 /// # Errors
 /// [`Error::Parameter`] unless `radius` is finite and above 0 and `subdivisions` at most 10.
@@ -93,7 +93,7 @@ pub fn icosphere(radius: f64, subdivisions: u32) -> Result<Mesh, Error> {
     Mesh::new(vertices, vec![], triangles)
 }
 
-/// The 20 triples of mutually nearest vertices, counter-clockwise from outside.
+/// The 20 triples of mutually nearest vertices, counter-clockwise as seen from outside.
 fn icosahedron_faces(vertices: &[[f64; 3]]) -> Vec<[u32; 3]> {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     // Neighbours on the unit icosahedron have a dot product of 1/sqrt 5, all others at most -1/sqrt 5.

@@ -7,14 +7,14 @@ use crate::mesh::{Mesh, weld};
 
 /// The Utah teapot with `segments` segments on every edge of its 32 bicubic patches, welded, z up.
 ///
-/// Patches that share an edge share its vertices exactly; the triangles that collapse at the tip of the lid and in the
-/// middle of the bottom are left out. Handle, spout, lid and body touch or pierce each other without being joined, as
-/// in the original. 32 n^2 quadrilaterals give 64 n^2 - 8 n triangles.
+/// Patches that share an edge share its vertices exactly. The triangles that collapse at the tip of the lid and in the
+/// centre of the bottom are omitted. Handle, spout, lid and body touch or intersect without being joined, as in the
+/// original. 32 n^2 quadrilaterals give 64 n^2 - 8 n triangles.
 ///
 /// # Errors
 /// [`Error::Parameter`] unless `segments` is between 1 and 723 (2^24 vertices).
 ///
-/// Source of the figures: M. Newell, doctoral thesis, University of Utah, 1975.
+/// Source of the control points: M. Newell, doctoral thesis, University of Utah, 1975.
 ///
 /// ```
 /// let teapot = satisfice_collision::generate::teapot(13)?;
@@ -55,8 +55,8 @@ pub fn teapot(segments: usize) -> Result<Mesh, Error> {
     Mesh::new(vertices, vec![], triangles)
 }
 
-/// The patch at (i / n, j / n). On the boundary only the boundary curve enters, so that both neighbours compute the
-/// same bits.
+/// The patch at (i / n, j / n). A point on the boundary depends on the boundary curve alone, so that both neighbours
+/// compute the same bits.
 fn patch_point(net: &[[[f64; 3]; 4]; 4], i: usize, j: usize, n: usize) -> [f64; 3] {
     let column = |k: usize| net.map(|row| row[k]);
     if i == 0 || i == n {
@@ -69,7 +69,7 @@ fn patch_point(net: &[[[f64; 3]; 4]; 4], i: usize, j: usize, n: usize) -> [f64; 
     }
 }
 
-/// A boundary curve at k / n, run through from its lexicographically lower end whichever way the patch runs.
+/// A boundary curve at k / n, always evaluated from its lexicographically lower end.
 fn boundary_point(curve: [[f64; 3]; 4], k: usize, n: usize) -> [f64; 3] {
     if k == 0 {
         return curve[0];
@@ -85,7 +85,7 @@ fn boundary_point(curve: [[f64; 3]; 4], k: usize, n: usize) -> [f64; 3] {
     }
 }
 
-/// de Casteljau's algorithm. In the form a + t (b - a) a curve whose points coincide stays that very point.
+/// de Casteljau's algorithm. In the form a + t (b - a) a curve whose control points coincide is exactly that point.
 fn curve_point(mut points: [[f64; 3]; 4], t: f64) -> [f64; 3] {
     for degree in (1..4).rev() {
         for k in 0..degree {

@@ -1,6 +1,6 @@
 //! The control net of the Utah teapot: 290 control points and 32 bicubic Bezier patches.
 //!
-//! The figures are those of M. Newell, "The Utilization of Procedure Models in Digital Image Synthesis", doctoral thesis,
+//! The coordinates are those of M. Newell, "The Utilization of Procedure Models in Digital Image Synthesis", doctoral thesis,
 //! University of Utah, 1975; z is up. Patches: rim, body, lid, handle, spout, bottom.
 
 /// The control points.

@@ -1,4 +1,4 @@
-//! The torus about the z axis.
+//! A torus around the z axis.
 
 use std::f64::consts::TAU;
 
@@ -6,8 +6,8 @@ use super::{checked_count, checked_length, checked_vertices, number};
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// A torus about the z axis: a tube of radius `minor` whose centre runs on a circle of radius `major`, with `around`
-/// vertices along that circle and `across` about the tube. `minor > major` gives the spindle torus, which meets itself.
+/// A torus around the z axis: a tube of radius `minor` along a circle of radius `major`, with `around` vertices along that
+/// circle and `across` around the tube. `minor > major` gives the spindle torus, which intersects itself.
 ///
 /// # Errors
 /// [`Error::Parameter`] unless both radii are finite and above 0, both counts at least 3, and the vertices at most 2^24.

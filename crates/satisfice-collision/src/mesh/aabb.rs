@@ -1,11 +1,19 @@
 //! Axis-aligned bounding boxes.
 
-/// A closed axis-aligned box, `min[k] <= max[k]` for every axis `k`.
+/// A closed axis-aligned box, with `min[k] <= max[k]` for every axis `k`.
+///
+/// ```
+/// use satisfice_collision::Aabb;
+/// let mut bounds = Aabb::point([0.0, 0.0, 0.0]);
+/// bounds.include([1.0, 3.0, -2.0]);
+/// assert_eq!((bounds.longest_axis(), bounds.size()), (1, 3.0));
+/// assert!(bounds.contains([0.5, 1.0, -2.0]));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
-    /// The least coordinates.
+    /// The smallest coordinates.
     pub min: [f64; 3],
-    /// The greatest coordinates.
+    /// The largest coordinates.
     pub max: [f64; 3],
 }
 
@@ -19,7 +27,7 @@ impl Aabb {
         }
     }
 
-    /// The least box around some points; `None` if there are none.
+    /// The smallest box around the points; `None` if there are none.
     pub fn of_points(points: impl IntoIterator<Item = [f64; 3]>) -> Option<Self> {
         let mut points = points.into_iter();
         let mut bounds = Self::point(points.next()?);
@@ -29,7 +37,7 @@ impl Aabb {
         Some(bounds)
     }
 
-    /// Grows to hold `point`.
+    /// Extends the box to contain `point`.
     pub fn include(&mut self, point: [f64; 3]) {
         for (k, &c) in point.iter().enumerate() {
             self.min[k] = self.min[k].min(c);
@@ -37,7 +45,7 @@ impl Aabb {
         }
     }
 
-    /// `max - min` by axis. Infinite where finite bounds lie further apart than the greatest `f64`.
+    /// `max - min` by axis. Infinite where the difference of finite bounds exceeds the largest `f64`.
     #[must_use]
     pub fn extents(&self) -> [f64; 3] {
         [
@@ -54,7 +62,7 @@ impl Aabb {
         (1..3).fold(0, |best, k| if extents[k] > extents[best] { k } else { best })
     }
 
-    /// The longest extent: what "size" means everywhere.
+    /// The longest extent, called the *size* throughout this crate.
     #[must_use]
     pub fn size(&self) -> f64 {
         self.extents()[self.longest_axis()]

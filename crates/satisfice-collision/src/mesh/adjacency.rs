@@ -1,6 +1,15 @@
 //! Which vertices are joined: compressed rows, and rings of a chosen width.
 
-/// For every vertex the vertices it is joined to, in compressed sparse rows: sorted, symmetric, never itself.
+/// The neighbours of every vertex, in compressed sparse rows: sorted, symmetric, without the vertex itself.
+///
+/// ```
+/// use satisfice_collision::generate;
+/// let ball = generate::icosphere(1.0, 0)?;
+/// let adjacency = ball.adjacency();
+/// assert_eq!(adjacency.neighbours(0).len(), 5);
+/// assert_eq!(adjacency.ring(0, 2).len(), 10);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adjacency {
     offsets: Vec<usize>,
@@ -66,7 +75,7 @@ impl Adjacency {
         Self { offsets, targets }
     }
 
-    /// The same with some of the joints only; `keep` has to be symmetric.
+    /// The same with only those joints for which `keep` is true; `keep` must be symmetric.
     pub(crate) fn filtered(&self, keep: impl Fn(u32, u32) -> bool) -> Self {
         let mut offsets = Vec::with_capacity(self.offsets.len());
         let mut targets = Vec::new();
@@ -78,7 +87,7 @@ impl Adjacency {
         Self { offsets, targets }
     }
 
-    /// No vertex joined to any other.
+    /// An adjacency in which no vertex is joined to any other.
     pub(crate) fn none(vertices: usize) -> Self {
         Self {
             offsets: vec![0; vertices + 1],
@@ -86,8 +95,8 @@ impl Adjacency {
         }
     }
 
-    /// The adjacency of the vertices that are kept: two are joined if a path joins them whose inner vertices are all left out,
-    /// so that leaving vertices out tears no surface apart. The vertices left out stay, joined to nothing.
+    /// The adjacency of the vertices that are kept. Two are joined if a path joins them whose inner vertices are all omitted,
+    /// so that omitting vertices tears no surface apart. Omitted vertices have no neighbours.
     ///
     /// Cost: O(vertices x kept vertices around a gap), near linear for samples spread over a surface.
     pub(crate) fn bridged(&self, keep: impl Fn(u32) -> bool) -> Self {
@@ -134,7 +143,7 @@ impl Adjacency {
         self.len() == 0
     }
 
-    /// The vertices joined to `v`, sorted; none if `v` is not a vertex.
+    /// The vertices joined to `v`, sorted; empty if `v` is not a vertex.
     #[must_use]
     pub fn neighbours(&self, v: u32) -> &[u32] {
         let v = v as usize;
@@ -151,8 +160,8 @@ impl Adjacency {
         self.neighbours(a).binary_search(&b).is_ok()
     }
 
-    /// The vertices at 1 to `width` edges from `v` (its rings), sorted; none for `width` 0. O(size of the answer,
-    /// times its degree and log).
+    /// The vertices at 1 to `width` edges from `v` (its rings), sorted; empty for `width` 0. Cost: O(n d log n) for a
+    /// result of n vertices of degree d.
     #[must_use]
     pub fn ring(&self, v: u32, width: usize) -> Vec<u32> {
         let mut seen = vec![v];
@@ -173,7 +182,7 @@ impl Adjacency {
         seen
     }
 
-    /// The adjacency of "at most `width` edges apart": [`Adjacency::ring`] of every vertex.
+    /// The adjacency that joins vertices at most `width` edges apart: [`Adjacency::ring`] of every vertex.
     #[must_use]
     pub fn rings(&self, width: usize) -> Self {
         if width == 1 {

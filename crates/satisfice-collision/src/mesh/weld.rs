@@ -2,8 +2,8 @@
 
 /// Merges points whose coordinates are exactly equal (0.0 and -0.0 are equal), keeping the order of first appearance.
 ///
-/// Returns the distinct points, and for every given point the number of its distinct one. No tolerance is involved:
-/// what differs in the last bit stays apart. Meant for finite coordinates. O(n log n).
+/// Returns the distinct points and, for every given point, the number of its distinct point. There is no tolerance: points
+/// that differ in the last bit stay separate. The coordinates must be finite. Cost: O(n log n).
 ///
 /// ```
 /// use satisfice_collision::mesh::weld;

@@ -2,8 +2,8 @@
 
 use super::morton_key;
 
-/// Position of a grid cell on the Hilbert curve through the `2^bits` cells an axis; `bits` is at most 21, higher bits
-/// of the cell are ignored. Cells that follow each other on the curve share a face.
+/// The position of a grid cell on the Hilbert curve through a grid of `2^bits` cells per axis. `bits` is at most 21; higher
+/// bits of the cell are ignored. Consecutive cells on the curve share a face.
 ///
 /// Source: J. Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707 (2004) 381, doi 10.1063/1.1751381: the
 /// coordinates become the transposed index in place, which is then interleaved. O(bits).
@@ -14,7 +14,7 @@ pub fn hilbert_key(cell: [u32; 3], bits: u32) -> u64 {
         return 0;
     }
     let mut x = cell.map(|c| c & ((1 << bits) - 1));
-    // From the coarsest bit down: undo the reflection or exchange that this bit of each axis asks for.
+    // From the coarsest bit down: undo the reflection or exchange that this bit of each axis requires.
     for bit in (1..bits).rev() {
         let low = (1 << bit) - 1;
         for k in 0..3 {

@@ -1,8 +1,9 @@
 //! The Morton (Z) curve in three dimensions.
 
-/// Position of a grid cell on the Morton curve: bit b of x, y, z goes to bit 3b + 2, 3b + 1, 3b.
+/// The position of a grid cell on the Morton curve: bit b of x, y and z goes to bit 3b + 2, 3b + 1 and 3b.
 ///
-/// `bits` is the number of bits an axis, at most 21; higher bits of the cell are ignored.
+/// `bits` is the number of bits per axis, at most 21; higher bits of the cell are ignored.
+///
 /// Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
 #[must_use]
 pub fn morton_key(cell: [u32; 3], bits: u32) -> u64 {
@@ -11,7 +12,7 @@ pub fn morton_key(cell: [u32; 3], bits: u32) -> u64 {
     x << 2 | y << 1 | z
 }
 
-/// Puts two zero bits before each of the 21 low bits.
+/// Inserts two zero bits before each of the 21 low bits.
 fn spread(mut v: u64) -> u64 {
     v = (v | v << 32) & 0x001f_0000_0000_ffff;
     v = (v | v << 16) & 0x001f_0000_ff00_00ff;

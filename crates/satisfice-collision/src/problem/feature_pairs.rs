@@ -14,23 +14,22 @@ use crate::mesh::{Adjacency, Mesh, Shape};
 use crate::order::VertexOrder;
 use crate::placement::Placement;
 
-/// All pairs of features `(i, j)` of one kind of pair with F(i, j) < delta, of two bodies or of one with itself. F is their
-/// distance, 0 where they meet. Generalises Eq. 1 of Chen et al. 2012 from vertices to the other features.
+/// The problem of all pairs `(i, j)` of features with F(i, j) < delta, between two bodies or within one. F is their distance,
+/// and 0 if they meet. It generalises Eq. 1 of Chen et al. 2012 from vertices to all features.
 ///
 /// A solution is a pair of feature numbers: vertices and triangles as in the mesh, edges as in [`Mesh::edges`]. The space has
 /// two integer axes, the positions of the features' middles along a Hilbert curve.
 ///
-/// * `F < delta` holds exactly where it holds for the coordinates as they are; F itself is within a relative 1e-10
-///   ([`distance::ACCURACY`]), of vertex pairs within a few units in the last place. Cost of F: 3 ns (vertices) to
-///   some 150 ns (triangles), 1 us where features nearly meet.
-/// * Of one body with itself, features that share a vertex, or whose vertices are within the excluded ring, are no pairs:
-///   their F is finite, at least delta and at least every distance of the body. Of equal kinds `(i, j)` and `(j, i)` are one
-///   solution with `i < j`.
-/// * Neighbours: one of the two features goes to one that shares a vertex with it (a vertex: an edge). Where delta is below the
-///   median edge length of a body, also both at once, to the nearest of those: triangles that share an edge, edges of one triangle
-///   (to all it would be 144 moves of two triangles, which slows an engine more than it helps).
-/// * Lower bounds: the distance of the boxes around the two ranges of features, O(log features). So `branch-and-bound` proves the
-///   count, and every other engine can be kept out of regions without pairs (Li 2010).
+/// * `F < delta` is exact for the coordinates as they are. F itself has a relative error of at most 1e-10
+///   ([`distance::ACCURACY`]); for pairs of vertices it is within a few units in the last place.
+/// * Within one body, features that share a vertex, or whose vertices are within the excluded ring, are not pairs: their F is
+///   finite, at least delta and at least every distance within the body. For features of one kind, `(i, j)` and `(j, i)` are
+///   one solution with `i < j`.
+/// * Neighbours: one of the two features is replaced by one that shares a vertex with it (a vertex: an edge). If delta is below
+///   the median edge length of a body, also both at once, by the closest of those: triangles that share an edge, edges of one
+///   triangle. All combinations would be too many moves to help an engine.
+/// * Lower bounds: the distance of the boxes around the two ranges of features, O(log features). With them `branch-and-bound`
+///   proves the count, and other engines can avoid regions without pairs (Li 2010).
 ///
 /// ```
 /// use satisfice::{Budget, Search, engine};
@@ -46,7 +45,7 @@ use crate::placement::Placement;
 pub struct FeaturePairs {
     kind: PairKind,
     pub(super) a: Side,
-    /// `None` where both features are of one body and of one kind.
+    /// `None` if both features are of one body and of one kind.
     pub(super) b: Option<Side>,
     pub(super) own: Option<Own>,
     pub(super) threshold: Threshold,
@@ -55,7 +54,7 @@ pub struct FeaturePairs {
     space: Space<f64>,
 }
 
-/// What is no pair of one body with itself, and F there.
+/// The pairs excluded within one body, and their F.
 #[derive(Debug, Clone)]
 pub(super) struct Own {
     pub(super) rings: Adjacency,
@@ -63,7 +62,8 @@ pub(super) struct Own {
 }
 
 impl FeaturePairs {
-    /// Pairs of a feature of `a` and one of `b`, of the first and the second kind that `kind` names, closer than `delta`.
+    /// Pairs closer than `delta` of a feature of `a` and a feature of `b`, of the first and the second kind in `kind`. `delta` is
+    /// in the unit of the meshes.
     ///
     /// # Errors
     /// [`Error::Parameter`] unless `delta` is finite and above 0, and for a body without such a feature.
@@ -74,8 +74,8 @@ impl FeaturePairs {
         Self::new(kind, sides, None, Threshold::new(delta)?)
     }
 
-    /// Pairs of features of one body closer than `delta`, leaving out those that share a vertex or of which two vertices are at
-    /// most `ring_width` edges apart.
+    /// Pairs of features of one body closer than `delta`, except those that share a vertex or have two vertices at most
+    /// `ring_width` edges apart.
     ///
     /// # Errors
     /// As [`FeaturePairs::between`].
@@ -111,7 +111,7 @@ impl FeaturePairs {
         })
     }
 
-    /// Other features, or others of them, stand on the axes now.
+    /// Replaces the features on the axes, or their order.
     pub(super) fn rearrange(
         &mut self,
         a: impl FnOnce(&mut Side) -> Result<(), Error>,
@@ -123,7 +123,7 @@ impl FeaturePairs {
         Ok(())
     }
 
-    /// What the features are.
+    /// The kinds of the two features.
     #[must_use]
     pub fn kind(&self) -> PairKind {
         self.kind
@@ -148,14 +148,14 @@ impl FeaturePairs {
         &self.a.mesh
     }
 
-    /// The second body; the first one again, of one body with itself.
+    /// The second body; the first one again if there is only one.
     #[must_use]
     pub fn b(&self) -> &Mesh {
         &self.second().mesh
     }
 
-    /// The first body has moved or changed its shape: its next frame. Orders stay, so the solutions of the frame before keep
-    /// their places in the space. O(features).
+    /// Replaces the first body by its next frame, in which it moved or deformed. The orders stay, so that the solutions of the
+    /// previous frame keep their positions in the space. Cost: O(features).
     ///
     /// # Errors
     /// [`Error::Parameter`] if edges or triangles differ.
@@ -170,7 +170,7 @@ impl FeaturePairs {
         Ok(())
     }
 
-    /// The second body has moved or changed its shape; of one body with itself the same as [`FeaturePairs::move_a`].
+    /// Replaces the second body by its next frame; the same as [`FeaturePairs::move_a`] if there is only one body.
     ///
     /// # Errors
     /// As [`FeaturePairs::move_a`].
@@ -181,14 +181,14 @@ impl FeaturePairs {
         }
     }
 
-    /// Whether there is any pair of features that counts as one, whatever its distance: a small body may be all ring.
+    /// Whether any pair is not excluded, at whatever distance. All pairs of a small body may be within the excluded ring.
     #[must_use]
     pub fn has_pairs(&self) -> bool {
         let others = self.second().len() as u32;
         (0..self.a.len() as u32).any(|i| (0..others).any(|j| !self.no_pair(i, j)))
     }
 
-    /// All solutions, sorted, by a box tree and the exact decision: what the engines are measured by.
+    /// All solutions, sorted, by a box tree and exact decisions: the reference for engines.
     #[must_use]
     pub fn exact_pairs(&self) -> Vec<(u32, u32)> {
         let keep = |i: u32, j: u32| !self.no_pair(i, j);
@@ -200,7 +200,7 @@ impl FeaturePairs {
             Some(b) => {
                 let b = FeatureTree::new(&b.mesh, kind_b);
                 let here = &Placement::IDENTITY;
-                // A mesh that rests is in range.
+                // A mesh without a placement is in range.
                 join.between((&a, here), (&b, here), self.threshold, Some(&keep))
                     .unwrap_or_default()
             }
@@ -208,7 +208,7 @@ impl FeaturePairs {
         pairs.iter().map(|pair| (pair.a, pair.b)).collect()
     }
 
-    /// All solutions, sorted, by the exact decision of every pair: the referee. O(|a| |b|).
+    /// All solutions, sorted, by the exact decision of every pair: the reference for faster methods. Cost: O(|a| |b|).
     #[must_use]
     pub fn reference_pairs(&self) -> Vec<(u32, u32)> {
         let mut pairs = Vec::new();
@@ -278,7 +278,7 @@ impl SatisficingProblem for FeaturePairs {
         self.ordered(self.a.feature(values[0]), self.second().feature(values[1]))
     }
 
-    /// NaN, which is never a hit, for numbers that are no features.
+    /// NaN, which is never a hit, for numbers without a feature.
     #[inline]
     fn fitness(&self, &(i, j): &(u32, u32)) -> f64 {
         if !self.a.has(i) || !self.second().has(j) {
@@ -293,7 +293,7 @@ impl SatisficingProblem for FeaturePairs {
         if let (Shape::Vertex(p), Shape::Vertex(q)) = (&one, &two) {
             return self.points.distance(p, q);
         }
-        // Only so near to delta can a rounded distance be on the wrong side.
+        // A rounded distance can be on the wrong side of delta only this close to it.
         const BAND: f64 = 4.0 * distance::ACCURACY;
         let (distance, delta) = (distance::measure(&one, &two).min(f64::MAX), self.threshold.get());
         if (distance - delta).abs() > BAND * delta {
@@ -382,7 +382,7 @@ impl Bounds<f64> for FeaturePairs {
         let a = self.a.around(region.lower[0], region.upper[0]);
         let b = self.second().around(region.lower[1], region.upper[1]);
         let bound = ranges::bound(&a, &b);
-        // But for vertices F is only within its accuracy.
+        // Except for vertices, F is only within its accuracy.
         Some(match self.kind {
             PairKind::VertexVertex => bound,
             _ => bound * (1.0 - distance::ACCURACY),

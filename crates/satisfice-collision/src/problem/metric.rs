@@ -1,13 +1,13 @@
-//! The distance of two points, on the right side of delta.
+//! The distance of two points, rounded to the correct side of delta.
 
 use crate::distance::{Threshold, vertex_vertex};
 use crate::mesh::Mesh;
 
-/// F of a pair of points: within a few units in the last place, below delta exactly where the distance is.
+/// F of a pair of points: within a few units in the last place, and below delta exactly if the distance is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointMetric {
     threshold: Threshold,
-    /// Squares below the first are below delta^2 for sure, squares above the second are not.
+    /// Squares below the first are certainly below delta^2; squares above the second are certainly not.
     band: [f64; 2],
 }
 
@@ -30,7 +30,7 @@ impl PointMetric {
         }
     }
 
-    /// The distances to the last bit as `distance` gives them; `false` if one of them is a rare case.
+    /// The distances, with the same bits as from `distance`; `false` if one of them is a rare case.
     #[inline]
     pub(super) fn distances<const N: usize>(&self, d: &[[f64; N]; 3], distances: &mut [f64]) -> bool {
         let mut trusted = true;
@@ -42,7 +42,7 @@ impl PointMetric {
         trusted
     }
 
-    /// The rare cases: squares within rounding of delta^2, too small or too large to be trusted.
+    /// The rare cases: squares within rounding of delta^2, and squares that underflow or overflow.
     #[cold]
     fn resolve(&self, p: &[f64; 3], q: &[f64; 3]) -> f64 {
         if p == q {
@@ -64,17 +64,17 @@ pub(super) fn square(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
 
-/// F of what is no pair: finite, not below delta, not below any distance of the body.
+/// F of an excluded pair: finite, at least delta, and at least every distance within the body.
 pub(super) fn far(mesh: &Mesh, delta: f64) -> f64 {
     let [x, y, z] = mesh.bounds().extents();
     x.hypot(y).hypot(z).next_up().max(delta).min(f64::MAX)
 }
 
-/// Three differences, three products and two sums, then a root: `|p - q|^2` as computed is within 6 roundings of the
-/// true square, as long as nothing that counts underflows.
+/// `|p - q|^2` from three differences, three products and two sums: within 6 roundings of the true square, unless a
+/// significant product underflows.
 fn band(threshold: Threshold) -> [f64; 2] {
     const SLACK: f64 = 8.0 * f64::EPSILON;
-    // Below this a product that underflowed may count.
+    // Below this, a product that underflowed may be significant.
     const TINY: f64 = 1e-270;
     let below = threshold.squared_below() * (1.0 - SLACK);
     let above = threshold.squared_above() * (1.0 + SLACK);

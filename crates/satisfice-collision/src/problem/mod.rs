@@ -1,4 +1,4 @@
-//! Collision as a satisficing problem; the only part of this crate that knows the search framework.
+//! Collision as a satisficing problem. No other part of this crate depends on the search framework.
 
 mod feature_pairs;
 mod metric;

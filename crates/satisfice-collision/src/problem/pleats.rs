@@ -1,4 +1,4 @@
-//! Self-collision: a cloth laid in pleats, whose layers touch here and there.
+//! Self-collision: a pleated cloth whose layers nearly touch in places.
 
 use satisfice::catalogue::{Parameter, Params};
 
@@ -15,8 +15,8 @@ const KINDS: [&str; 6] = [
     "edge-triangle",
 ];
 
-/// A cloth 3 long and 1 wide, laid in pleats ([`generate::pleats`]): which of its features are closer than delta, those that share
-/// a vertex (of vertices: an edge) left out?
+/// A pleated cloth of length 3 and width 1 ([`generate::pleats`]): which of its features are closer than delta, except those
+/// that share a vertex (vertices: an edge)?
 ///
 /// ```
 /// use satisfice::catalogue::{Catalogued, Params};
@@ -28,7 +28,7 @@ const KINDS: [&str; 6] = [
 /// ```
 pub type Pleats = Prepared<PleatedCloth>;
 
-/// How to make [`Pleats`].
+/// The recipe of [`Pleats`].
 #[derive(Debug, Clone, Copy)]
 pub struct PleatedCloth;
 

@@ -1,8 +1,8 @@
-//! Boxes around ranges of an order, from which bounds of whole regions of a search space follow.
+//! Boxes around ranges of an order, for bounds of regions of a search space.
 
 use crate::Aabb;
 
-/// Neighbours in the order that share one box of the tree; the ends of a range are looked at one by one.
+/// The number of consecutive items with one box in the tree; the ends of a range are visited item by item.
 const BLOCK: usize = 8;
 
 /// A box for every block of an order, and for every two of those, and so on.
@@ -13,7 +13,7 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    /// Over `count` items, at least one, of which `of` gives the box. O(count).
+    /// A tree over `count` items, at least one, whose boxes `of` returns. Cost: O(count).
     pub(super) fn new(count: usize, of: impl Fn(usize) -> Aabb) -> Self {
         let blocks = count.div_ceil(BLOCK);
         let mut boxes = vec![of(0); 2 * blocks];
@@ -31,7 +31,7 @@ impl Ranges {
         Self { boxes }
     }
 
-    /// The least box around the items `first..=last`. O(log count).
+    /// The smallest box around the items `first..=last`. Cost: O(log count).
     pub(super) fn around(&self, first: usize, last: usize, of: impl Fn(usize) -> Aabb) -> Aabb {
         let mut around = of(first);
         let (from, to) = (first.div_ceil(BLOCK), (last + 1) / BLOCK);
@@ -64,9 +64,9 @@ fn include(around: &mut Aabb, other: &Aabb) {
     around.include(other.max);
 }
 
-/// A number that no distance of a point in `a` and one in `b` is below, nor is any such distance below it once rounded.
+/// A lower bound of every distance between a point in `a` and a point in `b`, also of the distance as rounded.
 pub(super) fn bound(a: &Aabb, b: &Aabb) -> f64 {
-    // Differences, squares and the root are wrong by a few units in the last place of themselves.
+    // Differences, squares and the root have relative errors of a few units in the last place.
     const BELOW_ONE: f64 = 1.0 - 16.0 * f64::EPSILON;
     let gaps: [f64; 3] = std::array::from_fn(|k| {
         (b.min[k] - a.max[k])
@@ -74,7 +74,7 @@ pub(super) fn bound(a: &Aabb, b: &Aabb) -> f64 {
             .clamp(0.0, f64::MAX)
     });
     let square = gaps.iter().map(|gap| gap * gap).sum::<f64>();
-    // Where squares vanish or overflow the longest gap is a bound, too.
+    // The longest gap is also a bound, for squares that underflow or overflow.
     let distance = if (1e-270..1e300).contains(&square) {
         square.sqrt()
     } else {
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn every_range_of_every_length() {
-        // No order at all: each item is somewhere else.
+        // Items without any order.
         let of =
             |item: usize| Aabb::point([item * 37 % 101, item * 53 % 89, item * item % 97].map(|c| c as f64));
         for count in [1, 2, 7, 8, 9, 16, 31, 100] {

@@ -1,10 +1,10 @@
-//! Problems of pairs that a catalogue makes from parameters: all that they have in common.
+//! What all problems of pairs that a catalogue makes from parameters have in common.
 
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Bounds, Encoding, Neighbourhood};
 use satisfice::{Error, SatisficingProblem, Space};
 
-/// How a scene is made from parameters, and what is asked of it. With it [`Prepared`] is the problem.
+/// How to make a scene and a question about it from parameters; [`Prepared`] makes it a problem.
 pub trait Recipe {
     /// [`Catalogued::NAME`].
     const NAME: &'static str;
@@ -15,16 +15,16 @@ pub trait Recipe {
     /// [`Catalogued::PARAMETERS`].
     const PARAMETERS: &'static [Parameter];
 
-    /// What is asked.
+    /// The question.
     type Pairs: SatisficingProblem<Scalar = f64, Solution = (u32, u32)>;
 
-    /// The question about the scene of these parameters, which are within their ranges already.
+    /// The question about the scene of these parameters, which are within their ranges.
     ///
     /// # Errors
-    /// [`crate::Error`] where values do not fit each other.
+    /// [`crate::Error`] if values contradict each other.
     fn build(params: &Params) -> Result<Self::Pairs, crate::Error>;
 
-    /// How many hits there are: an exact count.
+    /// The exact number of hits.
     fn count(pairs: &Self::Pairs) -> u64;
 }
 
@@ -42,7 +42,7 @@ impl<R: Recipe> Prepared<R> {
         &self.pairs
     }
 
-    /// The problem itself, to move its meshes.
+    /// The problem itself, for moving its meshes.
     pub fn pairs_mut(&mut self) -> &mut R::Pairs {
         &mut self.pairs
     }

@@ -1,4 +1,4 @@
-//! One body of a pair problem: its features, and which of them stands at which position.
+//! One body of a pair problem: its features and their positions on an axis.
 
 use super::metric::square;
 use super::ranges::Ranges;
@@ -9,7 +9,7 @@ use crate::order::VertexOrder;
 /// A feature that was not chosen has no position.
 const ABSENT: u32 = u32::MAX;
 
-/// The features of one kind of a body, all of them or some vertices, in an order in which near features are near.
+/// The features of one kind of a body, or a choice of its vertices, in an order that keeps close features close.
 #[derive(Debug, Clone)]
 pub(super) struct Side {
     pub(super) mesh: Mesh,
@@ -19,10 +19,9 @@ pub(super) struct Side {
     feature_at: Vec<u32>,
     /// Feature to position, [`ABSENT`] for one that was not chosen.
     position_of: Vec<u32>,
-    /// Features that share a vertex; of vertices, those that share an edge, across the gaps that vertices leave which were not
-    /// chosen.
+    /// Features that share a vertex; for vertices those that share an edge, across the gaps of vertices that were not chosen.
     pub(super) neighbours: Adjacency,
-    /// The nearest of them, where these are not all: triangles that share an edge, edges of one triangle.
+    /// The closest of them, if these are not all: triangles that share an edge, edges of one triangle.
     close: Option<Adjacency>,
     ranges: Ranges,
 }
@@ -69,7 +68,7 @@ impl Side {
         Ok(side)
     }
 
-    /// Puts some features, given in the order of their numbers, into an order.
+    /// Puts the chosen features, sorted by number, into an order.
     fn arrange(&mut self, order: VertexOrder, chosen: &[u32]) {
         let middles: Vec<[f64; 3]> = chosen
             .iter()
@@ -90,14 +89,14 @@ impl Side {
         self.arrange(order, &self.chosen());
     }
 
-    /// The features that stand somewhere, by number.
+    /// The features with a position, sorted by number.
     pub(super) fn chosen(&self) -> Vec<u32> {
         let mut chosen = self.feature_at.clone();
         chosen.sort_unstable();
         chosen
     }
 
-    /// Of vertices: only these from now on, whichever stood somewhere before.
+    /// Replaces the chosen vertices.
     pub(super) fn choose(&mut self, vertices: &[u32]) -> Result<(), Error> {
         let mut chosen = vertices.to_vec();
         chosen.sort_unstable();
@@ -117,12 +116,12 @@ impl Side {
         Ok(())
     }
 
-    /// The nearest neighbours.
+    /// The closest neighbours.
     pub(super) fn close(&self) -> &Adjacency {
         self.close.as_ref().unwrap_or(&self.neighbours)
     }
 
-    /// The body has moved or changed its shape.
+    /// Replaces the body by its next frame.
     pub(super) fn go_to(&mut self, mesh: &Mesh) -> Result<(), Error> {
         if mesh.vertices().len() != self.mesh.vertices().len() {
             return Err(Error::parameter(
@@ -154,18 +153,18 @@ impl Side {
         self.ranges = Ranges::new(self.len(), |position| self.bounds(position));
     }
 
-    /// How many features stand somewhere.
+    /// The number of features with a position.
     pub(super) fn len(&self) -> usize {
         self.feature_at.len()
     }
 
-    /// The vertices of a feature, the last repeated to make three; the feature exists.
+    /// The vertices of an existing feature, the last one repeated to make three.
     #[inline]
     pub(super) fn corners(&self, feature: u32) -> [u32; 3] {
         self.mesh.features(self.kind).corners(feature)
     }
 
-    /// Where a feature is; it exists.
+    /// The shape of an existing feature.
     #[inline]
     pub(super) fn shape(&self, feature: u32) -> Shape {
         let vertices = self.mesh.vertices();
@@ -179,7 +178,7 @@ impl Side {
         self.shape(self.feature_at[position]).bounds()
     }
 
-    /// The box around the features at the positions from `first` to `last`, as they stand on an axis.
+    /// The box around the features at the positions `first` to `last` of an axis.
     pub(super) fn around(&self, first: f64, last: f64) -> Aabb {
         let end = self.len() - 1;
         let first = (first as usize).min(end);
@@ -189,7 +188,7 @@ impl Side {
 
     #[inline]
     pub(super) fn feature(&self, value: f64) -> u32 {
-        // A float beyond the range saturates; the last position takes what is too large.
+        // The conversion saturates; values that are too large become the last position.
         self.feature_at[(value as usize).min(self.len() - 1)]
     }
 
@@ -198,19 +197,19 @@ impl Side {
         (*position != ABSENT).then(|| f64::from(*position))
     }
 
-    /// Whether there is such a feature, chosen or not.
+    /// Whether the feature exists, chosen or not.
     #[inline]
     pub(super) fn has(&self, feature: u32) -> bool {
         (feature as usize) < self.position_of.len()
     }
 
-    /// Where a vertex is, if there is one.
+    /// The position of a vertex, if it exists.
     #[inline]
     pub(super) fn point(&self, vertex: u32) -> Option<&[f64; 3]> {
         self.mesh.vertices().get(vertex as usize)
     }
 
-    /// The median length of the edges; infinite where it overflows, 0 without edges.
+    /// The median length of the edges; infinite on overflow, 0 without edges.
     pub(super) fn spacing(&self) -> f64 {
         let mut squares: Vec<f64> = self
             .mesh

@@ -1,4 +1,4 @@
-//! Experiment I: two teapots that run into each other.
+//! Experiment I of the paper: two teapots that collide.
 
 use satisfice::catalogue::{Parameter, Params};
 
@@ -24,7 +24,7 @@ use crate::sampling;
 /// ```
 pub type Teapots = Prepared<TwoTeapots>;
 
-/// How to make [`Teapots`].
+/// The recipe of [`Teapots`].
 #[derive(Debug, Clone, Copy)]
 pub struct TwoTeapots;
 
@@ -126,11 +126,10 @@ impl Recipe for TwoTeapots {
     }
 }
 
-/// Draws a sample with 977 hits, so that figures can be compared with earlier ones of that scene (the seeds 0 to 7 draw
-/// 875 to 1,006, all vertices have 1,140).
+/// The seed of the sample in the recorded results.
 const SAMPLE_SEED: i64 = 161;
 
-/// The first body goes by the seed itself, the second by one far from it.
+/// The first body uses the seed itself, the second one a distant seed.
 fn stream_seed(seed: u64, stream: u64) -> u64 {
     seed ^ stream.wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }

@@ -11,20 +11,19 @@ use crate::mesh::{Adjacency, Mesh};
 use crate::oracle;
 use crate::order::VertexOrder;
 
-/// All pairs of vertices with F(i, j) = |a_i - b_j| < delta, of two bodies or of one with itself (Eq. 1).
+/// The problem of all pairs of vertices with F(i, j) = |a_i - b_j| < delta, between two bodies or within one (Eq. 1).
 ///
 /// A solution is a pair of vertex numbers `(i, j)` of the meshes. The space has two integer axes, the positions of the
-/// vertices in their [`VertexOrder`] (Hilbert by default), so that near points of the space are near pairs.
+/// vertices in their [`VertexOrder`] (Hilbert by default), so that close points of the space are close pairs.
 ///
-/// Of one body with itself, `(i, j)` and `(j, i)` are one solution with `i < j`; a vertex with itself, and vertices at
-/// most a ring width of mesh edges apart, are no pairs: their F is finite, at least delta and at least every distance of
-/// the body.
+/// Within one body, `(i, j)` and `(j, i)` are one solution with `i < j`. A vertex with itself, and vertices at most a ring
+/// width of mesh edges apart, are not pairs: their F is finite, at least delta and at least every distance within the body.
 ///
-/// `F < delta` holds exactly where it holds for the coordinates as they are, rounding notwithstanding; F itself is within
-/// a few units in the last place. An evaluation allocates nothing.
+/// `F < delta` is exact for the coordinates as they are; F itself is within a few units in the last place. An evaluation
+/// does not allocate.
 ///
-/// The neighbours of a pair are those with one of the two vertices moved along a mesh edge; where delta is below the
-/// typical (median) edge length of a body also those with both moved, since one step alone then leads out of reach.
+/// The neighbours of a pair are those with one of the two vertices moved along a mesh edge. If delta is below the median edge
+/// length of a body, they include those with both vertices moved, since one step alone then exceeds delta.
 /// The lower bound of a region is the distance of the boxes around its two ranges of vertices.
 ///
 /// Source of the problem: Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539.
@@ -41,7 +40,7 @@ use crate::order::VertexOrder;
 /// ```
 #[derive(Debug, Clone)]
 pub struct VertexPairs {
-    /// The same question without a choice of vertices; F and what a choice changes are here.
+    /// The same problem for features, which has F and everything that a choice of vertices changes.
     pairs: FeaturePairs,
 }
 
@@ -55,8 +54,8 @@ impl VertexPairs {
         Ok(Self { pairs })
     }
 
-    /// Pairs of vertices of one body closer than `delta`, in Hilbert order, leaving out those at most `ring_width` mesh
-    /// edges apart (1 leaves out the mesh neighbours, 0 nothing but `i = j`).
+    /// Pairs of vertices of one body closer than `delta`, in Hilbert order, except those at most `ring_width` mesh
+    /// edges apart (1 excludes mesh neighbours, 0 only `i = j`).
     ///
     /// # Errors
     /// [`Error::Parameter`] unless `delta` is finite and above 0.
@@ -65,8 +64,7 @@ impl VertexPairs {
         Ok(Self { pairs })
     }
 
-    /// The same problem over some vertices only; the same ones twice count once. Of one body with itself, `b` is not
-    /// looked at.
+    /// The same problem for a choice of vertices; duplicates count once. Within one body, `b` is ignored.
     ///
     /// # Errors
     /// [`Error::Parameter`] if none is given or a number is not a vertex.
@@ -76,7 +74,7 @@ impl VertexPairs {
         Ok(self)
     }
 
-    /// The same problem with other vertex orders. Of one body with itself, `b` is not looked at.
+    /// The same problem with other vertex orders. Within one body, `b` is ignored.
     #[must_use]
     pub fn with_orders(mut self, a: VertexOrder, b: VertexOrder) -> Self {
         self.pairs.a.reorder(a);
@@ -106,14 +104,14 @@ impl VertexPairs {
         self.pairs.a()
     }
 
-    /// The second body; the first one again, of one body with itself.
+    /// The second body; the first one again if there is only one.
     #[must_use]
     pub fn b(&self) -> &Mesh {
         self.pairs.b()
     }
 
-    /// The first body has moved or changed its shape: its next frame. Orders, choice and rings stay, so the solutions of
-    /// the frame before keep their places in the space.
+    /// Replaces the first body by its next frame, in which it moved or deformed. Orders, choice and rings stay, so that the
+    /// solutions of the previous frame keep their positions in the space.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the number of vertices differs.
@@ -121,7 +119,7 @@ impl VertexPairs {
         self.pairs.move_a(mesh)
     }
 
-    /// The second body has moved or changed its shape; of one body with itself the same as [`VertexPairs::move_a`].
+    /// Replaces the second body by its next frame; the same as [`VertexPairs::move_a`] if there is only one body.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the number of vertices differs.
@@ -129,7 +127,7 @@ impl VertexPairs {
         self.pairs.move_b(mesh)
     }
 
-    /// All solutions by brute force ([`oracle`]), sorted. O(|a| |b|).
+    /// All solutions by brute force ([`oracle`]), sorted. Cost: O(|a| |b|).
     #[must_use]
     pub fn reference_pairs(&self) -> Vec<(u32, u32)> {
         let FeaturePairs {
@@ -170,7 +168,7 @@ impl SatisficingProblem for VertexPairs {
         self.pairs.decode(values)
     }
 
-    /// NaN, which is never a hit, for numbers that are no vertices.
+    /// NaN, which is never a hit, for numbers without a vertex.
     #[inline]
     fn fitness(&self, &(i, j): &(u32, u32)) -> f64 {
         let pairs = &self.pairs;
@@ -183,7 +181,7 @@ impl SatisficingProblem for VertexPairs {
         }
     }
 
-    /// Eight at a time: all are fetched, then measured together.
+    /// Evaluates eight pairs at a time: all are fetched, then measured together.
     fn fitness_all(&self, solutions: &[(u32, u32)], fitness: &mut [f64]) {
         const LANES: usize = 8;
         let pairs = &self.pairs;

@@ -1,7 +1,7 @@
 //! Seeded samples of a body: vertices uniformly or by area, points of the surface by area.
 //!
-//! The generator is Xoshiro256++; the draws are written out here and use no transcendental function, so that a seed
-//! gives the same sample on every platform and with every version of the libraries.
+//! The generator is Xoshiro256++. The draws are implemented here without transcendental functions, so that a seed gives the
+//! same sample on every platform and with every version of the libraries.
 
 mod surface;
 mod weights;
@@ -14,7 +14,7 @@ pub use surface::{SurfacePoint, surface_points, vertex_areas, vertices_by_area};
 
 use crate::error::Error;
 
-/// Draws `count` of the numbers `0..population` uniformly without replacement; the answer is sorted.
+/// Draws `count` of the numbers `0..population` uniformly without replacement and returns them sorted.
 ///
 /// # Errors
 /// [`Error::Parameter`] if `count` exceeds `population`.
@@ -52,7 +52,7 @@ pub(crate) fn permutation(n: u32, seed: u64) -> Vec<u32> {
     numbers
 }
 
-/// The first `front` steps of the Fisher-Yates shuffle: they are a uniform sample in random order.
+/// The first `front` steps of the Fisher-Yates shuffle. They give a uniform sample in random order.
 fn shuffle_front(numbers: &mut [u32], front: usize, rng: &mut impl Rng) {
     for k in 0..front {
         let rest = (numbers.len() - k) as u64;
@@ -61,7 +61,7 @@ fn shuffle_front(numbers: &mut [u32], front: usize, rng: &mut impl Rng) {
     }
 }
 
-/// Uniform on `0..n` for `n > 0`, without bias: the high half of a product, redrawn in the rare short band
+/// A uniform draw from `0..n` for `n > 0`, without bias: the high half of a product, redrawn in the rare short interval
 /// (Lemire 2019, doi 10.1145/3230636).
 fn below(n: u64, rng: &mut impl Rng) -> u64 {
     let band = n.wrapping_neg() % n;
@@ -73,7 +73,7 @@ fn below(n: u64, rng: &mut impl Rng) -> u64 {
     }
 }
 
-/// Uniform on [0, 1) in steps of 2^-53.
+/// A uniform draw from [0, 1) in steps of 2^-53.
 fn unit(rng: &mut impl Rng) -> f64 {
     (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }

@@ -1,4 +1,4 @@
-//! Samples that follow the area of the triangles.
+//! Samples in proportion to the area of the triangles.
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -8,18 +8,18 @@ use super::weights::WeightTree;
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// A point of a surface.
+/// A point on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
     /// The triangle it lies on.
     pub triangle: u32,
-    /// Its barycentric coordinates there; not negative, their sum is 1 up to rounding.
+    /// Its barycentric coordinates: not negative, with a sum of 1 within rounding.
     pub barycentric: [f64; 3],
-    /// Where it is.
+    /// Its position, in the unit of the mesh.
     pub position: [f64; 3],
 }
 
-/// Draws `count` points uniformly by area from the triangles of `mesh`, independently of each other.
+/// Draws `count` points uniformly by area from the triangles of `mesh`, independently.
 ///
 /// # Errors
 /// [`Error::Parameter`] if the mesh has no triangle of positive area.
@@ -54,8 +54,8 @@ pub fn surface_points(mesh: &Mesh, count: usize, seed: u64) -> Result<Vec<Surfac
         .collect())
 }
 
-/// Draws `count` vertices without replacement, each time with a probability in proportion to its share of the area
-/// ([`vertex_areas`]); the answer is sorted.
+/// Draws `count` vertices without replacement, each with a probability in proportion to its share of the area
+/// ([`vertex_areas`]), and returns them sorted.
 ///
 /// # Errors
 /// [`Error::Parameter`] if fewer than `count` vertices have a positive share.
@@ -84,8 +84,8 @@ pub fn vertices_by_area(mesh: &Mesh, count: u32, seed: u64) -> Result<Vec<u32>, 
     Ok(sample)
 }
 
-/// For every vertex a third of the area of the triangles around it, in units of the squared power of two that is next
-/// above the greatest coordinate (so that no product overflows).
+/// A third of the area of the triangles around each vertex. The unit of length is the next power of two above the largest
+/// coordinate, so that no product overflows.
 #[must_use]
 pub fn vertex_areas(mesh: &Mesh) -> Vec<f64> {
     let mut shares = vec![0.0; mesh.vertices().len()];
@@ -97,7 +97,7 @@ pub fn vertex_areas(mesh: &Mesh) -> Vec<f64> {
     shares
 }
 
-/// Areas of the triangles in a unit of length that is a power of two near the greatest coordinate difference.
+/// The areas of the triangles. The unit of length is a power of two near the largest difference of coordinates.
 fn relative_areas(mesh: &Mesh) -> Vec<f64> {
     let greatest = mesh
         .vertices()
@@ -107,7 +107,7 @@ fn relative_areas(mesh: &Mesh) -> Vec<f64> {
     let scale = power_of_two_below_inverse(greatest);
     (0..mesh.triangles().len())
         .map(|t| {
-            // Scaling twice keeps the factor a normal number even for coordinates near the ends of the range.
+            // Two factors stay normal numbers even for coordinates near the ends of the range.
             let [a, b, c] = mesh.triangle(t).map(|p| p.map(|x| x * scale[0] * scale[1]));
             let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
             let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
@@ -121,7 +121,7 @@ fn relative_areas(mesh: &Mesh) -> Vec<f64> {
         .collect()
 }
 
-/// Two powers of two whose product brings `greatest` into [1/2, 1), or ones for zero.
+/// Two powers of two whose product scales `greatest` into [1/2, 1); ones for zero.
 fn power_of_two_below_inverse(greatest: f64) -> [f64; 2] {
     let mut scale = [1.0, 1.0];
     if greatest > 0.0 {

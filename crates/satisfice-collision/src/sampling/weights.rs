@@ -1,11 +1,11 @@
-//! Drawing by weight, with and without replacement.
+//! Weighted draws, with and without replacement.
 
 use rand::Rng;
 
 use super::unit;
 
-/// Weights kept as a binary tree of sums. A changed weight is summed up anew on its way to the root, never subtracted,
-/// so a weight set to zero can not be drawn again through rounding.
+/// Weights as a binary tree of sums. A changed weight is summed again on the path to the root and never subtracted, so
+/// that rounding cannot draw a weight that was set to zero.
 pub(super) struct WeightTree {
     /// `sums[1]` is the root, the leaves start at `leaves`.
     sums: Vec<f64>,
@@ -13,7 +13,7 @@ pub(super) struct WeightTree {
 }
 
 impl WeightTree {
-    /// From weights that are finite, not negative, and have a finite sum.
+    /// The weights must be finite and not negative and have a finite sum.
     pub(super) fn new(weights: &[f64]) -> Self {
         let leaves = weights.len().next_power_of_two();
         let mut sums = vec![0.0; 2 * leaves];
@@ -28,13 +28,13 @@ impl WeightTree {
         self.sums[1]
     }
 
-    /// Draws an item with probability weight / total; the total must be above 0. O(log n).
+    /// Draws an item with probability weight / total; the total must be positive. Cost: O(log n).
     pub(super) fn draw(&self, rng: &mut impl Rng) -> usize {
         let mut target = unit(rng) * self.total();
         let mut k = 1;
         while k < self.leaves {
             let (left, right) = (self.sums[2 * k], self.sums[2 * k + 1]);
-            // Rounding may leave the target at or beyond the sum of an empty side: never step onto one.
+            // Rounding may move the target to or beyond the sum of an empty side: never descend into one.
             if (target < left && left > 0.0) || right == 0.0 {
                 k *= 2;
             } else {
