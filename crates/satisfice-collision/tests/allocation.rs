@@ -39,7 +39,7 @@ fn threshold() -> Threshold {
 #[test]
 fn grids_allocate_nothing() {
     on_one_thread();
-    // so many that the sieve is used
+    // so many that the cull is used
     let ball = generate::icosphere(1.0, 6).unwrap();
     let frames = [0.3, 0.31].map(|by| {
         let place = Placement::from_translation([by, 0.0, 0.0]).unwrap();
@@ -49,7 +49,7 @@ fn grids_allocate_nothing() {
     let between = allocations(|n| {
         let pairs = grid.between(ball.vertices(), frames[n].vertices(), threshold());
         assert!(pairs.unwrap().len() > 1000);
-        assert!(grid.work().lonely > 1000);
+        assert!(grid.work().isolated > 1000);
     });
     let mut grid = PointGrid::new();
     let within = allocations(|n| {

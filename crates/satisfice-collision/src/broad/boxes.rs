@@ -40,7 +40,7 @@ impl Box32 {
 
     /// The sum of the sides.
     #[inline]
-    pub(crate) fn girth(&self) -> f32 {
+    pub(crate) fn sum_of_sides(&self) -> f32 {
         (0..3).map(|k| self.max[k] - self.min[k]).sum()
     }
 }
@@ -82,7 +82,7 @@ pub(crate) struct BoxTree {
 
 /// Which items of a tree count as moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Moved {
+pub(crate) enum Dirty {
     All,
     None,
     /// Those marked at the last refit.
@@ -180,16 +180,16 @@ impl BoxTree {
 
     /// The lanes of a group that count as moved.
     #[inline(always)]
-    pub(crate) fn moved(&self, which: Moved, level: u8, group: u32) -> u32 {
+    pub(crate) fn moved(&self, which: Dirty, level: u8, group: u32) -> u32 {
         match which {
-            Moved::All => 0xff,
-            Moved::None => 0,
-            Moved::Marked => u32::from(self.moved[level as usize][group as usize]),
+            Dirty::All => 0xff,
+            Dirty::None => 0,
+            Dirty::Marked => u32::from(self.moved[level as usize][group as usize]),
         }
     }
 
     /// The sum of all sides of the boxes of level 1: the larger, the more boxes overlap. 0 if there is no such level.
-    pub(crate) fn girth(&self) -> f64 {
+    pub(crate) fn sum_of_sides(&self) -> f64 {
         let sides = |group: &Group| {
             let sides = group.lower.as_flattened().iter().zip(group.upper.as_flattened());
             // an empty box has none

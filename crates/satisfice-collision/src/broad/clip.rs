@@ -1,4 +1,4 @@
-//! What of a body can have a partner: boxes of runs of points, and the points inside a region brought into a frame.
+//! The part of a body that may be near the other: bounding boxes of blocks of points, and the points inside a region brought into a frame.
 
 use super::frame::Frame;
 use crate::simd::{Lanes, Work, dispatch};
@@ -9,12 +9,12 @@ pub(crate) const RUN: usize = 64;
 
 /// The bounding boxes of a body's points, run by run.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct Runs {
+pub(crate) struct BlockBounds {
     boxes: Vec<Aabb>,
     whole: Option<Aabb>,
 }
 
-impl Runs {
+impl BlockBounds {
     /// Measures `points`.
     ///
     /// # Errors
@@ -212,7 +212,7 @@ impl Work for MeasurePart<'_> {
 #[derive(Clone, Copy)]
 pub(crate) struct Clip<'a> {
     pub(crate) points: &'a [[f64; 3]],
-    pub(crate) runs: &'a Runs,
+    pub(crate) runs: &'a BlockBounds,
     /// Every run that reaches into the region.
     pub(crate) inside: &'a [u32],
     pub(crate) region: &'a Aabb,
@@ -265,7 +265,7 @@ impl Work for Placing<'_> {
     fn run<L: Lanes>(self, lanes: L) {
         let Clip {
             points,
-            runs: Runs { boxes, .. },
+            runs: BlockBounds { boxes, .. },
             region,
             frame,
             ..

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::boxes::{Box32, BoxTree};
-use super::clip::Runs;
+use super::clip::BlockBounds;
 use super::frame::Frame;
-use super::separate::{self, Directions, Triangles};
+use super::separating_axis::{self, Directions, Triangles};
 use crate::mesh::{Features, Point, Shape, Topology, Triangle};
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, FeatureKind, Mesh};
@@ -16,7 +16,7 @@ pub struct FeatureTree {
     kind: FeatureKind,
     topology: Arc<Topology>,
     vertices: Vec<Point>,
-    runs: Runs,
+    runs: BlockBounds,
     pub(crate) frame: Frame,
     boxes: Vec<Box32>,
     placed: Vec<[f32; 3]>,
@@ -26,11 +26,11 @@ pub struct FeatureTree {
     moved: Vec<bool>,
     pub(crate) tree: BoxTree,
     /// Of the tree when it was built, in the unit of the coordinates.
-    girth: f64,
+    built_sum_of_sides: f64,
 }
 
 /// A tree whose boxes have grown by this factor since it was built is worth building anew.
-const LOOSE: f64 = 1.5;
+const DEGRADED: f64 = 1.5;
 
 /// What a refit saw.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -95,14 +95,14 @@ impl FeatureTree {
             kind,
             topology: Arc::clone(mesh.topology()),
             vertices: mesh.vertices().to_vec(),
-            runs: Runs::default(),
+            runs: BlockBounds::default(),
             frame: Frame::unit(&bounds),
             boxes: Vec::new(),
             placed: Vec::new(),
             directions: Vec::new(),
             moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
-            girth: 0.0,
+            built_sum_of_sides: 0.0,
         };
         tree.measure(mesh.vertices());
         let points: Vec<Box32>;
@@ -120,13 +120,13 @@ impl FeatureTree {
         };
         tree.tree = BoxTree::order(boxes, kind == FeatureKind::Vertex, rayon::current_num_threads());
         tree.fit(mesh.vertices());
-        tree.girth = tree.tree.girth() / tree.frame.scale;
+        tree.built_sum_of_sides = tree.tree.sum_of_sides() / tree.frame.scale;
         tree
     }
 
     /// Whether the body has deformed so far since the tree was built that neighbours in it are no longer near each other.
-    pub(crate) fn is_loose(&self) -> bool {
-        self.tree.girth() / self.frame.scale > LOOSE * self.girth
+    pub(crate) fn is_degraded(&self) -> bool {
+        self.tree.sum_of_sides() / self.frame.scale > DEGRADED * self.built_sum_of_sides
     }
 
     /// Moves the vertices and measures the boxes anew; which features are siblings stays. Cost: O(n), no allocation.
@@ -208,7 +208,7 @@ impl FeatureTree {
                 directions.extend(
                     triangles
                         .iter()
-                        .map(|triangle| separate::directions(triangle.map(at))),
+                        .map(|triangle| separating_axis::directions(triangle.map(at))),
                 );
             }
         }

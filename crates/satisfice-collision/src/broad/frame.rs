@@ -5,7 +5,7 @@
 //! points that are wrong by e on every axis belongs to a distance that differs from the true one by at most 2 sqrt(3) e
 //! before rounding, and the seven roundings of (dx dx + dy dy) + dz dz, fused or not, change its root by a factor within
 //! 1 +- 4u, or by less than 2^-72 where squares underflow. So, with E = 2 sqrt(3) e + 2^-70 and d = delta s:
-//! below `sure` = ((d - E)(1 - 5u))^2 every pair is a hit, from `limit` = ((d + E)(1 + 5u))^2 on none is, and only what lies
+//! below `definitely_inside_sq` = ((d - E)(1 - 5u))^2 every pair is a hit, from `definitely_outside_sq` = ((d + E)(1 + 5u))^2 on none is, and only what lies
 //! between has to be decided exactly. The same holds for the gap between boxes whose sides are wrong by at most e.
 
 use crate::Aabb;
@@ -31,12 +31,12 @@ pub(crate) struct Frame {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Filter {
     /// Squared distances below this are hits.
-    pub(crate) sure: f32,
+    pub(crate) definitely_inside_sq: f32,
     /// Squared distances from this on are none.
-    pub(crate) limit: f32,
+    pub(crate) definitely_outside_sq: f32,
     /// No hit lies further apart than this along any axis; covers the rounding of a coordinate plus or minus it.
     pub(crate) reach: f32,
-    /// No hit has a larger gap along a direction, as computed by `separate`.
+    /// No hit has a larger gap along a direction, as computed by `separating_axis`.
     pub(crate) apart: f32,
 }
 
@@ -104,13 +104,13 @@ impl Filter {
         let inner = (delta - error) * (1.0 - 5.0 * U);
         let outer = (delta + error) * (1.0 + 5.0 * U);
         Self {
-            sure: if inner > 0.0 {
+            definitely_inside_sq: if inner > 0.0 {
                 square(inner).next_down()
             } else {
                 0.0
             },
             // finite, so that an empty box, infinitely far away, never passes
-            limit: square(outer).next_up().min(f32::MAX),
+            definitely_outside_sq: square(outer).next_up().min(f32::MAX),
             // the subtraction and addition of a reach round once more, at the size of a coordinate
             apart: apart as f32,
             reach: ((outer + 2.0 * half * U) * (1.0 + 2.0 * U)) as f32,

@@ -14,11 +14,11 @@ use crate::simd::{Eight, Lanes, Work};
 /// Tests between two looks at the watch: some 20 us, or 0.2 ms where most are pairs.
 const LOOK: u64 = 1 << 16;
 /// From so many tests in one cell on a finer look is worth its overhead.
-const CLUMP: usize = 1 << 17;
+const DENSE: usize = 1 << 17;
 
 /// A cell with too many tests in it: the serial numbers of its points and of their candidates.
 #[derive(Debug)]
-pub(crate) struct Clump {
+pub(crate) struct DenseCell {
     pub(crate) a: Vec<u32>,
     pub(crate) b: Vec<u32>,
 }
@@ -30,8 +30,8 @@ pub(crate) struct Scratch {
     near_id: Vec<u32>,
     /// The pairs found.
     pub(crate) found: Vec<Pair>,
-    /// What has to be looked at again in a frame of its own.
-    pub(crate) clumps: Vec<Clump>,
+    /// Cells to be split in frames of their own.
+    pub(crate) dense_cells: Vec<DenseCell>,
     /// Squared distances computed.
     pub(crate) tests: u64,
     /// Pairs decided exactly because the filter could not.
@@ -44,7 +44,7 @@ pub(crate) struct Scratch {
 impl Scratch {
     pub(crate) fn clear(&mut self) {
         self.found.clear();
-        self.clumps.clear();
+        self.dense_cells.clear();
         self.tests = 0;
         self.in_band = 0;
         self.next_look = LOOK;
@@ -86,7 +86,7 @@ pub(crate) struct Join<'a, const ONE_BODY: bool> {
     /// Number of this task.
     pub(crate) task: usize,
     pub(crate) layers: Range<usize>,
-    /// Whether clumps may be handed back.
+    /// Whether dense cells may be handed back.
     pub(crate) split: bool,
     pub(crate) watch: &'a Watch<'a>,
     pub(crate) scratch: &'a mut Scratch,
@@ -127,13 +127,13 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
         if near == 0 {
             return false;
         }
-        if self.split && own.len() * near > CLUMP {
+        if self.split && own.len() * near > DENSE {
             let others = usize::from(ONE_BODY) * own.len();
-            let clump = Clump {
+            let dense = DenseCell {
                 a: self.a.id[own].to_vec(),
                 b: self.scratch.near_id[others..near].to_vec(),
             };
-            self.scratch.clumps.push(clump);
+            self.scratch.dense_cells.push(dense);
             return false;
         }
         for (i, at) in own.enumerate() {
@@ -218,7 +218,11 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
     /// Tests one point against the gathered candidates from `skip` on.
     #[inline(always)]
     fn scan<L: Lanes>(&mut self, lanes: L, q: [f32; 3], id: u32, skip: usize, near: usize) {
-        let Filter { sure, limit, .. } = *self.filter;
+        let Filter {
+            definitely_inside_sq,
+            definitely_outside_sq,
+            ..
+        } = *self.filter;
         let Scratch {
             near: [nx, ny, nz],
             near_id,
@@ -235,7 +239,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
             let mut lane = 0;
             while at < near && lane < 64 {
                 let c = [eight(nx, at), eight(ny, at), eight(nz, at)];
-                bits |= u64::from(lanes.closer(c, q, limit)) << lane;
+                bits |= u64::from(lanes.closer(c, q, definitely_outside_sq)) << lane;
                 at += 8;
                 lane += 8;
             }
@@ -249,7 +253,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
                 if ONE_BODY && a > b {
                     (a, b) = (b, a);
                 }
-                if dx * dx + dy * dy + dz * dz >= sure {
+                if dx * dx + dy * dy + dz * dz >= definitely_inside_sq {
                     *in_band += 1;
                     let a = if ONE_BODY { a } else { self.groups.id(a) };
                     if !self.decide.closer(a, b) {

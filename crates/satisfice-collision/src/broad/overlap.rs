@@ -1,6 +1,6 @@
 //! The regions of two bodies that can have partners in the other: the overlap of their inflated boxes, tightened.
 
-use super::clip::{Runs, inflate, intersection, union};
+use super::clip::{BlockBounds, inflate, intersection, union};
 use crate::Aabb;
 
 /// What of two bodies can have partners in the other. Keeps its memory from call to call.
@@ -13,7 +13,7 @@ pub(crate) struct Overlap {
 
 impl Overlap {
     /// For each body the region in which its points can be within `delta` of the other's; `None` if the bodies are apart.
-    pub(crate) fn find(&mut self, a: &Runs, b: &Runs, delta: f64) -> Option<[Aabb; 2]> {
+    pub(crate) fn find(&mut self, a: &BlockBounds, b: &BlockBounds, delta: f64) -> Option<[Aabb; 2]> {
         let mut regions = [b.whole()?, a.whole()?].map(|whole| inflate(&whole, delta));
         intersection(&a.whole()?, &regions[0])?;
         // what is left of one body, run by run, tightens the region of the other

@@ -1,21 +1,21 @@
 //! All pairs of points within a threshold, of two bodies or inside one, exactly and in order.
 
 use super::cells::{Cells, Fit, Sorted};
-use super::clip::{Clip, Part, Runs, union};
+use super::clip::{BlockBounds, Clip, Part, union};
 use super::exact::Decide;
 use super::frame::{Filter, Frame};
 use super::groups::Groups;
-use super::join::{Clump, Join, Scratch};
+use super::join::{DenseCell, Join, Scratch};
+use super::occupancy::OccupancyCull;
 use super::overlap::Overlap;
 use super::pair::Pair;
-use super::sieve::Sieve;
 use super::sorting::Sorter;
 use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::simd::dispatch;
 use crate::{Aabb, Error};
 
-/// How deep clumps are looked at in frames of their own; each is at most half as wide as the one before.
+/// How deep dense cells may be split; each gets a frame of its own, at most half as wide as the one before.
 const DEEPEST: u32 = 40;
 
 /// Points from which threads share the work: to wake one takes as long as some hundreds of points do.
@@ -40,7 +40,7 @@ pub struct PointWork {
     /// Points of both bodies outside the overlap of the inflated boxes.
     pub clipped: u64,
     /// Points inside the overlap with no point of the other body nearby.
-    pub lonely: u64,
+    pub isolated: u64,
     /// Squared distances computed.
     pub tests: u64,
     /// Pairs so close to the threshold that they were decided exactly.
@@ -52,10 +52,10 @@ pub struct PointWork {
 #[derive(Debug, Default)]
 pub struct PointGrid {
     threads: usize,
-    runs: [Runs; 2],
+    runs: [BlockBounds; 2],
     overlap: Overlap,
     parts: [Vec<Part>; 2],
-    sieve: Sieve,
+    cull: OccupancyCull,
     fit: Fit,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
@@ -129,7 +129,7 @@ impl PointGrid {
     pub(crate) fn within_until(
         &mut self,
         points: &[[f64; 3]],
-        measured: Option<&Runs>,
+        measured: Option<&BlockBounds>,
         threshold: Threshold,
         watch: &Watch<'_>,
     ) -> Result<&[Pair], Error> {
@@ -141,7 +141,7 @@ impl PointGrid {
         &mut self,
         a: &[[f64; 3]],
         b: &[[f64; 3]],
-        measured: Option<&Runs>,
+        measured: Option<&BlockBounds>,
         threshold: Threshold,
         watch: &Watch<'_>,
         depth: u32,
@@ -186,7 +186,7 @@ impl PointGrid {
         } else {
             a.len() + b.len() - na - nb
         } as u64
-            - self.work.lonely;
+            - self.work.isolated;
         if na == 0 || (!ONE_BODY && nb == 0) {
             return Ok(());
         }
@@ -208,11 +208,11 @@ impl PointGrid {
         let decide = Decide { a, b, threshold };
         let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, depth < DEEPEST, watch);
         for task in 0..tasks {
-            for clump in std::mem::take(&mut self.tasks[task].clumps) {
+            for dense in std::mem::take(&mut self.tasks[task].dense_cells) {
                 if watch.stopped() {
                     break;
                 }
-                self.clump::<ONE_BODY>(&decide, task, &clump, watch, depth)?;
+                self.split_dense_cell::<ONE_BODY>(&decide, task, &dense, watch, depth)?;
             }
             self.work.tests += self.tasks[task].tests;
             self.work.in_band += self.tasks[task].in_band;
@@ -239,7 +239,7 @@ impl PointGrid {
             runs: [runs_a, runs_b],
             overlap,
             parts: [parts_a, parts_b],
-            sieve,
+            cull,
             threads,
             ..
         } = self;
@@ -277,7 +277,7 @@ impl PointGrid {
             || clip(b, &*runs_b, inside_b, &regions[1], parts_b),
         );
         let reach = frame.filter(threshold.get()).reach;
-        self.work.lonely = sieve.sieve(parts_a, parts_b, reach, *threads) as u64;
+        self.work.isolated = cull.cull(parts_a, parts_b, reach, *threads) as u64;
         Some(*frame)
     }
 
@@ -332,11 +332,11 @@ impl PointGrid {
     }
 
     /// Looks at a crowded cell in a frame of its own.
-    fn clump<const ONE_BODY: bool>(
+    fn split_dense_cell<const ONE_BODY: bool>(
         &mut self,
         decide: &Decide<'_>,
         task: usize,
-        Clump { a: own, b: others }: &Clump,
+        DenseCell { a: own, b: others }: &DenseCell,
         watch: &Watch<'_>,
         depth: u32,
     ) -> Result<(), Error> {

@@ -9,7 +9,7 @@
 
 use super::boxes::Group;
 use super::frame::{Filter, Frame, U, power_of_two};
-use super::separate::Directions;
+use super::separating_axis::Directions;
 use crate::Placement;
 use crate::simd::Eight;
 

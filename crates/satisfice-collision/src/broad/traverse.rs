@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::boxes::{BoxTree, Group, Moved};
+use super::boxes::{BoxTree, Dirty, Group};
 use super::frame::Filter;
 use super::relative::Relative;
 use crate::simd::{Eight, Lanes, Work};
@@ -54,7 +54,7 @@ pub(crate) struct Trees<'a> {
     /// Whether both are the same tree, and each pair of different items is wanted once.
     pub(crate) one_body: bool,
     /// Pairs of which neither item moved are not visited.
-    pub(crate) moved: [Moved; 2],
+    pub(crate) moved: [Dirty; 2],
 }
 
 impl Trees<'_> {
@@ -231,7 +231,13 @@ fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
         .boxes(trees.a.group(at.level_a, at.a, room_a), room);
     let b = trees.b.group(at.level_b, at.b, room_b);
     let (lower, upper) = (columns(&b.lower), columns(&b.upper));
-    lanes.boxes_within(lower, upper, &a.lower, &a.upper, trees.filter.limit)
+    lanes.boxes_within(
+        lower,
+        upper,
+        &a.lower,
+        &a.upper,
+        trees.filter.definitely_outside_sq,
+    )
 }
 
 /// Which pairs of items of two leaves are within the threshold, or their boxes are.
@@ -243,7 +249,7 @@ fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit) 
     let Trees { a, b, filter, .. } = trees;
     let mut room = [[0.0; 8]; 3];
     let points_a = trees.relative.points(a.points(at.a), &mut room);
-    let near = lanes.all_closer(columns(b.points(at.b)), points_a, filter.limit);
+    let near = lanes.all_closer(columns(b.points(at.b)), points_a, filter.definitely_outside_sq);
     // no item with itself, which is all that is near in most of these
     let is_one = trees.one_body && at.a == at.b;
     near & if is_one { DIFFERENT } else { u64::MAX }
@@ -278,7 +284,7 @@ fn deliver<C: Candidates>(
         let (i, j) = next(&mut near);
         let sure = C::POINTS && {
             let d: [f32; 3] = std::array::from_fn(|k| points_b[k][j] - points_a[k][i]);
-            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < filter.sure
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < filter.definitely_inside_sq
         };
         visit.candidate(ids_a[i], ids_b[j], sure);
     }

@@ -1,9 +1,9 @@
 //! All pairs of features within a threshold by kept box trees, of bodies that may have been posed since.
 
-use super::boxes::{BoxTree, Moved};
-use super::couple::{Couple, Keep, Visitor};
+use super::boxes::{BoxTree, Dirty};
 use super::features::FeatureTree;
 use super::pair::Pair;
+use super::pair_query::{Keep, PairQuery, Visitor};
 use super::sorting::Sorter;
 use super::traverse::{Trees, Visit};
 use super::watch::Watch;
@@ -78,49 +78,49 @@ impl TreeJoin {
         threshold: Threshold,
         keep: Keep<'_>,
     ) -> Result<&[Pair], Error> {
-        let couple = Couple {
+        let query = PairQuery {
             a,
             b,
             one_body: false,
             threshold,
             keep,
-            moved: [Moved::All; 2],
+            moved: [Dirty::All; 2],
         };
-        couple.check()?;
-        self.all(&couple, &Watch::none());
+        query.check()?;
+        self.all(&query, &Watch::none());
         Ok(&self.pairs)
     }
 
     /// All pairs `i < j` of features of one body, where it was put last, that are within the threshold and kept.
     pub fn within(&mut self, body: &FeatureTree, threshold: Threshold, keep: Keep<'_>) -> &[Pair] {
         let body = (body, &Placement::IDENTITY);
-        let couple = Couple {
+        let query = PairQuery {
             a: body,
             b: body,
             one_body: true,
             threshold,
             keep,
-            moved: [Moved::All; 2],
+            moved: [Dirty::All; 2],
         };
-        self.all(&couple, &Watch::none());
+        self.all(&query, &Watch::none());
         &self.pairs
     }
 
-    /// The same without a tree, for a comparison or for a handful of features: every pair is decided. A couple of one body
+    /// The same without a tree, for a comparison or for a handful of features: every pair is decided. A query of one body
     /// gives each pair once.
-    pub(crate) fn brute_force(&mut self, couple: &Couple<'_>, watch: &Watch<'_>) -> &[Pair] {
+    pub(crate) fn brute_force(&mut self, query: &PairQuery<'_>, watch: &Watch<'_>) -> &[Pair] {
         self.pairs.clear();
         self.work = TreeWork::default();
-        let (rows, others) = (couple.a.0.len() as u32, couple.b.0.len() as u32);
+        let (rows, others) = (query.a.0.len() as u32, query.b.0.len() as u32);
         let decide_row = |a: u32, found: &mut Vec<Pair>| {
             let mut decisions = 0_u64;
-            let first = if couple.one_body { a + 1 } else { 0 };
+            let first = if query.one_body { a + 1 } else { 0 };
             for block in (first..others).step_by(LOOK) {
                 let told = found.len();
                 for b in block..others.min(block.saturating_add(LOOK as u32)) {
-                    if couple.keeps(a, b) {
+                    if query.keeps(a, b) {
                         decisions += 1;
-                        if couple.within(a, b) {
+                        if query.within(a, b) {
                             found.push(Pair { a, b });
                         }
                     }
@@ -155,15 +155,15 @@ impl TreeJoin {
         &self.pairs
     }
 
-    /// All pairs of a couple, or as many as the watch has time for.
-    pub(crate) fn all(&mut self, couple: &Couple<'_>, watch: &Watch<'_>) -> &[Pair] {
-        if couple.apart() {
+    /// All pairs that a query asks for, or as many as the watch has time for.
+    pub(crate) fn all(&mut self, query: &PairQuery<'_>, watch: &Watch<'_>) -> &[Pair] {
+        if query.apart() {
             self.work = TreeWork::default();
             self.pairs.clear();
-        } else if couple.points() {
-            couple.lay(|trees, flip| self.descend::<true>(trees, couple, flip, watch));
+        } else if query.points() {
+            query.in_common_frame(|trees, flip| self.descend::<true>(trees, query, flip, watch));
         } else {
-            couple.lay(|trees, flip| self.descend::<false>(trees, couple, flip, watch));
+            query.in_common_frame(|trees, flip| self.descend::<false>(trees, query, flip, watch));
         }
         &self.pairs
     }
@@ -171,14 +171,14 @@ impl TreeJoin {
     fn descend<const POINTS: bool>(
         &mut self,
         trees: Trees<'_>,
-        couple: &Couple<'_>,
+        query: &PairQuery<'_>,
         flip: bool,
         watch: &Watch<'_>,
     ) {
-        let glance = couple.glance(&trees, flip);
+        let axes = query.separating_axes(&trees, flip);
         let go = |task: &mut Task, most: usize| {
             let Task { stack, found, work } = task;
-            let mut visit = Visitor::<POINTS>::new(couple, flip, found, glance);
+            let mut visit = Visitor::<POINTS>::new(query, flip, found, axes);
             let more = visit.descend(trees, stack, most);
             work.visits += more.visits;
             work.candidates += more.candidates;

@@ -265,8 +265,8 @@ impl BodyTree {
             let at = &self.nodes[node as usize];
             let growth = |lane: usize| {
                 let known = at.lane_box(lane);
-                let size = known.union(to).girth();
-                (size - known.girth(), size)
+                let size = known.union(to).sum_of_sides();
+                (size - known.sum_of_sides(), size)
             };
             let best = at.children().map(|(lane, _)| (growth(lane), lane));
             let best =

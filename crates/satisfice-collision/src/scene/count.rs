@@ -42,13 +42,13 @@ impl World {
             let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
             let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
             let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-            let Some(couple) = self.couple(bodies, self.threshold, &filter, &keep) else {
+            let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) else {
                 continue;
             };
             stack.clear();
-            couple.start(&mut stack);
+            query.start(&mut stack);
             while !stack.is_empty() && !watch.ask(0) {
-                couple.step(&mut stack, VISITS, usize::MAX, &mut found);
+                query.step(&mut stack, VISITS, usize::MAX, &mut found);
                 count += found.len() as u64;
                 watch.ask(found.len());
                 found.clear();

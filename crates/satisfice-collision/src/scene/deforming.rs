@@ -1,6 +1,6 @@
 //! The vertices of a deforming body, what of them moved, and its own trees.
 
-use crate::broad::{FeatureTree, Runs};
+use crate::broad::{BlockBounds, FeatureTree};
 use crate::distance::Point;
 use crate::{Adjacency, Error, FeatureKind, Mesh};
 
@@ -42,13 +42,13 @@ pub(super) struct Deforming {
     next: Vec<Point>,
     step: Step,
     /// The boxes of the vertices, block by block, if they have been measured.
-    blocks: Option<Runs>,
+    blocks: Option<BlockBounds>,
     /// Those of the next vertices, and room to measure others that may be refused.
-    next_blocks: [Runs; 2],
+    next_blocks: [BlockBounds; 2],
     trees: [Option<KeptTree>; 3],
     /// Share of the vertices that moved last.
     pub(super) share: f64,
-    /// How often in a row a refitted tree was so loose that it was built anew.
+    /// How often in a row a refitted tree had degraded so far that it was built anew.
     pub(super) rebuilds: u32,
     /// Vertices within the excluded ring of each vertex.
     pub(super) rings: Option<Adjacency>,
@@ -114,12 +114,12 @@ impl Deforming {
     }
 
     /// The boxes of the vertices, if they are known.
-    pub(super) fn blocks(&self) -> Option<&Runs> {
+    pub(super) fn blocks(&self) -> Option<&BlockBounds> {
         self.blocks.as_ref()
     }
 
     /// Builds the tree over features of this kind, or refits it if the vertices have moved since; builds it anew if they have
-    /// moved so far that it is loose.
+    /// moved so far that it has degraded.
     pub(super) fn ensure_tree(&mut self, mesh: &Mesh, kind: FeatureKind) -> Result<(), Error> {
         let slot = &mut self.trees[kind as usize];
         if let Some(kept) = slot {
@@ -128,7 +128,7 @@ impl Deforming {
             }
             kept.tree.refit(&self.vertices)?;
             (kept.from, kept.version) = (Some(kept.version), self.version);
-            if !kept.tree.is_loose() {
+            if !kept.tree.is_degraded() {
                 self.rebuilds = 0;
                 return Ok(());
             }

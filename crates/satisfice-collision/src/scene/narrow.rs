@@ -7,7 +7,7 @@ use super::state::State;
 use super::verlet::VerletList;
 use super::{Skips, World};
 use crate::Error;
-use crate::broad::{Couple, Moved, Pair, PointGrid, TreeJoin, Watch, inflate, intersection};
+use crate::broad::{Dirty, Pair, PairQuery, PointGrid, TreeJoin, Watch, inflate, intersection};
 use crate::distance::{self, PairKind, Point, Threshold};
 
 /// What a thread needs to find pairs. Keeps its memory.
@@ -195,7 +195,7 @@ impl World {
         let work = grid.work();
         let mut skips = Skips {
             outside_overlap: work.clipped,
-            without_partner: work.lonely,
+            without_partner: work.isolated,
             ..Skips::default()
         };
         filter.count(&mut skips);
@@ -222,26 +222,26 @@ impl World {
         let (kind_a, kind_b) = self.kind.features();
         let filter = Filter::new(self.kind, one, two, a == b);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-        let Some(mut couple) = self.couple(record.bodies, threshold, &filter, &keep) else {
+        let Some(mut query) = self.pair_query(record.bodies, threshold, &filter, &keep) else {
             return Ok(Vec::new());
         };
         if all {
-            let pairs = space.join.brute_force(&couple, watch).to_vec();
+            let pairs = space.join.brute_force(&query, watch).to_vec();
             filter.count(skips);
             return Ok(pairs);
         }
         let moved = [one.moved(self.frame, kind_a), two.moved(self.frame, kind_b)];
         let is_partial =
-            record.status == Status::Behind && threshold == self.threshold && moved != [Moved::All; 2];
+            record.status == Status::Behind && threshold == self.threshold && moved != [Dirty::All; 2];
         if is_partial {
-            couple.moved = moved;
+            query.moved = moved;
         }
-        let mut pairs = space.join.all(&couple, watch).to_vec();
+        let mut pairs = space.join.all(&query, watch).to_vec();
         if is_partial {
             let rests = |state: &State, kind, moved, feature| match moved {
-                Moved::None => true,
-                Moved::All => false,
-                Moved::Marked => state.tree(kind).is_some_and(|tree| !tree.has_moved(feature)),
+                Dirty::None => true,
+                Dirty::All => false,
+                Dirty::Marked => state.tree(kind).is_some_and(|tree| !tree.has_moved(feature)),
             };
             let found = pairs.len();
             let known = record.pairs.iter().copied();
@@ -258,22 +258,22 @@ impl World {
     }
 
     /// The question asked of two bodies whose trees are there.
-    pub(super) fn couple<'a>(
+    pub(super) fn pair_query<'a>(
         &'a self,
         [a, b]: [u32; 2],
         threshold: Threshold,
         filter: &Filter<'_>,
         keep: &'a (dyn Fn(u32, u32) -> bool + Sync),
-    ) -> Option<Couple<'a>> {
+    ) -> Option<PairQuery<'a>> {
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
-        Some(Couple {
+        Some(PairQuery {
             a: (one.tree(kind_a)?, &one.placement),
             b: (two.tree(kind_b)?, &two.placement),
             one_body: a == b && kind_a == kind_b,
             threshold,
             keep: filter.is_needed().then_some(keep),
-            moved: [Moved::All; 2],
+            moved: [Dirty::All; 2],
         })
     }
 

@@ -4,7 +4,7 @@ use super::filter::Filter;
 use super::pairs::Status;
 use super::{Completeness, Contact, Frame, Skips, World};
 use crate::Error;
-use crate::broad::{Couple, Pair, Visit};
+use crate::broad::{Pair, PairQuery, Visit};
 
 /// Contacts verified between two questions to the budget.
 const STRIDE: usize = 128;
@@ -326,15 +326,15 @@ impl World {
                 let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
                 let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
                 let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-                if let Some(couple) = self.couple(bodies, self.threshold, &filter, &keep) {
+                if let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) {
                     if !*started {
-                        couple.start(stack);
+                        query.start(stack);
                     }
                     let mut found = Vec::new();
                     if self.parallel && stack.len() >= PARTS {
-                        step_in_parts(&couple, stack, &mut found);
+                        step_in_parts(&query, stack, &mut found);
                     } else {
-                        couple.step(stack, VISITS, usize::MAX, &mut found);
+                        query.step(stack, VISITS, usize::MAX, &mut found);
                     }
                     found.retain(|pair| link.verified.binary_search(pair).is_err());
                     pass.delivered += found.len();
@@ -355,7 +355,7 @@ impl World {
 }
 
 /// Goes on with a descent on the threads of the current pool. What is found, and in which order, does not depend on their number.
-fn step_in_parts(couple: &Couple<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pair>) {
+fn step_in_parts(query: &PairQuery<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pair>) {
     use rayon::prelude::*;
     let mut parts: Vec<(Vec<Visit>, Vec<Pair>)> = (0..PARTS).map(|_| Default::default()).collect();
     let first = stack.len().saturating_sub(PARTS * VISITS);
@@ -363,7 +363,7 @@ fn step_in_parts(couple: &Couple<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pa
         parts[at % PARTS].0.push(visit);
     }
     parts.par_iter_mut().for_each(|(stack, found)| {
-        couple.step(stack, VISITS_OF_PART, usize::MAX, found);
+        query.step(stack, VISITS_OF_PART, usize::MAX, found);
     });
     for (rest, pairs) in &mut parts {
         stack.append(rest);

@@ -198,11 +198,11 @@ impl World {
         let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let mut found = Vec::new();
-        if let Some(couple) = self.couple(bodies, self.threshold, &filter, &keep) {
+        if let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) {
             let mut stack = Vec::new();
-            couple.start(&mut stack);
+            query.start(&mut stack);
             while !stack.is_empty() && found.is_empty() && !watch.ask(0) {
-                couple.step(&mut stack, VISITS, 1, &mut found);
+                query.step(&mut stack, VISITS, 1, &mut found);
             }
         }
         Ok(found.into_iter().min())
@@ -222,8 +222,8 @@ impl World {
         let (one, two) = (self.state(a), self.state(b));
         let filter = Filter::new(self.kind, one, two, a == b);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-        let pairs = match self.couple(bodies, threshold, &filter, &keep) {
-            Some(couple) => spaces[0].join.all(&couple, watch).to_vec(),
+        let pairs = match self.pair_query(bodies, threshold, &filter, &keep) {
+            Some(query) => spaces[0].join.all(&query, watch).to_vec(),
             None => Vec::new(),
         };
         self.workspaces = spaces;

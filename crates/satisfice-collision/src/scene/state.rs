@@ -6,7 +6,7 @@ use super::SharedMesh;
 use super::body::{Body, Motion};
 use super::deforming::Deforming;
 use super::pairs::NONE;
-use crate::broad::{FeatureTree, Moved, Runs};
+use crate::broad::{BlockBounds, Dirty, FeatureTree};
 use crate::mesh::Point;
 use crate::{Aabb, Error, FeatureKind, Placement, Shape};
 
@@ -81,18 +81,18 @@ impl State {
     pub(super) fn advance(&mut self) -> Option<f64> {
         let deforming = self.deforming.as_mut()?;
         let motion = deforming.advance()?;
-        if let Some(bounds) = deforming.blocks().and_then(Runs::whole) {
+        if let Some(bounds) = deforming.blocks().and_then(BlockBounds::whole) {
             self.bounds = bounds;
         }
         Some(motion)
     }
 
     /// What moved in frame `frame`, of the features of a kind.
-    pub(super) fn moved(&self, frame: u64, kind: FeatureKind) -> Moved {
+    pub(super) fn moved(&self, frame: u64, kind: FeatureKind) -> Dirty {
         match &self.deforming {
-            _ if self.moved_at != frame => Moved::None,
-            Some(deforming) if deforming.has_marks(kind) => Moved::Marked,
-            _ => Moved::All,
+            _ if self.moved_at != frame => Dirty::None,
+            Some(deforming) if deforming.has_marks(kind) => Dirty::Marked,
+            _ => Dirty::All,
         }
     }
 
@@ -134,7 +134,7 @@ impl State {
     }
 
     /// The boxes of the vertices, block by block, where they are known.
-    pub(super) fn blocks(&self) -> Option<&Runs> {
+    pub(super) fn blocks(&self) -> Option<&BlockBounds> {
         self.deforming.as_ref()?.blocks()
     }
 

@@ -1,10 +1,10 @@
 //! Two posed bodies, or one with itself, and the question asked of every pair of their features.
 
-use super::boxes::Moved;
+use super::boxes::Dirty;
 use super::features::FeatureTree;
 use super::pair::Pair;
 use super::relative::Relative;
-use super::separate::Triangles;
+use super::separating_axis::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
 use super::trees::TreeWork;
 use crate::distance::{self, Threshold, Triangle, TriangleBatch};
@@ -14,20 +14,20 @@ use crate::{Error, FeatureKind, Placement};
 /// Which pairs of features count at all; `None` for all of them.
 pub type Keep<'a> = Option<&'a (dyn Fn(u32, u32) -> bool + Sync)>;
 
-/// What is asked.
+/// Which pairs of features are wanted.
 #[derive(Clone, Copy)]
-pub(crate) struct Couple<'a> {
+pub(crate) struct PairQuery<'a> {
     pub(crate) a: (&'a FeatureTree, &'a Placement),
     pub(crate) b: (&'a FeatureTree, &'a Placement),
     /// Whether `a` and `b` are one tree, and each pair of different features is wanted once.
     pub(crate) one_body: bool,
     pub(crate) threshold: Threshold,
     pub(crate) keep: Keep<'a>,
-    /// Only pairs of which one feature counts as moved are wanted.
-    pub(crate) moved: [Moved; 2],
+    /// Report only pairs in which at least one feature moved.
+    pub(crate) moved: [Dirty; 2],
 }
 
-impl Couple<'_> {
+impl PairQuery<'_> {
     /// Refuses poses that take a vertex out of the range of `f64`.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (tree, pose) in [self.a, self.b] {
@@ -52,7 +52,7 @@ impl Couple<'_> {
 
     /// Brings both trees into one frame: that of the body with the coarser one. `then` is told whether the first of the trees
     /// is `b`.
-    pub(crate) fn lay<R>(&self, then: impl FnOnce(Trees<'_>, bool) -> R) -> R {
+    pub(crate) fn in_common_frame<R>(&self, then: impl FnOnce(Trees<'_>, bool) -> R) -> R {
         let ((a, pose_a), (b, pose_b)) = (self.a, self.b);
         if self.one_body {
             let filter = &a.frame.filter(self.threshold.get());
@@ -92,14 +92,14 @@ impl Couple<'_> {
     }
 
     /// How to see that two triangles are far apart in a descent of these trees.
-    pub(crate) fn glance<'t>(&'t self, trees: &Trees<'t>, flip: bool) -> Option<Glance<'t>> {
+    pub(crate) fn separating_axes<'t>(&'t self, trees: &Trees<'t>, flip: bool) -> Option<SeparatingAxes<'t>> {
         let (first, second) = if flip {
             (self.b.0, self.a.0)
         } else {
             (self.a.0, self.b.0)
         };
         let Trees { relative, filter, .. } = *trees;
-        Some(Glance {
+        Some(SeparatingAxes {
             first: first.triangles()?,
             second: second.triangles()?,
             relative,
@@ -131,10 +131,10 @@ impl Couple<'_> {
         enough: usize,
         found: &mut Vec<Pair>,
     ) -> TreeWork {
-        self.lay(|trees, flip| {
+        self.in_common_frame(|trees, flip| {
             let mut visit = Visitor::<POINTS> {
                 enough,
-                ..Visitor::new(self, flip, found, self.glance(&trees, flip))
+                ..Visitor::new(self, flip, found, self.separating_axes(&trees, flip))
             };
             visit.descend(trees, stack, most)
         })
@@ -144,7 +144,7 @@ impl Couple<'_> {
     pub(crate) fn start(&self, stack: &mut Vec<Visit>) {
         stack.clear();
         if !self.apart() {
-            self.lay(|trees, _| trees.start(stack));
+            self.in_common_frame(|trees, _| trees.start(stack));
         }
     }
 
@@ -169,7 +169,7 @@ impl Couple<'_> {
 
 /// Both bodies' triangles, in the order of the descent, and how they lie.
 #[derive(Clone, Copy)]
-pub(crate) struct Glance<'a> {
+pub(crate) struct SeparatingAxes<'a> {
     first: Triangles<'a>,
     second: Triangles<'a>,
     relative: &'a Relative,
@@ -178,12 +178,12 @@ pub(crate) struct Glance<'a> {
 
 /// Decides the candidates of a descent.
 pub(crate) struct Visitor<'a, const POINTS: bool> {
-    couple: &'a Couple<'a>,
+    query: &'a PairQuery<'a>,
     /// Whether the first tree of the descent is `b`.
     flip: bool,
     found: &'a mut Vec<Pair>,
     /// How to see that two triangles are far apart, if that is what the pairs are.
-    glance: Option<Glance<'a>>,
+    axes: Option<SeparatingAxes<'a>>,
     /// Triangles that wait to be decided with others.
     waiting: TriangleBatch<Pair>,
     /// Pairs after which the descent pauses.
@@ -194,17 +194,17 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
 impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
     /// Pairs are appended to `found`.
     pub(crate) fn new(
-        couple: &'a Couple<'a>,
+        query: &'a PairQuery<'a>,
         flip: bool,
         found: &'a mut Vec<Pair>,
-        glance: Option<Glance<'a>>,
+        axes: Option<SeparatingAxes<'a>>,
     ) -> Self {
         Self {
-            couple,
+            query,
             flip,
             found,
-            glance,
-            waiting: TriangleBatch::new(couple.threshold),
+            axes,
+            waiting: TriangleBatch::new(query.threshold),
             enough: usize::MAX,
             work: TreeWork::default(),
         }
@@ -234,21 +234,21 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
 
     #[inline(always)]
     fn candidate(&mut self, first: u32, second: u32, sure: bool) {
-        let swap = if self.couple.one_body {
+        let swap = if self.query.one_body {
             first > second
         } else {
             self.flip
         };
         let (a, b) = if swap { (second, first) } else { (first, second) };
         self.work.candidates += 1;
-        if !self.couple.keeps(a, b) {
+        if !self.query.keeps(a, b) {
             return;
         }
-        if let Some(glance) = &self.glance {
-            let (one, two) = (&glance.first, &glance.second);
-            if !one.apart(first, two, second, glance.relative, glance.apart) {
+        if let Some(axes) = &self.axes {
+            let (one, two) = (&axes.first, &axes.second);
+            if !one.apart(first, two, second, axes.relative, axes.apart) {
                 self.work.decisions += 1;
-                let (p, q) = self.couple.triangles(a, b);
+                let (p, q) = self.query.triangles(a, b);
                 let found = &mut *self.found;
                 self.waiting.push(&p, &q, Pair { a, b }, |pair, decision| {
                     found.extend(decision.within.then_some(pair));
@@ -258,7 +258,7 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
         }
         if !sure {
             self.work.decisions += 1;
-            if !self.couple.within(a, b) {
+            if !self.query.within(a, b) {
                 return;
             }
         }

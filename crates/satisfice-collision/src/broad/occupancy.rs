@@ -8,15 +8,15 @@ use super::clip::{Part, Placed, greater, lesser};
 /// Cells along an axis: a row is one word, the whole bitmap fits into the first-level cache.
 const SIDE: usize = 64;
 const ROWS: usize = SIDE * SIDE;
-/// Fewer points than this are sorted faster than sieved.
+/// Fewer points than this are sorted faster than culled.
 const WORTH: usize = 1 << 15;
-/// Points that tell whether the other body fills the overlap, so that a sieve would hold nothing back: uniform points of this
+/// Points that tell whether the other body fills the overlap, so that a cull would hold nothing back: uniform points of this
 /// number are near to half of the cells.
 const SAMPLE: usize = 1 << 13;
 
 /// Drops points without a partner nearby. Keeps its memory from call to call.
 #[derive(Debug, Default)]
-pub(crate) struct Sieve {
+pub(crate) struct OccupancyCull {
     grid: Grid,
     /// Where one body is; atomic, because several threads mark it.
     marks: Vec<AtomicU64>,
@@ -25,9 +25,9 @@ pub(crate) struct Sieve {
     spare: Vec<u64>,
 }
 
-impl Sieve {
+impl OccupancyCull {
     /// Drops the points of either body that have no cell of the other's nearby. Returns how many.
-    pub(crate) fn sieve(&mut self, a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
+    pub(crate) fn cull(&mut self, a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
         let count = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
         let before = count(a) + count(b);
         if before < WORTH || count(a) == 0 || count(b) == 0 {
@@ -189,10 +189,10 @@ mod tests {
             ..*part
         };
         let [mut a, mut b] = [0, 1].map(|body| [copy(&whole[body])]);
-        let mut sieve = Sieve::default();
-        let dropped = sieve.sieve(&mut a, &mut b, 0.01, 1);
+        let mut cull = OccupancyCull::default();
+        let dropped = cull.cull(&mut a, &mut b, 0.01, 1);
         let cells = |part: &Part| {
-            let cells = part.points.iter().map(|point| sieve.grid.cell(point));
+            let cells = part.points.iter().map(|point| cull.grid.cell(point));
             cells
                 .map(|(row, x)| [x, row % SIDE, row / SIDE])
                 .collect::<Vec<_>>()
@@ -227,7 +227,7 @@ mod tests {
             points.points.chunks(3001).map(piece).collect::<Vec<_>>()
         });
         let [parts_a, parts_b] = &mut parts;
-        assert_eq!(sieve.sieve(parts_a, parts_b, 0.01, 2), dropped);
+        assert_eq!(cull.cull(parts_a, parts_b, 0.01, 2), dropped);
         let all = |parts: &[Part]| parts.iter().flat_map(ids).collect::<Vec<_>>();
         assert!(all(parts_a) == ids(&a[0]) && all(parts_b) == ids(&b[0]));
     }
