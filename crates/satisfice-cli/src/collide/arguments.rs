@@ -24,6 +24,10 @@ Examples:
       Only which bodies touch, with one pair of triangles that shows it for each pair of bodies.
   satisfice collide factory.glb --threshold 0.01 --pairs triangle-triangle --touching
       Which nodes of a scene touch, by their names.
+  satisfice collide --from cloth92.ply --to cloth93.ply --self --threshold 0 --out impacts.csv
+      What touches while every vertex moves along a straight line from the one frame to the other, the earliest impact first.
+  satisfice collide --from robot0.glb wall.stl --to robot1.glb wall.stl --threshold 0.01 --first --time 10ms
+      The earliest time at which two bodies are closer than 0.01, with bounds; proved, or what is known after 10 ms.
   curl example.com/scan.ply.gz | satisfice collide - tool.stl --format ply --at tool:0,0,12.5,90,0,0 --threshold 0.2
       A mesh from standard input, and another one turned about x and lifted.
 
@@ -36,8 +40,17 @@ All may be compressed (.gz). Features are numbered from 0: vertices and triangle
 then their higher vertex. `Touch` means: closer than the threshold. Ctrl-C keeps the pairs found so far.")]
 pub(crate) struct CollideArguments {
     /// Files of meshes or scenes: .obj, .ply, .stl, .off, .gltf, .glb, .json or .toml; `-` is standard input.
-    #[arg(value_name = "MESH", required = true, value_hint = ValueHint::FilePath)]
+    #[arg(value_name = "MESH", required_unless_present = "from", conflicts_with = "from", value_hint = ValueHint::FilePath)]
     pub(crate) meshes: Vec<PathBuf>,
+
+    /// The bodies at the start of a step: find what comes near while they move. May be repeated or take several files.
+    #[arg(long, value_name = "MESH", num_args = 1.., requires = "to", value_hint = ValueHint::FilePath)]
+    pub(crate) from: Vec<PathBuf>,
+
+    /// The same bodies, in the same order, at the end of the step. Every vertex moves along a straight line at constant speed;
+    /// times are parts of the step, from 0 to 1.
+    #[arg(long, value_name = "MESH", num_args = 1.., requires = "from", value_hint = ValueHint::FilePath)]
+    pub(crate) to: Vec<PathBuf>,
 
     /// The format of standard input: obj, ply, stl, off, gltf, json or toml.
     #[arg(long, value_name = "FORMAT")]
@@ -53,13 +66,15 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "D", value_parser = quantity::not_negative, allow_hyphen_values = true)]
     pub(crate) weld: Option<f64>,
 
-    /// A pair is found if its distance is below this, in the unit of the meshes.
-    #[arg(long, value_name = "D", value_parser = quantity::positive, allow_hyphen_values = true)]
+    /// A pair is found if its distance is below this, in the unit of the meshes. With --from, below it at some time of the step;
+    /// 0 then asks for pairs that touch.
+    #[arg(long, value_name = "D", value_parser = quantity::not_negative, allow_hyphen_values = true)]
     pub(crate) threshold: f64,
 
-    /// Which features make pairs.
-    #[arg(long, value_name = "KIND", default_value = "vertex-vertex")]
-    pub(crate) pairs: PairKind,
+    /// Which features make pairs [default: vertex-vertex; with --from all in which the bodies first meet, which for surfaces are
+    /// vertex-triangle and edge-edge].
+    #[arg(long, value_name = "KIND")]
+    pub(crate) pairs: Option<PairKind>,
 
     /// Look for pairs within each mesh as well, except features that share a vertex.
     #[arg(long = "self")]
@@ -111,6 +126,13 @@ pub(crate) struct CollideArguments {
     pub(crate) up: Option<Axis>,
 }
 
+impl CollideArguments {
+    /// The kind of pairs of bodies at rest.
+    pub(super) fn pairs_at_rest(&self) -> PairKind {
+        self.pairs.unwrap_or(PairKind::VertexVertex)
+    }
+}
+
 /// An axis of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Axis {
@@ -130,7 +152,7 @@ pub(crate) struct FindArguments {
     #[arg(long)]
     touching: bool,
 
-    /// Stop at the first pair of all.
+    /// Stop at the first pair of all; with --from, find the earliest impact.
     #[arg(long)]
     first: bool,
 

@@ -49,7 +49,7 @@ fn witness(line: &Line, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// A field in quotes if it needs them (RFC 4180).
-fn quoted(field: &str) -> String {
+pub(super) fn quoted(field: &str) -> String {
     if field.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))
     } else {

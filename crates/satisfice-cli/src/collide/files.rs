@@ -22,6 +22,8 @@ impl Files {
             out,
             picture,
             meshes,
+            from,
+            to,
             ..
         } = arguments;
         let stdout = Path::new("-");
@@ -34,7 +36,8 @@ impl Files {
             bail!("only one of --json, --out and --picture can go to stdout: name files for the others");
         }
         let is_file = |path: &&PathBuf| **path != stdout;
-        let inputs: Vec<&Path> = meshes.iter().filter(is_file).map(PathBuf::as_path).collect();
+        let inputs = meshes.iter().chain(from).chain(to);
+        let inputs: Vec<&Path> = inputs.filter(is_file).map(PathBuf::as_path).collect();
         let outputs = [("--json", json), ("--out", out), ("--picture", picture)]
             .map(|(option, path)| (option, path.as_ref().filter(is_file)));
         output::check_distinct(&inputs, &outputs)?;

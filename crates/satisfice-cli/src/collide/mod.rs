@@ -5,6 +5,8 @@ mod csv;
 mod exact;
 mod files;
 pub(crate) mod inputs;
+mod memory;
+mod motion;
 mod pairs;
 mod picture;
 mod report;
@@ -38,6 +40,14 @@ pub(crate) use verify::verify;
 pub(crate) const PROBLEM: &str = "collide";
 
 pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
+    if arguments.from.is_empty() {
+        collide_at_rest(arguments)
+    } else {
+        motion::collide(arguments)
+    }
+}
+
+fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     let engines = || engine::all().iter().map(|entry| entry.name);
     let exact = METHODS.iter().find(|(name, _)| *name == arguments.method);
     if exact.is_none() && !engines().any(|name| name == arguments.method) {
@@ -52,7 +62,7 @@ pub(crate) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
             at: arguments.at.clone(),
             weld: arguments.weld,
         },
-        kind: arguments.pairs.into(),
+        kind: arguments.pairs_at_rest().into(),
         threshold: arguments.threshold,
         within: arguments.within,
         ring_width: arguments.ring_width,
@@ -163,6 +173,11 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
 
 /// Refuses options that do not go together, before anything is read.
 fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
+    if arguments.threshold == 0.0 {
+        bail!(
+            "--threshold 0 asks for pairs that touch in a motion, between --from and --to: bodies at rest need a distance above 0"
+        );
+    }
     let method = &arguments.method;
     let useless = arguments.search.for_an_engine();
     if is_exact && (arguments.prune || !useless.is_empty()) {
@@ -180,7 +195,7 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
     if hits.is_some() && ["grid", "brute-force"].contains(&method.as_str()) {
         bail!("--method {method} does not count its hits: for --hits choose exact, tree or an engine");
     }
-    if method == "grid" && arguments.pairs != arguments::PairKind::VertexVertex {
+    if method == "grid" && arguments.pairs_at_rest() != arguments::PairKind::VertexVertex {
         bail!("--method grid is for --pairs vertex-vertex: choose exact or tree");
     }
     picture::check(arguments.picture.as_deref())

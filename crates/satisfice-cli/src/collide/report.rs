@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::PROBLEM;
 use super::exact::{Exact, Found};
+use super::inputs::NamedBody;
 use super::pairs::{Line, Pairs};
 use super::scene::World;
 
@@ -136,6 +137,18 @@ pub(super) struct BodyLine {
     triangles: usize,
 }
 
+impl BodyLine {
+    pub(super) fn new(body: &NamedBody) -> Self {
+        Self {
+            name: body.name.clone(),
+            file: body.file.to_string_lossy().into_owned(),
+            vertices: body.mesh.vertices().len(),
+            edges: body.mesh.edges().len(),
+            triangles: body.mesh.triangles().len(),
+        }
+    }
+}
+
 /// A whole report.
 pub(super) struct Report<'a> {
     pub(super) head: Head,
@@ -185,16 +198,9 @@ impl Serialize for Report<'_> {
             touching: &'r BTreeSet<[usize; 2]>,
             skipped: &'r BTreeMap<String, u64>,
         }
-        let bodies = self.world.bodies.iter().map(|body| BodyLine {
-            name: body.name.clone(),
-            file: body.file.to_string_lossy().into_owned(),
-            vertices: body.mesh.vertices().len(),
-            edges: body.mesh.edges().len(),
-            triangles: body.mesh.triangles().len(),
-        });
         Whole {
             head: &self.head,
-            bodies: bodies.collect(),
+            bodies: self.world.bodies.iter().map(BodyLine::new).collect(),
             pairs: Listed(self),
             touching: &self.touching,
             skipped: &self.skipped,

@@ -1,5 +1,6 @@
 //! What a person reads after a collision run: how many pairs, how far apart, and which.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use satisfice::{Completeness, StopReason};
@@ -7,17 +8,27 @@ use satisfice_catalogue::quantity::shown;
 use satisfice_collision::FeatureKind;
 
 use super::arguments::Find;
+use super::inputs::NamedBody;
 use super::pairs::Side;
-use super::report::Report;
+use super::report::{Head, Report};
 
 /// So many pairs are shown; the report has all of them.
-const SHOWN_PAIRS: usize = 5;
+pub(super) const SHOWN_PAIRS: usize = 5;
 const SHOWN_BODIES: usize = 10;
 
-struct Lines(String);
+/// A title and named lines below it.
+pub(super) struct Lines(String);
 
 impl Lines {
-    fn line(&mut self, name: &str, value: &str) {
+    pub(super) fn new(title: String) -> Self {
+        Self(title + "\n")
+    }
+
+    pub(super) fn text(self) -> String {
+        self.0
+    }
+
+    pub(super) fn line(&mut self, name: &str, value: &str) {
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "  {name:<13} {value}");
     }
@@ -25,8 +36,8 @@ impl Lines {
 
 pub(super) fn summary(report: &Report<'_>) -> String {
     let head = &report.head;
-    let mut lines = Lines(format!(
-        "{} pairs closer than {} by {}\n",
+    let mut lines = Lines::new(format!(
+        "{} pairs closer than {} by {}",
         report.world.request.kind.name(),
         head.threshold,
         head.engine
@@ -48,12 +59,12 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     if let (0, Some(best)) = (head.hits, &head.best) {
         lines.line("closest seen", &format!("{} apart", digits(best.fitness)));
     }
-    lines.line("time", &time(report));
+    lines.line("time", &elapsed(&report.head));
     if let Some(asked) = asked(report) {
         lines.line("listed", asked);
     }
     if report.world.bodies.len() > 1 && !report.touching.is_empty() {
-        lines.line("bodies", &bodies(report));
+        lines.line("bodies", &body_names(&report.world.bodies, &report.touching));
     }
     for index in 0..report.pairs.len().min(SHOWN_PAIRS) {
         lines.line(&format!("pair {}", index + 1), &pair(report, index));
@@ -68,7 +79,7 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     for (reason, count) in &report.skipped {
         lines.line("skipped", &format!("{} {reason}", shown::count(*count)));
     }
-    lines.0
+    lines.text()
 }
 
 fn count(report: &Report<'_>) -> String {
@@ -101,8 +112,8 @@ fn completeness(report: &Report<'_>) -> String {
     }
 }
 
-fn time(report: &Report<'_>) -> String {
-    let head = &report.head;
+/// How long it took and why it ended.
+pub(super) fn elapsed(head: &Head) -> String {
     let late = match head.overshoot_seconds {
         late if late > 0.0 => format!(", {} beyond the limit", shown::seconds(late)),
         _ => String::new(),
@@ -131,15 +142,15 @@ fn asked(report: &Report<'_>) -> Option<&'static str> {
     }
 }
 
-fn bodies(report: &Report<'_>) -> String {
-    let name = |body: usize| &report.world.bodies[body].name;
-    let mut text: Vec<String> = report
-        .touching
+/// The bodies that have pairs with each other, by their names.
+pub(super) fn body_names(bodies: &[NamedBody], touching: &BTreeSet<[usize; 2]>) -> String {
+    let name = |body: usize| &bodies[body].name;
+    let mut text: Vec<String> = touching
         .iter()
         .take(SHOWN_BODIES)
         .map(|&[a, b]| format!("{} - {}", name(a), name(b)))
         .collect();
-    let more = report.touching.len() - text.len();
+    let more = touching.len() - text.len();
     if more > 0 {
         text.push(format!("and {} more", shown::count(more as u64)));
     }
@@ -169,7 +180,7 @@ fn side(report: &Report<'_>, kind: FeatureKind, side: &Side) -> String {
 }
 
 /// A distance with six significant digits.
-fn digits(x: f64) -> String {
+pub(super) fn digits(x: f64) -> String {
     match x.abs() {
         0.0 => "0".to_owned(),
         v if !(1e-3..1e6).contains(&v) => format!("{x:.5e}"),

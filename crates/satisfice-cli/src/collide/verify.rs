@@ -8,6 +8,7 @@ use satisfice_catalogue::Mismatch;
 use satisfice_catalogue::report::recall;
 use serde::Deserialize;
 
+use super::motion;
 use super::pairs::Line;
 use super::report::{Head, Lists};
 use super::scene::{Pair, World};
@@ -19,6 +20,9 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) fn verify(text: &[u8]) -> anyhow::Result<(Vec<Mismatch>, u64)> {
     let wrong = "the report is not one of `collide --json`";
     let head: Head = serde_json::from_slice(text).context(wrong)?;
+    if motion::is_of_motion(&head) {
+        return motion::verify(text, &head);
+    }
     let lists: Lists = serde_json::from_slice(text).context(wrong)?;
     let world =
         World::of_settings(&head.problem_parameters).context("the scene of the report cannot be built")?;

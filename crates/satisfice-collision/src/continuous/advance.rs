@@ -8,6 +8,7 @@
 
 use super::hull::Hull;
 use super::swept::Swept;
+use crate::Error;
 
 /// The most steps of one query.
 const STEPS: u32 = 40;
@@ -47,6 +48,18 @@ impl Goal {
         until: 1.0,
         tolerance: f64::INFINITY,
     };
+
+    /// A tolerance that a user asks for.
+    pub(super) fn checked(tolerance: f64) -> Result<f64, Error> {
+        if tolerance.is_nan() || tolerance < 1e-12 {
+            return Err(Error::parameter(
+                "tolerance",
+                tolerance,
+                "a part of the step, at least 1e-12",
+            ));
+        }
+        Ok(tolerance.min(1.0))
+    }
 }
 
 pub(super) fn advance<H: Hull<K>, const K: usize>(swept: &Swept<K>, goal: Goal) -> Reached {

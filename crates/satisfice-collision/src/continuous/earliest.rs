@@ -111,17 +111,25 @@ impl Step {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Earliest, Error> {
-        if tolerance.is_nan() || tolerance < 1e-12 {
-            return Err(Error::parameter(
-                "tolerance",
-                tolerance,
-                "a part of the step, at least 1e-12",
-            ));
-        }
+        self.earliest_among(&self.kinds(), separation, tolerance, stop)
+    }
+
+    /// The same among pairs of these kinds only.
+    ///
+    /// # Errors
+    /// As [`earliest`](Self::earliest), and [`Error::Parameter`] for the kinds edge-triangle and triangle-triangle.
+    pub fn earliest_among(
+        &self,
+        kinds: &[PairKind],
+        separation: Separation,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<Earliest, Error> {
+        let tolerance = Goal::checked(tolerance)?;
         let mut descent = Descent {
             step: self,
             separation,
-            tolerance: tolerance.min(1.0),
+            tolerance,
             margin: self.margin(separation.get()),
             waiting: BinaryHeap::new(),
             at_once: Vec::new(),
@@ -134,8 +142,10 @@ impl Step {
                 queries: 0,
             },
         };
-        for (number, kind) in (0..).zip(KINDS) {
-            descent.start(number, kind)?;
+        for &kind in kinds {
+            Self::lists(kind)?;
+            let number = KINDS.iter().position(|known| *known == kind).unwrap_or_default();
+            descent.start(number as u8)?;
         }
         descent.run(stop)
     }
@@ -156,7 +166,13 @@ impl Step {
         Ok(free)
     }
 
-    /// Whether a vertex list needs pairs of this kind beside those of surfaces.
+    /// The kinds of pairs in which the bodies of this step first meet: vertex-triangle and edge-edge for surfaces, and those
+    /// with a vertex also if there are points or wires that belong to no triangle.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<PairKind> {
+        KINDS.into_iter().filter(|&kind| self.asks_for(kind)).collect()
+    }
+
     fn asks_for(&self, kind: PairKind) -> bool {
         match kind {
             PairKind::VertexTriangle => !self.triangles.is_empty(),
@@ -176,21 +192,19 @@ impl Step {
 }
 
 impl<'s> Descent<'s> {
-    fn start(&mut self, number: u8, kind: PairKind) -> Result<(), Error> {
-        if self.step.asks_for(kind) {
-            let [a, b] = self.trees(number)?;
-            let root = |tree: &MovingTree| Node {
-                level: tree.levels.len() as u8 - 1,
-                group: 0,
-            };
-            let (a, b) = (root(a), root(b));
-            self.waiting.push(Waiting {
-                time: 0.0,
-                kind: number,
-                a,
-                b,
-            });
-        }
+    fn start(&mut self, number: u8) -> Result<(), Error> {
+        let [a, b] = self.trees(number)?;
+        let root = |tree: &MovingTree| Node {
+            level: tree.levels.len() as u8 - 1,
+            group: 0,
+        };
+        let (a, b) = (root(a), root(b));
+        self.waiting.push(Waiting {
+            time: 0.0,
+            kind: number,
+            a,
+            b,
+        });
         Ok(())
     }
 
@@ -357,6 +371,27 @@ fn meeting(tree: &MovingTree, of: Node, other: &MovingBox) -> impl Iterator<Item
 }
 
 impl Step {
+    /// The first time of a hit of a pair of this kind within `tolerance`, or `None` if it does not hit or there is no such pair.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for the kinds edge-triangle and triangle-triangle, and for a tolerance below 1e-12.
+    pub fn impact_of(
+        &self,
+        kind: PairKind,
+        contact: &MovingContact,
+        separation: Separation,
+        tolerance: f64,
+    ) -> Result<Option<Impact>, Error> {
+        let lists = Self::lists(kind)?;
+        let goal = Goal {
+            tolerance: Goal::checked(tolerance)?,
+            ..Goal::DECISION
+        };
+        let pair = self.numbers(lists, contact);
+        let pair = pair.filter(|&[a, b]| self.may_pair(lists, a, b));
+        Ok(pair.and_then(|[a, b]| self.impact(kind, a, b, separation, goal)))
+    }
+
     /// The first hit of a pair during a part of the step.
     pub(super) fn impact(
         &self,

@@ -66,6 +66,39 @@ impl Step {
         separation: Separation,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Hits, Error> {
+        let mut pairs = Vec::new();
+        let counts = self.each_hit(kind, separation, stop, &mut |contact| pairs.push(contact))?;
+        pairs.sort_unstable();
+        Ok(Hits { pairs, ..counts })
+    }
+
+    /// Hands each pair that hits to `visit` and keeps none: `pairs` of the result is empty. The order of the visits is the same on any
+    /// number of threads, but not that of the features. Apart from that as [`hits_until`](Self::hits_until).
+    ///
+    /// ```
+    /// use satisfice_collision::continuous::{Separation, Step};
+    /// use satisfice_collision::distance::PairKind;
+    /// use satisfice_collision::generate;
+    /// let ball = generate::icosphere(0.2, 1)?;
+    /// let lifted: Vec<_> = ball.vertices().iter().map(|&[x, y, z]| [x, y, z + 0.5]).collect();
+    /// let mut step = Step::new();
+    /// step.add_rigid(&ball, ball.vertices())?;
+    /// step.add_rigid(&ball, &lifted)?;
+    /// let mut count = 0;
+    /// step.each_hit(PairKind::EdgeEdge, Separation::TOUCHING, &mut || false, &mut |_| count += 1)?;
+    /// assert_eq!(count, step.hits(PairKind::EdgeEdge, Separation::TOUCHING)?.pairs.len());
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`hits`](Self::hits).
+    pub fn each_hit(
+        &self,
+        kind: PairKind,
+        separation: Separation,
+        stop: &mut dyn FnMut() -> bool,
+        visit: &mut dyn FnMut(MovingContact),
+    ) -> Result<Hits, Error> {
         let lists = Self::lists(kind)?;
         let search = Search {
             step: self,
@@ -75,12 +108,12 @@ impl Step {
             separation,
             margin: self.margin(separation.get()),
         };
-        Ok(search.run(stop))
+        Ok(search.run(stop, visit))
     }
 }
 
 impl Search<'_> {
-    fn run(&self, stop: &mut dyn FnMut() -> bool) -> Hits {
+    fn run(&self, stop: &mut dyn FnMut() -> bool, visit: &mut dyn FnMut(MovingContact)) -> Hits {
         let rows = self.trees[0].order.len().div_ceil(LANES) as u32;
         let threads = rayon::current_num_threads() as u32;
         let mut hits = Hits::default();
@@ -98,24 +131,25 @@ impl Search<'_> {
                     .map(|first| self.rows(first..end.min(first + LANES as u32)))
                     .collect();
                 for part in parts {
-                    self.take(&mut hits, &part);
+                    self.take(&mut hits, &part, visit);
                 }
             } else {
-                self.take(&mut hits, &self.rows(row..end));
+                self.take(&mut hits, &self.rows(row..end), visit);
             }
             row = end;
         }
-        hits.pairs.sort_unstable();
         hits
     }
 
-    fn take(&self, hits: &mut Hits, found: &Found) {
+    fn take(&self, hits: &mut Hits, found: &Found, visit: &mut dyn FnMut(MovingContact)) {
         hits.candidates += found.candidates;
         hits.by_integers += found.by_integers;
-        hits.pairs.extend(found.pairs.iter().map(|&[a, b]| MovingContact {
-            a: self.step.feature(self.lists[0], a),
-            b: self.step.feature(self.lists[1], b),
-        }));
+        for &[a, b] in &found.pairs {
+            visit(MovingContact {
+                a: self.step.feature(self.lists[0], a),
+                b: self.step.feature(self.lists[1], b),
+            });
+        }
     }
 
     fn is_one_list(&self) -> bool {

@@ -101,15 +101,8 @@ pub fn impact<A: Against<B>, B: Copy>(
     separation: Separation,
     tolerance: f64,
 ) -> Result<Option<Impact>, Error> {
-    if tolerance.is_nan() || tolerance < 1e-12 {
-        return Err(Error::parameter(
-            "tolerance",
-            tolerance,
-            "a part of the step, at least 1e-12",
-        ));
-    }
     let goal = Goal {
-        tolerance: tolerance.min(1.0),
+        tolerance: Goal::checked(tolerance)?,
         ..Goal::DECISION
     };
     Ok(within(a, b, separation, goal))
@@ -126,8 +119,9 @@ pub(super) fn within<A: Against<B>, B: Copy>(
     let time = solved.time?;
     let at = |time: f64| A::between(a, time).proximity(&A::other_between(b, time));
     let near = at(time[1]);
-    // The points coincide where features touch, so the normal is taken a little before.
-    let normal = [time[1], time[0], 0.75 * time[0]].into_iter().find_map(|time| {
+    // Before the impact, when the features are not on the wrong sides of each other; they coincide up to rounding just before.
+    let before = [0.0, 1e-6, 1e-4, 1e-2].map(|earlier| (time[0] - earlier).max(0.0));
+    let normal = before.into_iter().chain([time[1]]).find_map(|time| {
         let near = at(time);
         unit(near.point_a, near.point_b)
     });

@@ -1,0 +1,231 @@
+//! The bodies at both ends of a step.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+use satisfice_catalogue::Settings;
+use satisfice_collision::Mesh;
+use satisfice_collision::continuous::{Separation, Step};
+use satisfice_collision::distance::PairKind;
+use serde_json::{Value, json};
+
+use super::super::inputs::{Inputs, NamedBody};
+
+/// What makes a step.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Request {
+    pub(super) from: Inputs,
+    pub(super) to: Inputs,
+    /// The kind of pairs; without one, all in which surfaces, wires and points first meet.
+    pub(super) pairs: Option<PairKind>,
+    /// 0 asks for touching.
+    pub(super) threshold: f64,
+    /// Whether bodies also collide with themselves.
+    pub(super) within: bool,
+    /// Whether only the earliest impact is wanted.
+    pub(super) first: bool,
+}
+
+/// Bodies in motion and what is asked of them.
+#[derive(Debug)]
+pub(super) struct Frames {
+    pub(super) request: Request,
+    /// The bodies at the start.
+    pub(super) bodies: Vec<NamedBody>,
+    pub(super) step: Step,
+    pub(super) kinds: Vec<PairKind>,
+    pub(super) separation: Separation,
+    is_at_rest: bool,
+}
+
+impl Frames {
+    pub(super) fn read(request: Request) -> anyhow::Result<Self> {
+        let separation = Separation::new(request.threshold)?;
+        if request.from.reads_stdin() && request.to.reads_stdin() {
+            bail!("standard input can be read once only: name files for --from or for --to");
+        }
+        let bodies = request.from.read().context("--from")?;
+        let ends = request.to.read().context("--to")?;
+        check_partners(&request, &bodies, &ends)?;
+        if bodies.len() < 2 && !request.within {
+            bail!("one body has no partner: name a second mesh, or look for pairs within it by --self");
+        }
+        let mut step = Step::new();
+        for (body, end) in bodies.iter().zip(&ends) {
+            let to = end.mesh.vertices();
+            let added = match request.within {
+                true => step.add_deforming(&body.mesh, to),
+                false => step.add_rigid(&body.mesh, to),
+            };
+            added.with_context(|| end.name.clone())?;
+        }
+        let kinds = request.pairs.map_or_else(|| step.kinds(), |kind| vec![kind]);
+        let is_at_rest = bodies
+            .iter()
+            .zip(&ends)
+            .all(|(body, end)| body.mesh.vertices() == end.mesh.vertices());
+        let frames = Self {
+            request,
+            bodies,
+            step,
+            kinds,
+            separation,
+            is_at_rest,
+        };
+        frames.check_features()?;
+        Ok(frames)
+    }
+
+    /// The step with these [settings](Self::settings), read again.
+    pub(super) fn of_settings(settings: &Settings) -> anyhow::Result<Self> {
+        let value = |name: &str| {
+            settings
+                .get(name)
+                .cloned()
+                .with_context(|| format!("it has no parameter `{name}`"))
+        };
+        let at: Vec<_> = settings
+            .get("at")
+            .cloned()
+            .map(serde_json::from_value)
+            .transpose()
+            .context("`at` is no list of placements")?
+            .unwrap_or_default();
+        let inputs = |name: &str| -> anyhow::Result<Inputs> {
+            Ok(Inputs {
+                paths: serde_json::from_value(value(name)?)
+                    .with_context(|| format!("`{name}` is no list of files"))?,
+                at: at.clone(),
+                ..Inputs::default()
+            })
+        };
+        let (from, to) = (inputs("from")?, inputs("to")?);
+        if from.reads_stdin() || to.reads_stdin() {
+            bail!("a mesh was read from standard input, which cannot be read again");
+        }
+        let pairs = value("pairs")?;
+        let pairs = pairs.as_str().context("`pairs` is no text")?;
+        Self::read(Request {
+            from,
+            to,
+            pairs: (pairs != "all").then(|| pairs.parse()).transpose()?,
+            threshold: value("threshold")?.as_f64().context("`threshold` is no number")?,
+            within: value("self")?
+                .as_bool()
+                .context("`self` is neither true nor false")?,
+            first: value("find")? == json!("first"),
+        })
+    }
+
+    /// What a report repeats.
+    pub(super) fn settings(&self) -> Settings {
+        let mut settings = Settings::default();
+        let files = |paths: &[PathBuf]| -> Vec<Value> {
+            paths.iter().map(|path| path.to_string_lossy().into()).collect()
+        };
+        settings.set("from", files(&self.request.from.paths));
+        settings.set("to", files(&self.request.to.paths));
+        if !self.request.from.at.is_empty() {
+            let at = self.request.from.at.iter().map(|at| json!(at));
+            settings.set("at", at.collect::<Vec<Value>>());
+        }
+        settings.set("pairs", self.request.pairs.map_or("all", PairKind::name));
+        settings.set("threshold", self.request.threshold);
+        settings.set("self", self.request.within);
+        settings.set("find", if self.request.first { "first" } else { "all" });
+        settings
+    }
+
+    /// Whether every vertex stays where it is.
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.is_at_rest
+    }
+
+    /// There must be two features that can be a pair.
+    fn check_features(&self) -> anyhow::Result<()> {
+        // The kinds that a motion does not decide are refused here.
+        for &kind in &self.kinds {
+            self.step
+                .hits_until(kind, self.separation, &mut || true)
+                .with_context(|| format!("--pairs {kind}"))?;
+        }
+        let Some(kind) = self.request.pairs else {
+            return Ok(());
+        };
+        let (a, b) = kind.features();
+        for feature in [a, b] {
+            if self.bodies.iter().all(|body| feature.count(&body.mesh) == 0) {
+                bail!(
+                    "there are no {kind} pairs to look for, since no mesh has any {}: choose other features by --pairs",
+                    feature.plural()
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Every body needs a partner of the same topology.
+fn check_partners(request: &Request, from: &[NamedBody], to: &[NamedBody]) -> anyhow::Result<()> {
+    if from.len() != to.len() {
+        let files = |inputs: &Inputs| inputs.paths.len();
+        bail!(
+            "--from has {} and --to has {}: name every body at both ends of the step, in the same order",
+            bodies(from.len(), files(&request.from)),
+            bodies(to.len(), files(&request.to))
+        );
+    }
+    if from.is_empty() {
+        bail!("the step has no body: no node of the scenes has a mesh");
+    }
+    from.iter()
+        .zip(to)
+        .try_for_each(|(from, to)| check_topology(from, to))
+}
+
+fn bodies(bodies: usize, files: usize) -> String {
+    let plural = |count: usize, one: &str, many: &str| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {many}"),
+    };
+    let bodies_are = plural(bodies, "body", "bodies");
+    match bodies == files {
+        true => bodies_are,
+        false => format!("{bodies_are} in {}", plural(files, "file", "files")),
+    }
+}
+
+fn check_topology(from: &NamedBody, to: &NamedBody) -> anyhow::Result<()> {
+    let wrong = |difference: String| {
+        Err(anyhow::anyhow!(
+            "{} and {} differ in topology: {difference}; both ends of a step need the same vertices, edges and triangles",
+            from.name,
+            to.name
+        ))
+    };
+    let counts = |mesh: &Mesh| {
+        [
+            (mesh.vertices().len(), "vertices"),
+            (mesh.triangles().len(), "triangles"),
+            (mesh.edges().len(), "edges"),
+        ]
+    };
+    for ((m, what), (n, _)) in counts(&from.mesh).into_iter().zip(counts(&to.mesh)) {
+        if m != n {
+            return wrong(format!("{m} and {n} {what}"));
+        }
+    }
+    let triangles = from.mesh.triangles().iter().zip(to.mesh.triangles());
+    for (number, (p, q)) in triangles.enumerate() {
+        if p != q {
+            return wrong(format!("triangle {number} joins the vertices {p:?} and {q:?}"));
+        }
+    }
+    let edges = from.mesh.edges().iter().zip(to.mesh.edges());
+    for (number, (p, q)) in edges.enumerate() {
+        if p != q {
+            return wrong(format!("edge {number} joins the vertices {p:?} and {q:?}"));
+        }
+    }
+    Ok(())
+}
