@@ -85,7 +85,7 @@ fn first_impact(report: &Report<'_>) -> Option<String> {
     Some(match (first.proved, found) {
         (true, false) => "none: the step is free, that is proved".to_owned(),
         (true, true) if high == 0.0 => "at the start, that is proved".to_owned(),
-        (true, true) => format!("between {} and {} of the step, that is proved", low, high),
+        (true, true) => format!("between {low} and {high} of the step, that is proved"),
         (false, true) => format!(
             "between {} and {} of the step so far; an earlier one may exist",
             moment(low),
