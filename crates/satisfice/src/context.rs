@@ -46,6 +46,12 @@ pub trait Context<S: Real> {
         u64::MAX
     }
 
+    /// How many evaluations are planned from now on: what the budget, or its [horizon](crate::Budget::with_horizon), has left.
+    /// `None` where neither limits evaluations. Calls of bounds count.
+    fn evaluations_planned(&self) -> Option<u64> {
+        None
+    }
+
     /// Number of hits of the slice before this one, C_prev.
     fn previous_hits(&self) -> usize;
 

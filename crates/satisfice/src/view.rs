@@ -4,6 +4,7 @@ use core::cell::{Cell, RefCell};
 
 use crate::accounting::Ledger;
 use crate::archive::Archive;
+use crate::budget::Budget;
 use crate::context::Context;
 use crate::problem::SatisficingProblem;
 use crate::space::{Region, Space};
@@ -177,6 +178,13 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn evaluations_left(&self) -> u64 {
         let limit = self.ledger.budget.evaluations.unwrap_or(u64::MAX);
         limit.saturating_sub(self.ledger.counts.evaluations + self.calls.bounds.get())
+    }
+    fn evaluations_planned(&self) -> Option<u64> {
+        let Budget {
+            horizon, evaluations, ..
+        } = &self.ledger.budget;
+        let spent = self.ledger.counts.evaluations + self.calls.bounds.get();
+        horizon.or(*evaluations).map(|limit| limit.saturating_sub(spent))
     }
     fn previous_hits(&self) -> usize {
         self.previous.len()

@@ -4,7 +4,7 @@
 
 use core::f64::consts::TAU;
 
-use satisfice::{Budget, Search, Space, engine, from_fn};
+use satisfice::{Budget, Completeness, Search, Space, engine, from_fn};
 
 /// Hits of three seeds together.
 fn hits(
@@ -62,4 +62,36 @@ fn populations_find_the_bottom_of_a_rugged_cusp() {
     };
     let space = Space::cube(4, 0.0, 0.9).unwrap();
     assert_eq!(hits("climbers", 60_000, &space, 1e-3, cusp), 3);
+}
+
+/// The first example of the README: 9,216 points, for which 20,000 evaluations have room.
+#[test]
+fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {
+    let e24 = [
+        10, 11, 12, 13, 15, 16, 18, 20, 22, 24, 27, 30, 33, 36, 39, 43, 47, 51, 56, 62, 68, 75, 82, 91,
+    ];
+    let ohms = move |index: f64| 10_f64.powi(index as i32 / 24) * f64::from(e24[index as usize % 24]);
+    let far = move |x: &[f64]| (ohms(x[1]) / (ohms(x[0]) + ohms(x[1])) / 0.3 - 1.0).abs();
+    let space = Space::lattice(2, 96).unwrap();
+    let all = (0..96 * 96)
+        .filter(|i| far(&[f64::from(i / 96), f64::from(i % 96)]) < 0.005)
+        .count();
+    for (seed, budget) in [
+        (1, Budget::millis(30_000).and_evaluations(20_000)),
+        (2, Budget::millis(30_000)),
+        (3, Budget::evaluations(9_600)),
+        (4, Budget::evaluations(1_000_000)),
+    ] {
+        let report = Search::new()
+            .seed(seed)
+            .run(&from_fn(space.clone(), 0.005, far), &budget)
+            .unwrap();
+        assert_eq!(report.completeness, Completeness::Proved, "{seed}: {report}");
+        assert_eq!(report.hit_count(), all);
+        assert!(report.counts.evaluations < 10_500, "{seed}: {report}");
+    }
+    let short = Search::new()
+        .run(&from_fn(space, 0.005, far), &Budget::evaluations(9_000))
+        .unwrap();
+    assert_ne!(short.completeness, Completeness::Proved);
 }

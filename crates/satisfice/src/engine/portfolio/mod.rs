@@ -6,6 +6,7 @@ mod moves;
 mod near_misses;
 mod neighbourhoods;
 mod populations;
+mod scan;
 mod sources;
 mod swarms;
 mod translations;
@@ -92,6 +93,11 @@ impl EngineConfig for Portfolio {
     const NAME: &'static str = "portfolio";
     const SUMMARY: &'static str = "swarms, local searches, recombined hits, learned steps and uniform points that compete for evaluations by their yield";
     const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012";
+
+    /// Whether a space is enumerated depends on how much the budget has left.
+    fn is_scheduled(&self) -> bool {
+        true
+    }
 
     fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(Sources::new(self))

@@ -5,6 +5,7 @@ use super::climbers::Climbers;
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
+use super::scan::Scan;
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -20,6 +21,10 @@ use crate::state::{Reader, Saved, State};
 
 /// A batch is given up after so many choices of a source that gave no candidate.
 const REJECTED: usize = 100;
+/// Points of an enumeration that are proposed at once.
+const SCANNED: usize = 256;
+/// Share of the evaluations that estimates how complete the result is.
+const PROBES: f64 = 0.02;
 
 /// Where a candidate comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -73,8 +78,8 @@ pub(super) struct Sources<S> {
     arms: [Arm; ARMS],
     hits: Vec<S>,
     visited: Option<Visited>,
-    /// The next point of the lattice, once so many are visited that uniform draws mostly repeat.
-    scan: u64,
+    /// The lattice point by point, once so many are visited that uniform draws mostly repeat, or if the budget has room for all.
+    scan: Scan,
     swarms: Swarms<S>,
     climbers: Climbers<S>,
     populations: Populations<S>,
@@ -96,7 +101,7 @@ impl<S: Real> Sources<S> {
             arms: [Arm::default(); ARMS],
             hits: Vec::new(),
             visited: None,
-            scan: 0,
+            scan: Scan::default(),
             swarms: Swarms::new(
                 settings.swarms,
                 settings.particles,
@@ -194,7 +199,7 @@ impl<S: Real> Sources<S> {
             Source::Member => self.populations.propose(context, rng, out),
             Source::Uniform => {
                 if self.visited.as_ref().is_some_and(Visited::is_dense) {
-                    if !self.scan_on(context) {
+                    if !self.scan_on(context, rng) {
                         return false;
                     }
                 } else {
@@ -254,26 +259,65 @@ impl<S: Real> Sources<S> {
                 Some(0)
             }
         };
-        match proposed {
-            Some(index) => self.tags.push((source, index)),
-            None => return false,
+        let Some(index) = proposed else {
+            return false;
+        };
+        if matches!(source, Source::Swarm | Source::Climber)
+            && self.is_repeated(context, (source, index), out)
+        {
+            return true;
         }
+        self.tags.push((source, index));
+        true
+    }
+
+    /// Takes back the last proposal of a swarm or a climber if that point was visited before, and tells it that nothing came of
+    /// it, which counts like a miss.
+    fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
+        let space = context.space();
+        let last = out.len() - 1;
+        let Some(visited) = &mut self.visited else {
+            return false;
+        };
+        space.keep_inside(out.point_mut(last));
+        if visited.insert(space, out.point(last)) {
+            return false;
+        }
+        match source {
+            Source::Swarm => self.swarms.tell(index, out.point(last), Outcome::NonFinite),
+            _ => self.climbers.tell(index, out.point(last), Outcome::NonFinite),
+        }
+        if let Some(arm) = arm_of(source) {
+            self.arms[arm].count(false);
+        }
+        out.truncate(last);
         true
     }
 
     /// Goes on through the lattice to the next point that is not visited; `false` at its end.
-    fn scan_on(&mut self, context: &dyn Context<S>) -> bool {
-        let Some(count) = context.space().cardinality() else {
+    fn scan_on(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
+        let Some(visited) = &mut self.visited else {
             return false;
         };
-        while (self.scan as f64) < count {
-            Visited::point(context.space(), self.scan, &mut self.position);
-            self.scan += 1;
-            if self.is_fresh(context) {
-                return true;
-            }
+        let space = context.space();
+        let found = self.scan.next(space, visited, rng, &mut self.position);
+        if found {
+            visited.insert(space, &self.position);
         }
-        false
+        found
+    }
+
+    /// Enumerates the rest of the lattice, a block at a time.
+    fn enumerate(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        while out.len() < SCANNED && self.scan_on(context, rng) {
+            out.push(&self.position);
+        }
+        self.tags.resize(out.len(), (Source::Uniform, 0));
+        if self.scan.is_over() || self.visited.as_ref().is_some_and(Visited::is_all) {
+            Ask::Covered
+        } else {
+            Ask::More
+        }
     }
 
     /// Writes a hit moved by the difference of two others, and appends that difference to `trials`; `false` where it is zero.
@@ -311,9 +355,8 @@ impl<S: Real> Sources<S> {
 }
 
 impl<S: Real> Engine<S> for Sources<S> {
-    /// One evaluation in fifty estimates how complete the result is.
     fn probes(&self) -> f64 {
-        0.02
+        PROBES
     }
 
     fn begin(&mut self, context: &dyn Context<S>) {
@@ -326,7 +369,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.hits.clear();
         let lattice = space.axes().iter().all(crate::Axis::is_integer);
         self.visited = lattice.then(|| Visited::new(space));
-        self.scan = 0;
+        self.scan = Scan::new(space);
         self.swarms.begin(dimension);
         self.climbers.begin(context);
         self.populations.begin(context);
@@ -343,6 +386,11 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.trials.clear();
         self.swarms.begin_batch();
         self.climbers.begin_batch();
+        if let Some(visited) = &self.visited
+            && self.scan.goes_alone(context, visited, PROBES, self.batch)
+        {
+            return self.enumerate(context, rng, out);
+        }
         let mut rejected = 0;
         while out.len() < self.batch && rejected < REJECTED {
             let tag = self.choose(rng);

@@ -135,6 +135,12 @@ impl Visited {
         !self.forgot && self.cardinality == Some(self.points as u64)
     }
 
+    /// Number of points that are not visited, where none was forgotten.
+    pub(super) fn unvisited(&self) -> Option<u64> {
+        let count = self.cardinality.filter(|_| !self.forgot)?;
+        Some(count - self.points as u64)
+    }
+
     /// Whether so much of the space is visited that uniform draws would mostly repeat.
     pub(super) fn is_dense(&self) -> bool {
         !self.forgot

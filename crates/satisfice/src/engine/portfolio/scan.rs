@@ -1,0 +1,136 @@
+//! The lattice point by point: what a space is covered with that the budget has room for.
+
+use super::visited::Visited;
+use crate::context::Context;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::Space;
+
+/// Lattices of at most so many points are enumerated from the start.
+const SMALL: u64 = 4096;
+
+/// Goes through all points of a lattice once, in its order, from a random point on, so that the lanes of a search begin at
+/// different ones.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Scan {
+    /// Number of points; 0 where there is no lattice, or none that can be counted.
+    points: u64,
+    /// The point that comes next, and how many have been passed; none are before the first is drawn.
+    next: u64,
+    passed: u64,
+    started: bool,
+    /// Whether nothing but this enumeration goes on.
+    alone: bool,
+}
+
+impl Scan {
+    pub(super) fn new<S: Real>(space: &Space<S>) -> Self {
+        let lattice = space.axes().iter().all(crate::Axis::is_integer);
+        let count = space.cardinality().filter(|&count| lattice && count < 9e15);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number below 2^53"
+        )]
+        Self {
+            points: count.map_or(0, |count| count as u64),
+            ..Self::default()
+        }
+    }
+
+    /// Whether every point has been passed.
+    pub(super) fn is_over(&self) -> bool {
+        self.points > 0 && self.passed == self.points
+    }
+
+    /// Whether the rest of the lattice is to be enumerated now, with nothing beside: it is small, or mostly visited, or takes as
+    /// many evaluations as the budget has left, of which `reserve` is the share that is not the engine's.
+    ///
+    /// Under a limit of time alone, the rest is enumerated as soon as it fits, at the pace so far.
+    pub(super) fn goes_alone<S: Real>(
+        &mut self,
+        context: &dyn Context<S>,
+        visited: &Visited,
+        reserve: f64,
+        batch: usize,
+    ) -> bool {
+        if self.alone || self.points == 0 {
+            return self.alone;
+        }
+        // A point that was visited is passed without an evaluation, as long as it is remembered.
+        let rest = visited
+            .unvisited()
+            .unwrap_or(self.points)
+            .min(self.points - self.passed) as f64;
+        let (made, used) = (context.evaluations() as f64, context.elapsed_share());
+        self.alone = if let Some(planned) = context.evaluations_planned() {
+            let room = planned as f64 * (1.0 - reserve) - 1.0;
+            let pressed = rest + 2.0 * batch as f64 > room;
+            rest <= room && (self.points <= SMALL || visited.is_dense() || pressed)
+        } else if used > 0.0 {
+            rest * used <= (1.0 - used) * made
+        } else {
+            self.points <= SMALL
+        };
+        self.alone
+    }
+
+    /// Writes the next point that is not remembered as visited; `false` at the end.
+    pub(super) fn next<S: Real>(
+        &mut self,
+        space: &Space<S>,
+        visited: &Visited,
+        rng: &mut SearchRng,
+        position: &mut [S],
+    ) -> bool {
+        if !self.started {
+            self.started = true;
+            let points = usize::try_from(self.points).unwrap_or(usize::MAX);
+            self.next = rng.below(points) as u64;
+        }
+        while self.passed < self.points {
+            Visited::point(space, self.next, position);
+            self.next = (self.next + 1) % self.points;
+            self.passed += 1;
+            if !visited.contains(space, position) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_comes_once_but_those_visited_before() {
+        let space = Space::<f64>::lattice(2, 30).unwrap();
+        for seed in 0..5 {
+            let (mut scan, mut rng) = (Scan::new(&space), SearchRng::new(seed));
+            let (mut visited, mut position) = (Visited::new(&space), [0.0; 2]);
+            for _ in 0..300 {
+                rng.position(&space, &mut position);
+                visited.insert(&space, &position);
+            }
+            let left = visited.unvisited().unwrap();
+            let mut passed = 0;
+            while scan.next(&space, &visited, &mut rng, &mut position) {
+                assert!(visited.insert(&space, &position), "{position:?} came before");
+                passed += 1;
+            }
+            assert!(scan.is_over() && visited.is_all() && passed == left);
+        }
+    }
+
+    #[test]
+    fn nothing_is_scanned_where_points_cannot_be_counted() {
+        for space in [
+            Space::<f64>::cube(2, 0.0, 1.0).unwrap(),
+            Space::lattice(12, 10_000).unwrap(),
+        ] {
+            assert!(Scan::new(&space).points == 0 && !Scan::new(&space).is_over());
+        }
+    }
+}
