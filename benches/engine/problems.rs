@@ -49,17 +49,19 @@ impl Encoding<f64, (u32, u32)> for Lattice {
 }
 
 impl Neighbourhood<(u32, u32)> for Lattice {
-    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) {
-        for (k, l) in [
-            (i.wrapping_sub(1), j),
-            (i + 1, j),
-            (i, j.wrapping_sub(1)),
-            (i, j + 1),
-        ] {
-            if k < 1000 && l < 1000 {
-                visit((k, l));
-            }
-        }
+    fn count(&self, _: &(u32, u32)) -> usize {
+        4
+    }
+
+    fn neighbour(&self, &(i, j): &(u32, u32), index: usize) -> Option<(u32, u32)> {
+        let (k, l) = match index {
+            0 => (i.wrapping_sub(1), j),
+            1 => (i + 1, j),
+            2 => (i, j.wrapping_sub(1)),
+            3 => (i, j + 1),
+            _ => return None,
+        };
+        (k < 1000 && l < 1000).then_some((k, l))
     }
 }
 

@@ -4,21 +4,32 @@ use satisfice::catalogue::Description;
 use satisfice::{Axis, Error, SatisficingProblem, Space};
 use satisfice::{Encoding, Neighbourhood};
 
+/// Up to so many keys are ranked by comparing each with each, without allocating.
+const FEW_KEYS: usize = 64;
+
 /// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices. Or the random keys of a
 /// permutation of `0..D`: reals whose ranks are the solution.
 #[derive(Debug, Clone)]
 pub(crate) struct Lattice {
     space: Space<f64>,
     keys: bool,
+    /// The number of changes of one variable before those of each variable, and the number of all. Empty with keys.
+    changes_before: Vec<usize>,
 }
 
 impl Lattice {
     /// A lattice with these numbers of cells, all of them positive.
     pub(crate) fn new(cells: impl IntoIterator<Item = usize>) -> Result<Self, Error> {
-        let axes = cells.into_iter().map(|m| Axis::integer(0, m as i64 - 1));
+        let mut changes_before = vec![0_usize];
+        let axes = cells.into_iter().map(|m| {
+            let before = changes_before[changes_before.len() - 1];
+            changes_before.push(before.saturating_add(m.saturating_sub(1)));
+            Axis::integer(0, m as i64 - 1)
+        });
         Ok(Self {
             space: Space::new(axes)?,
             keys: false,
+            changes_before,
         })
     }
 
@@ -28,6 +39,7 @@ impl Lattice {
         Ok(Self {
             space: Space::cube(n, 0.0, 1.0)?,
             keys: true,
+            changes_before: Vec::new(),
         })
     }
 
@@ -53,11 +65,23 @@ impl Lattice {
         (axes.iter().zip(cells)).all(|(axis, &cell)| f64::from(cell) <= axis.upper())
     }
 
-    /// Cost: O(D), with keys O(D^2).
+    /// Cost: O(D), with keys O(D log D).
     #[inline]
     pub(crate) fn decode_into(&self, values: &[f64], cells: &mut Vec<u32>) {
         cells.clear();
         if self.keys {
+            if values.len() > FEW_KEYS {
+                let mut order: Vec<u32> = (0..values.len() as u32).collect();
+                order.sort_unstable_by(|&i, &j| {
+                    let [a, b] = [i, j].map(|place| values[place as usize] + 0.0); // -0.0 is 0.0
+                    a.total_cmp(&b).then(i.cmp(&j))
+                });
+                cells.resize(values.len(), 0);
+                for (rank, &place) in (0..).zip(&order) {
+                    cells[place as usize] = rank;
+                }
+                return;
+            }
             let rank = |(place, key): (usize, &f64)| {
                 let before = values[..place].iter().filter(|other| *other <= key).count();
                 let after = values[place + 1..].iter().filter(|other| *other < key).count();
@@ -73,9 +97,15 @@ impl Lattice {
         if !self.holds(cells) || values.len() != cells.len() {
             return false;
         }
-        let repeats = |(place, rank): (usize, &u32)| cells[..place].contains(rank);
-        if self.keys && cells.iter().enumerate().any(repeats) {
-            return false;
+        if self.keys {
+            // Every rank is below D, see `holds`: D different ones are all of them.
+            let mut seen = vec![false; cells.len()];
+            if cells
+                .iter()
+                .any(|&rank| core::mem::replace(&mut seen[rank as usize], true))
+            {
+                return false;
+            }
         }
         for (value, &cell) in values.iter_mut().zip(cells) {
             *value = if self.keys {
@@ -87,21 +117,17 @@ impl Lattice {
         true
     }
 
-    /// Visits all that differ in one variable, or, of permutations, by one exchange.
-    pub(crate) fn changes(&self, of: &[u32], visit: &mut dyn FnMut(Vec<u32>)) {
-        let mut change = |edit: &dyn Fn(&mut [u32])| {
-            let mut changed = of.to_vec();
-            edit(&mut changed);
-            visit(changed);
-        };
-        for (j, (axis, &here)) in self.space.axes().iter().zip(of).enumerate() {
-            if self.keys {
-                (0..j).for_each(|i| change(&|changed| changed.swap(i, j)));
-            } else {
-                let others = (0..=axis.upper() as u32).filter(|there| *there != here);
-                others.for_each(|there| change(&|changed| changed[j] = there));
-            }
+    /// The place of exchange `index` of a permutation: `(i, j)` with i < j, in the order (0, 1), (0, 2), (1, 2), (0, 3) …
+    fn exchange(index: usize) -> (usize, usize) {
+        // The greatest j with j (j - 1) / 2 <= index; the root may be off by one.
+        let mut j = f64::midpoint(1.0, (1.0 + 8.0 * index as f64).sqrt()) as usize;
+        while j * (j - 1) / 2 > index {
+            j -= 1;
         }
+        while (j + 1) * j / 2 <= index {
+            j += 1;
+        }
+        (index - j * (j - 1) / 2, j)
     }
 }
 
@@ -111,9 +137,31 @@ impl Encoding<f64, Vec<u32>> for Lattice {
     }
 }
 
+/// Solutions that differ in one variable, or, of permutations, by one exchange.
 impl Neighbourhood<Vec<u32>> for Lattice {
-    fn neighbours(&self, of: &Vec<u32>, visit: &mut dyn FnMut(Vec<u32>)) {
-        self.changes(of, visit);
+    fn count(&self, _: &Vec<u32>) -> usize {
+        let n = self.space.dimension();
+        if self.keys {
+            n * n.saturating_sub(1) / 2
+        } else {
+            self.changes_before.last().copied().unwrap_or(0)
+        }
+    }
+
+    fn neighbour(&self, of: &Vec<u32>, index: usize) -> Option<Vec<u32>> {
+        if index >= self.count(of) || of.len() != self.space.dimension() {
+            return None;
+        }
+        let mut changed = of.clone();
+        if self.keys {
+            let (i, j) = Self::exchange(index);
+            changed.swap(i, j);
+        } else {
+            let j = self.changes_before.partition_point(|&before| before <= index) - 1;
+            let there = (index - self.changes_before[j]) as u32;
+            changed[j] = there + u32::from(there >= of[j]);
+        }
+        Some(changed)
     }
 }
 
@@ -311,6 +359,29 @@ mod tests {
     }
 
     #[test]
+    fn many_keys_have_the_ranks_that_counting_gives() {
+        let mut rng = satisfice::SearchRng::new(2);
+        let n = 3 * FEW_KEYS;
+        let lattice = Lattice::permutations(n).unwrap();
+        // Some keys are equal, and zero comes with both signs.
+        let keys: Vec<f64> = (0..n)
+            .map(|i| {
+                if i % 7 == 0 {
+                    -0.0
+                } else {
+                    rng.below(100) as f64 / 100.0
+                }
+            })
+            .collect();
+        let mut ranks = Vec::new();
+        lattice.decode_into(&keys, &mut ranks);
+        for (i, key) in keys.iter().enumerate() {
+            let earlier = |(j, other): &(usize, &f64)| *other < key || *other == key && *j < i;
+            assert_eq!(ranks[i] as usize, keys.iter().enumerate().filter(earlier).count());
+        }
+    }
+
+    #[test]
     fn keys_and_permutations() {
         let lattice = Lattice::permutations(4).unwrap();
         let mut ranks = Vec::new();
@@ -321,9 +392,14 @@ mod tests {
         lattice.decode_into(&keys, &mut back);
         assert_eq!(back, ranks);
         assert!(!lattice.encode(&[0, 0, 1, 2], &mut keys) && !lattice.encode(&[4, 0, 1, 2], &mut keys));
-        let mut count = 0;
-        lattice.changes(&ranks, &mut |other| count += usize::from(other != ranks));
-        assert_eq!(count, 6);
+        let mut exchanged: Vec<_> = (0..lattice.count(&ranks))
+            .map(|index| lattice.neighbour(&ranks, index).unwrap())
+            .collect();
+        assert_eq!(exchanged[..2], [vec![0, 2, 3, 1], vec![3, 0, 2, 1]]);
+        exchanged.sort_unstable();
+        exchanged.dedup();
+        assert_eq!((exchanged.len(), lattice.neighbour(&ranks, 6)), (6, None));
+        assert_eq!(Lattice::exchange(usize::MAX >> 20).1, 5_931_642);
     }
 
     #[test]

@@ -375,10 +375,13 @@ fn queens() {
             .map(|i| (i + 1..8).filter(|&j| attacked(i, j)).count())
             .sum::<usize>() as f64
     });
-    let mut neighbours = 0;
     let queens = problem::<Queens>(&[]);
     let neighbourhood = queens.neighbourhood().unwrap();
-    neighbourhood.neighbours(&vec![0; 8], &mut |_| neighbours += 1);
-    assert_eq!(neighbours, 8 * 7);
+    let mut neighbours: Vec<_> = (0..neighbourhood.count(&vec![0; 8]))
+        .map(|index| neighbourhood.neighbour(&vec![0; 8], index).unwrap())
+        .collect();
+    neighbours.sort_unstable();
+    neighbours.dedup();
+    assert_eq!(neighbours.len(), 8 * 7);
     assert!(Queens::new(0).is_err());
 }

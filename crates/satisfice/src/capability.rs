@@ -28,9 +28,13 @@
 //! }
 //!
 //! impl Neighbourhood<[u32; 2]> for SmallSums {
-//!     fn neighbours(&self, &[a, b]: &[u32; 2], visit: &mut dyn FnMut([u32; 2])) {
-//!         if a > 0 && b < 99 { visit([a - 1, b + 1]); }
-//!         if a < 99 && b > 0 { visit([a + 1, b - 1]); }
+//!     fn count(&self, _: &[u32; 2]) -> usize { 2 }
+//!     fn neighbour(&self, &[a, b]: &[u32; 2], index: usize) -> Option<[u32; 2]> {
+//!         match index {
+//!             0 if a > 0 && b < 99 => Some([a - 1, b + 1]),
+//!             1 if a < 99 && b > 0 => Some([a + 1, b - 1]),
+//!             _ => None,
+//!         }
 //!     }
 //! }
 //!
@@ -68,9 +72,16 @@ pub trait Encoding<S, T> {
 /// The solutions next to a solution, which engines look at once it is good. Needs an [`Encoding`].
 ///
 /// For a problem without one, engines use the next lattice points on integer axes and shrinking steps on continuous ones.
+///
+/// Neighbours have indices, so that an engine can take a few of them, or one at random, however many there are. A solution
+/// of a million neighbours costs no more than one of ten as long as they are not all looked at.
 pub trait Neighbourhood<T> {
-    /// Visits the neighbours of a solution, in a fixed order.
-    fn neighbours(&self, of: &T, visit: &mut dyn FnMut(T));
+    /// The number of indices; neighbours are at `0..count`. It may be more than there are neighbours: indices may be empty.
+    fn count(&self, of: &T) -> usize;
+
+    /// The neighbour at an index; `None` if there is none, which is common at the borders of a space, and for an index from
+    /// `count` on. Always the same for the same solution and index.
+    fn neighbour(&self, of: &T, index: usize) -> Option<T>;
 }
 
 /// Lower bounds of the fitness, by which engines exclude regions and prove that no hit is missing.

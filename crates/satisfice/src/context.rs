@@ -1,5 +1,7 @@
 //! What an engine may ask while it searches. It never sees the problem.
 
+use core::ops::Range;
+
 use crate::scalar::Real;
 use crate::space::{Region, Space};
 
@@ -24,9 +26,14 @@ pub trait Context<S: Real> {
     /// Whether the solution at a position is in C. Cost: a hash look-up.
     fn is_deleted(&self, position: &[S]) -> bool;
 
-    /// Visits positions next to `of`, in a fixed order: the problem's own neighbours; else the next lattice points along
-    /// each integer axis. `false`, without a visit, where there are none of either kind.
-    fn neighbours(&self, of: &[S], visit: &mut dyn FnMut(&[S])) -> bool;
+    /// The number of indices of neighbours of `of`: those of the problem's own neighbours, if it declares any and `of` can be
+    /// encoded; else two for each axis, which are the next lattice points on an integer axis and empty on others.
+    fn neighbour_count(&self, of: &[S]) -> usize;
+
+    /// Visits the neighbours at some indices below [`neighbour_count`](Self::neighbour_count), in order, with each one's
+    /// index. Some indices may be empty. Cost: one decoding, and one encoding a neighbour; take few at a time where there
+    /// are many.
+    fn neighbours(&self, of: &[S], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[S]));
 
     /// Whether the problem declares a neighbourhood, together with an encoding.
     fn offers_neighbours(&self) -> bool;
@@ -57,4 +64,11 @@ pub trait Context<S: Real> {
 
     /// Writes the position of hit `index` of the slice before; `false` if there is none or the problem does not encode.
     fn previous_hit(&self, index: usize, position: &mut [S]) -> bool;
+}
+
+/// How many neighbours an engine takes at a time, so that it looks at the clock in between: 256 in most spaces, fewer where
+/// each has more than a thousand coordinates.
+pub(crate) fn neighbours_at_once(dimension: usize) -> usize {
+    const COORDINATES: usize = 1 << 18;
+    (COORDINATES / dimension.max(1)).clamp(1, 256)
 }

@@ -1,10 +1,12 @@
 //! The view that an engine has of a running search.
 
 use core::cell::{Cell, RefCell};
+use core::ops::Range;
 
 use crate::accounting::Ledger;
 use crate::archive::Archive;
 use crate::budget::Budget;
+use crate::capability::{Encoding, Neighbourhood};
 use crate::context::Context;
 use crate::problem::SatisficingProblem;
 use crate::space::{Region, Space};
@@ -75,54 +77,60 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         (solution, values)
     }
 
-    fn own_neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
-        let (Some(neighbourhood), Some(encoding)) = (self.problem.neighbourhood(), self.problem.encoding())
-        else {
-            return false;
+    /// Lets `use_it` see the problem's neighbourhood with the solution at a position and memory for values; `None` without
+    /// a neighbourhood, an encoding, or values that the solution is encoded by.
+    fn with_own_neighbourhood<R>(
+        &self,
+        of: &[P::Scalar],
+        use_it: impl FnOnce(&OwnNeighbourhood<'_, P>, &P::Solution, &mut [P::Scalar]) -> R,
+    ) -> Option<R> {
+        let own = OwnNeighbourhood {
+            neighbourhood: self.problem.neighbourhood()?,
+            encoding: self.problem.encoding()?,
         };
         self.with_scratch(of, |scratch| {
             let (solution, values) = self.decode(scratch);
-            if !encoding.encode(solution, values) {
-                return false;
-            }
-            let space = self.problem.space();
-            neighbourhood.neighbours(solution, &mut |neighbour| {
-                if encoding.encode(&neighbour, values) {
-                    space.positions(values);
-                    visit(values);
-                }
-            });
-            true
+            own.encoding
+                .encode(solution, values)
+                .then(|| use_it(&own, solution, values))
         })
     }
 
-    fn lattice_neighbours(&self, position: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
-        let space = self.problem.space();
-        let mut any = false;
+    /// Index `2 j` is the lattice point below on axis j, `2 j + 1` the one above.
+    fn lattice_neighbours(
+        &self,
+        position: &[P::Scalar],
+        indices: Range<usize>,
+        visit: &mut dyn FnMut(usize, &[P::Scalar]),
+    ) {
         self.with_scratch(position, |scratch| {
             let neighbour = &mut scratch.values;
-            for (axis, x) in space.axes().iter().zip(&mut *neighbour) {
+            let axes = self.problem.space().axes();
+            for (axis, x) in axes.iter().zip(&mut *neighbour) {
                 *x = axis.position(axis.value(*x));
             }
-            for (j, axis) in space
-                .axes()
-                .iter()
-                .enumerate()
-                .filter(|(_, axis)| axis.is_integer())
-            {
-                let here = neighbour[j];
-                for there in [here - num_traits::one(), here + num_traits::one()] {
-                    if axis.lower() <= there && there < axis.end() {
-                        any = true;
-                        neighbour[j] = there;
-                        visit(neighbour);
-                    }
+            for index in indices.start..indices.end.min(2 * axes.len()) {
+                let (j, axis) = (index / 2, &axes[index / 2]);
+                if !axis.is_integer() {
+                    continue;
                 }
-                neighbour[j] = here;
+                let here = neighbour[j];
+                let one: P::Scalar = num_traits::one();
+                let there = if index % 2 == 0 { here - one } else { here + one };
+                if axis.lower() <= there && there < axis.end() {
+                    neighbour[j] = there;
+                    visit(index, neighbour);
+                    neighbour[j] = here;
+                }
             }
         });
-        any
     }
+}
+
+/// The capabilities behind a problem's own neighbours.
+struct OwnNeighbourhood<'a, P: SatisficingProblem + ?Sized> {
+    neighbourhood: &'a dyn Neighbourhood<P::Solution>,
+    encoding: &'a dyn Encoding<P::Scalar, P::Solution>,
 }
 
 impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
@@ -147,9 +155,30 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
                 self.ledger.archive.contains(self.decode(scratch).0)
             })
     }
-    fn neighbours(&self, of: &[P::Scalar], visit: &mut dyn FnMut(&[P::Scalar])) -> bool {
+    fn neighbour_count(&self, of: &[P::Scalar]) -> usize {
+        self.with_own_neighbourhood(of, |own, solution, _| own.neighbourhood.count(solution))
+            .unwrap_or(2 * self.problem.space().dimension())
+    }
+    fn neighbours(
+        &self,
+        of: &[P::Scalar],
+        indices: Range<usize>,
+        visit: &mut dyn FnMut(usize, &[P::Scalar]),
+    ) {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
-        self.own_neighbours(of, visit) || self.lattice_neighbours(of, visit)
+        let space = self.problem.space();
+        let own = self.with_own_neighbourhood(of, |own, solution, values| {
+            for index in indices.clone() {
+                let neighbour = own.neighbourhood.neighbour(solution, index);
+                if neighbour.is_some_and(|neighbour| own.encoding.encode(&neighbour, values)) {
+                    space.positions(values);
+                    visit(index, values);
+                }
+            }
+        });
+        if own.is_none() {
+            self.lattice_neighbours(of, indices, visit);
+        }
     }
     fn offers_neighbours(&self) -> bool {
         self.problem.neighbourhood().is_some() && self.problem.encoding().is_some()

@@ -126,16 +126,17 @@ impl<S: Real> Encoding<S, Located<S>> for Bowls<S> {
 }
 
 impl<S: Real> Neighbourhood<Located<S>> for Bowls<S> {
-    fn neighbours(&self, of: &Located<S>, visit: &mut dyn FnMut(Located<S>)) {
-        for (j, axis) in self.space.axes().iter().enumerate() {
-            for step in [-S::one(), S::one()] {
-                let mut neighbour = of.clone();
-                neighbour.coordinates[j] = of.coordinates[j] + step;
-                if axis.lower() <= neighbour.coordinates[j] && neighbour.coordinates[j] <= axis.upper() {
-                    visit(neighbour);
-                }
-            }
-        }
+    fn count(&self, _: &Located<S>) -> usize {
+        2 * self.space.dimension()
+    }
+
+    fn neighbour(&self, of: &Located<S>, index: usize) -> Option<Located<S>> {
+        let axis = self.space.axes().get(index / 2)?;
+        let step = if index % 2 == 0 { -S::one() } else { S::one() };
+        let mut neighbour = of.clone();
+        let there = &mut neighbour.coordinates[index / 2];
+        *there = *there + step;
+        (axis.lower() <= *there && *there <= axis.upper()).then_some(neighbour)
     }
 }
 

@@ -37,6 +37,7 @@ enum Fault {
     EncodeLeavesTheSpace,
     EncodeIsOffByOne,
     NeighboursLeaveTheSpace,
+    NeighboursBeyondTheCount,
     NeighboursAlternate,
     BoundIsTooHigh,
     BoundIsNaN,
@@ -126,13 +127,17 @@ impl Encoding<f64, [i64; 2]> for Faulty {
 }
 
 impl Neighbourhood<[i64; 2]> for Faulty {
-    fn neighbours(&self, &[a, b]: &[i64; 2], visit: &mut dyn FnMut([i64; 2])) {
+    fn count(&self, _: &[i64; 2]) -> usize {
+        1
+    }
+
+    fn neighbour(&self, &[a, b]: &[i64; 2], index: usize) -> Option<[i64; 2]> {
         if self.fault == Fault::NeighboursAlternate && self.count() % 2 == 1 {
-            return;
+            return None;
         }
-        if a < 19 || self.fault == Fault::NeighboursLeaveTheSpace {
-            visit([a + 1, b]);
-        }
+        let exists = index == 0 || self.fault == Fault::NeighboursBeyondTheCount;
+        let inside = a < 19 || self.fault == Fault::NeighboursLeaveTheSpace;
+        (exists && inside).then_some([a + 1, b])
     }
 }
 
@@ -158,6 +163,7 @@ fn a_broken_problem_is_found_out() {
         (Fault::EncodeIsOffByOne, Some(Law::Encode)),
         (Fault::NeighboursLeaveTheSpace, Some(Law::Neighbours)),
         (Fault::NeighboursAlternate, Some(Law::Neighbours)),
+        (Fault::NeighboursBeyondTheCount, Some(Law::Neighbours)),
         (Fault::BoundIsTooHigh, Some(Law::LowerBound)),
         (Fault::BoundIsNaN, Some(Law::LowerBound)),
         (Fault::RepresentativeIsNoHit, Some(Law::Canonical)),

@@ -350,30 +350,42 @@ impl Encoding<f64, (u32, u32)> for FeaturePairs {
 }
 
 impl Neighbourhood<(u32, u32)> for FeaturePairs {
-    fn neighbours(&self, &(i, j): &(u32, u32), visit: &mut dyn FnMut((u32, u32))) {
+    fn count(&self, &(i, j): &(u32, u32)) -> usize {
         if !self.a.has(i) || !self.second().has(j) {
-            return;
+            return 0;
+        }
+        let joint = if self.joint_moves {
+            self.a.close().neighbours(i).len() * self.second().close().neighbours(j).len()
+        } else {
+            0
+        };
+        self.a.neighbours.neighbours(i).len() + self.second().neighbours.neighbours(j).len() + joint
+    }
+
+    /// The first feature moves, then the second, then both.
+    fn neighbour(&self, &(i, j): &(u32, u32), index: usize) -> Option<(u32, u32)> {
+        if !self.a.has(i) || !self.second().has(j) {
+            return None;
         }
         let around_i = self.a.neighbours.neighbours(i);
         let around_j = self.second().neighbours.neighbours(j);
-        let mut go = |i: u32, j: u32| {
-            if !self.no_pair(i, j) {
-                visit(self.ordered(i, j));
-            }
+        let (k, l) = if let Some(&k) = around_i.get(index) {
+            (k, j)
+        } else if let Some(&l) = around_j.get(index - around_i.len()) {
+            (i, l)
+        } else if self.joint_moves {
+            let index = index - around_i.len() - around_j.len();
+            let close_j = self.second().close().neighbours(j);
+            let k = self
+                .a
+                .close()
+                .neighbours(i)
+                .get(index.checked_div(close_j.len())?)?;
+            (*k, close_j[index % close_j.len()])
+        } else {
+            return None;
         };
-        for &k in around_i {
-            go(k, j);
-        }
-        for &l in around_j {
-            go(i, l);
-        }
-        if self.joint_moves {
-            for &k in self.a.close().neighbours(i) {
-                for &l in self.second().close().neighbours(j) {
-                    go(k, l);
-                }
-            }
-        }
+        (!self.no_pair(k, l)).then(|| self.ordered(k, l))
     }
 }
 

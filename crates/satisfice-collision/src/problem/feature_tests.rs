@@ -146,10 +146,10 @@ fn a_feature_has_the_neighbours_that_share_a_vertex() {
     ];
     let mesh = Mesh::new(corners, vec![], vec![[0, 1, 2], [0, 2, 3], [2, 4, 5]]).unwrap();
     let visited = |problem: &FeaturePairs, of| {
-        let mut all = Vec::new();
         let neighbourhood = problem.neighbourhood().unwrap();
-        neighbourhood.neighbours(&of, &mut |pair| all.push(pair));
-        all
+        (0..neighbourhood.count(&of))
+            .filter_map(|index| neighbourhood.neighbour(&of, index))
+            .collect::<Vec<_>>()
     };
     let coarse = FeaturePairs::between(PairKind::VertexTriangle, &mesh, &mesh, 9.0).unwrap();
     assert!(!coarse.joint_moves());
@@ -226,6 +226,7 @@ fn bodies_without_the_feature_and_bad_thresholds_are_refused() {
     assert!(problem.fitness(&(0, 320)).is_nan() && problem.fitness(&(u32::MAX, 0)).is_nan());
     assert!(!problem.encoding().unwrap().encode(&(0, 320), &mut [0.0; 2]));
     let neighbourhood = problem.neighbourhood().unwrap();
-    neighbourhood.neighbours(&(u32::MAX, 0), &mut |_| panic!("no feature has no neighbours"));
+    assert_eq!(neighbourhood.count(&(u32::MAX, 0)), 0);
+    assert_eq!(neighbourhood.neighbour(&(u32::MAX, 0), 0), None);
     assert!(problem.fitness(&(0, 0)) == 0.0 && distance::ACCURACY < 1e-9);
 }

@@ -196,21 +196,24 @@ impl<S: Real> Encoding<S, Located<S>> for Case<S> {
 }
 
 impl<S: Real> Neighbourhood<Located<S>> for Case<S> {
-    fn neighbours(&self, of: &Located<S>, visit: &mut dyn FnMut(Located<S>)) {
-        for (j, axis) in self.space.axes().iter().enumerate() {
-            let step = if axis.is_integer() {
-                S::one()
-            } else {
-                axis.width() * S::of(0.03)
-            };
-            for there in [of.coordinates[j] - step, of.coordinates[j] + step] {
-                if axis.lower() <= there && there <= axis.upper() {
-                    let mut neighbour = of.clone();
-                    neighbour.coordinates[j] = there;
-                    visit(neighbour);
-                }
-            }
-        }
+    fn count(&self, _: &Located<S>) -> usize {
+        2 * self.space.dimension()
+    }
+
+    fn neighbour(&self, of: &Located<S>, index: usize) -> Option<Located<S>> {
+        let axis = self.space.axes().get(index / 2)?;
+        let step = if axis.is_integer() {
+            S::one()
+        } else {
+            axis.width() * S::of(0.03)
+        };
+        let here = of.coordinates[index / 2];
+        let there = if index % 2 == 0 { here - step } else { here + step };
+        (axis.lower() <= there && there <= axis.upper()).then(|| {
+            let mut neighbour = of.clone();
+            neighbour.coordinates[index / 2] = there;
+            neighbour
+        })
     }
 }
 

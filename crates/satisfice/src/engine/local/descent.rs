@@ -49,13 +49,15 @@ pub(super) struct RestartedDescent<S> {
     point: Vec<S>,
     fitness: S,
     step: S,
-    /// The neighbours, flat; empty where they have not been asked for.
-    around: Vec<S>,
-    /// How many of them have been tried, and which one is being tried.
-    tried: usize,
-    current: usize,
-    /// The one that was tried first.
+    /// Number of indices of neighbours around the point; `None` before they are asked for. Compass steps follow them, two
+    /// for each axis: back, forth.
+    neighbours: Option<usize>,
+    /// The index that is tried first, the one that is being tried, and how many have been tried.
     first: usize,
+    current: usize,
+    tried: usize,
+    /// Whether only compass steps are left to try.
+    only_compass: bool,
     /// Whether one of them was left out because it is in C.
     touches: bool,
 }
@@ -69,10 +71,11 @@ impl<S: Real> RestartedDescent<S> {
             point: Vec::new(),
             fitness: S::infinity(),
             step: S::zero(),
-            around: Vec::new(),
-            tried: 0,
-            current: 0,
+            neighbours: None,
             first: 0,
+            current: 0,
+            tried: 0,
+            only_compass: false,
             touches: false,
         }
     }
@@ -80,73 +83,73 @@ impl<S: Real> RestartedDescent<S> {
     /// Ends the descent; the next one starts at a uniform point.
     pub(super) fn restart(&mut self) {
         self.point.clear();
-        self.around.clear();
+        self.neighbours = None;
     }
 
     /// Proposes the next neighbour, or a uniform point.
     pub(super) fn propose(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         let dimension = out.dimension();
         // A restored point may be of another space.
-        if self.point.len() == dimension {
-            if self.around.is_empty() {
-                self.look_around(context);
-            }
-            loop {
-                let count = self.around.len() / dimension;
-                while self.tried < count {
-                    self.current = (self.first + self.tried) % count;
-                    self.tried += 1;
-                    let neighbour = &self.around[self.current * dimension..][..dimension];
-                    if !context.is_deleted(neighbour) {
-                        return out.push(neighbour);
+        while self.point.len() == dimension {
+            let neighbours = self.look_around(context);
+            let (from, count) = if self.only_compass {
+                (neighbours, 2 * dimension)
+            } else {
+                (0, neighbours + 2 * dimension)
+            };
+            while self.tried < count {
+                self.current = from + (self.first + self.tried) % count;
+                self.tried += 1;
+                let mut proposed = false;
+                let mut propose = |neighbour: &[S]| {
+                    if context.is_deleted(neighbour) {
+                        self.touches = true;
+                    } else {
+                        out.push(neighbour);
+                        proposed = true;
                     }
-                    self.touches = true;
+                };
+                if self.current < neighbours {
+                    let index = self.current;
+                    context.neighbours(&self.point, index..index + 1, &mut |_, neighbour| {
+                        propose(neighbour)
+                    });
+                } else {
+                    let step = compass_step(
+                        context.space(),
+                        &mut self.point,
+                        self.step,
+                        self.current - neighbours,
+                    );
+                    if let Some((axis, here)) = step {
+                        propose(&self.point);
+                        self.point[axis] = here;
+                    }
                 }
-                self.step = self.step / S::of(2.0);
-                if self.touches || self.step < self.shortest || !has_compass(context.space()) {
-                    break;
+                if proposed {
+                    return;
                 }
-                // What is not of the compass has been tried already.
-                self.around.clear();
-                self.tried = 0;
-                self.add_compass(context.space());
             }
+            self.step = self.step / S::of(2.0);
+            if self.touches || self.step < self.shortest || !has_compass(context.space()) {
+                break;
+            }
+            self.only_compass = true;
+            self.tried = 0;
         }
         self.restart();
         out.push_with(|position| rng.position(context.space(), position));
     }
 
-    fn look_around(&mut self, context: &dyn Context<S>) {
-        self.tried = 0;
-        self.touches = false;
-        let around = &mut self.around;
-        let _ = context.neighbours(&self.point, &mut |position| around.extend_from_slice(position));
-        self.add_compass(context.space());
-        self.first = self.current;
-    }
-
-    /// Adds the points a step away on each continuous axis; beyond a bound, the bound.
-    fn add_compass(&mut self, space: &Space<S>) {
-        let periodic = space.boundary() == Boundary::Wrap;
-        for (j, axis) in space.axes().iter().enumerate() {
-            if axis.is_integer() {
-                continue;
-            }
-            let here = self.point[j];
-            let length = self.step * axis.width();
-            for there in [here - length, here + length] {
-                let there = if periodic {
-                    there
-                } else {
-                    there.max(axis.lower()).min(axis.upper())
-                };
-                if there != here {
-                    self.around.extend_from_slice(&self.point);
-                    let place = self.around.len() - self.point.len() + j;
-                    self.around[place] = there;
-                }
-            }
-        }
+    /// The number of indices of neighbours around the point, asked for once.
+    fn look_around(&mut self, context: &dyn Context<S>) -> usize {
+        *self.neighbours.get_or_insert_with(|| {
+            self.tried = 0;
+            self.touches = false;
+            self.only_compass = false;
+            self.first = self.current;
+            context.neighbour_count(&self.point)
+        })
     }
 
     /// Goes on from what became of the proposal.
@@ -165,9 +168,34 @@ impl<S: Real> RestartedDescent<S> {
             self.fitness = outcome.fitness();
             self.point.clear();
             self.point.extend_from_slice(position);
-            self.around.clear();
+            self.neighbours = None;
         }
     }
+}
+
+/// Moves a point along a continuous axis by compass step `index`: along axis `index / 2`, back or forth; beyond a bound, to
+/// the bound. Returns the axis and where the point was on it; `None`, without a move, if there is no such step.
+fn compass_step<S: Real>(space: &Space<S>, point: &mut [S], step: S, index: usize) -> Option<(usize, S)> {
+    let j = index / 2;
+    let axis = &space.axes()[j];
+    if axis.is_integer() {
+        return None;
+    }
+    let (here, length) = (point[j], step * axis.width());
+    let there = if index % 2 == 0 {
+        here - length
+    } else {
+        here + length
+    };
+    let there = if space.boundary() == Boundary::Wrap {
+        there
+    } else {
+        there.max(axis.lower()).min(axis.upper())
+    };
+    (there != here).then(|| {
+        point[j] = there;
+        (j, here)
+    })
 }
 
 /// Whether any axis has compass steps.
@@ -179,7 +207,17 @@ fn has_compass<S: Real>(space: &Space<S>) -> bool {
 }
 
 impl<S: Real> Part for RestartedDescent<S> {
-    crate::saved_fields!(point, fitness, step, around, tried, current, first, touches);
+    crate::saved_fields!(
+        point,
+        fitness,
+        step,
+        neighbours,
+        tried,
+        current,
+        first,
+        only_compass,
+        touches
+    );
 }
 
 impl<S: Real> Engine<S> for RestartedDescent<S> {

@@ -1,13 +1,14 @@
 //! Exhaustion: from every hit its neighbours, breadth first.
 
 use core::hash::BuildHasher;
+use core::ops::Range;
 use std::collections::VecDeque;
 
 use foldhash::fast::FixedState;
 use hashbrown::HashTable;
 
 use crate::batch::{Batch, Outcome};
-use crate::context::Context;
+use crate::context::{Context, neighbours_at_once};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::state::{Part, Reader, Saved, State};
@@ -32,8 +33,9 @@ pub(in crate::engine) struct Flood<S> {
     queue: VecDeque<S>,
     /// Keys of the points proposed in this flood; two points under one key, 2^-64 likely, would cost one of them its turn.
     seen: HashTable<u64>,
-    /// Memory for the hit whose neighbours are proposed.
+    /// The hit whose neighbours are proposed, and the index of the next one; steps along axes follow the neighbours.
     centre: Vec<S>,
+    next: usize,
 }
 
 impl<S: Real> Flood<S> {
@@ -44,12 +46,14 @@ impl<S: Real> Flood<S> {
             queue: VecDeque::new(),
             seen: HashTable::new(),
             centre: Vec::new(),
+            next: 0,
         }
     }
 
     pub(in crate::engine) fn clear(&mut self) {
         self.queue.clear();
         self.seen.clear();
+        self.centre.clear();
     }
 
     /// Puts new hits into the queue.
@@ -63,21 +67,35 @@ impl<S: Real> Flood<S> {
 
     /// Proposes neighbours of the next hit that has any left; `false` when all is flooded.
     pub(in crate::engine) fn ask(&mut self, context: &dyn Context<S>, out: &mut Batch<S>) -> bool {
+        let dimension = out.dimension();
         while out.is_empty() {
-            if self.queue.len() < out.dimension() {
-                self.clear();
-                return false;
+            if self.centre.len() != dimension {
+                if self.queue.len() < dimension {
+                    self.clear();
+                    return false;
+                }
+                self.centre.clear();
+                self.centre.extend(self.queue.drain(..dimension));
+                self.next = 0;
             }
-            self.centre.clear();
-            self.centre.extend(self.queue.drain(..out.dimension()));
             let seen = &mut self.seen;
             let mut propose = |position: &[S]| {
                 if !context.is_deleted(position) && is_new(seen, position) {
                     out.push(position);
                 }
             };
-            let _ = context.neighbours(&self.centre, &mut propose);
-            frontier(context, &mut self.centre, self.first_step, &mut propose);
+            let count = context.neighbour_count(&self.centre);
+            let end = (count + dimension).min(self.next.saturating_add(neighbours_at_once(dimension)));
+            let neighbours = self.next..end.min(count);
+            if !neighbours.is_empty() {
+                context.neighbours(&self.centre, neighbours, &mut |_, position| propose(position));
+            }
+            let axes = self.next.max(count) - count..end.max(count) - count;
+            frontier(context, &mut self.centre, axes, self.first_step, &mut propose);
+            self.next = end;
+            if end == count + dimension {
+                self.centre.clear();
+            }
         }
         true
     }
@@ -86,6 +104,8 @@ impl<S: Real> Flood<S> {
 impl<S: Real> Part for Flood<S> {
     fn save(&self, state: &mut State) {
         Saved::save(&self.queue, state);
+        Saved::save(&self.centre, state);
+        Saved::save(&self.next, state);
         let mut seen: Vec<u64> = self.seen.iter().copied().collect();
         seen.sort_unstable();
         Saved::save(&seen, state);
@@ -93,6 +113,8 @@ impl<S: Real> Part for Flood<S> {
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         self.queue = from.read()?;
+        self.centre = from.read()?;
+        self.next = from.read()?;
         self.seen.clear();
         for key in from.read::<Vec<u64>>()? {
             self.seen.insert_unique(key, key, |&key| key);
@@ -115,10 +137,17 @@ fn is_new<S: Real>(seen: &mut HashTable<u64>, position: &[S]) -> bool {
     }
 }
 
-/// Visits, in both directions of each continuous axis, the nearest point to `centre` that is not deleted.
-fn frontier<S: Real>(context: &dyn Context<S>, centre: &mut [S], first_step: S, visit: &mut dyn FnMut(&[S])) {
+/// Visits, in both directions of some continuous axes, the nearest point to `centre` that is not deleted.
+fn frontier<S: Real>(
+    context: &dyn Context<S>,
+    centre: &mut [S],
+    axes: Range<usize>,
+    first_step: S,
+    visit: &mut dyn FnMut(&[S]),
+) {
     let two = S::of(2.0);
-    for (j, axis) in context.space().axes().iter().enumerate() {
+    for j in axes {
+        let axis = &context.space().axes()[j];
         if axis.is_integer() || axis.width() == S::zero() {
             continue;
         }

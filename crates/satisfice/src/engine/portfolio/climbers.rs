@@ -36,11 +36,51 @@ struct Climber<S> {
     stalled: u64,
     patience: u64,
     mutation: Mutation,
-    /// Neighbours not tried yet, in random order, once they are listed.
-    neighbours: Vec<S>,
-    listed: bool,
+    /// The neighbours not tried yet; `None` before they are counted.
+    neighbours: Option<Untried>,
     /// The last move, none from a start.
     last: Option<Move>,
+}
+
+/// Indices in an order drawn at random, each once, without a list of them: steps of a length that has no divisor in common
+/// with their number.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+struct Untried {
+    count: usize,
+    at: usize,
+    stride: usize,
+    left: usize,
+}
+
+impl Untried {
+    fn all(count: usize, rng: &mut SearchRng) -> Self {
+        let mut untried = Self {
+            count,
+            at: 0,
+            stride: 1,
+            left: count,
+        };
+        if count > 2 {
+            untried.at = rng.below(count);
+            untried.stride = 1 + rng.below(count - 1);
+            while common_divisor(untried.stride, count) > 1 {
+                untried.stride = 1 + untried.stride % (count - 1);
+            }
+        }
+        untried
+    }
+
+    /// The next index. A damaged state may give any index below the count.
+    fn next(&mut self) -> Option<usize> {
+        self.left = self.left.checked_sub(1)?;
+        self.at = (self.at % self.count.max(1)).wrapping_add(self.stride) % self.count.max(1);
+        Some(self.at)
+    }
+}
+
+/// The greatest common divisor (Euclid).
+fn common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
 /// Restarted local search by adaptive [`Moves`]: along integer axes, to neighbours that the problem names, and by a
@@ -68,8 +108,7 @@ impl<S: Real> Climbers<S> {
             stalled: 0,
             patience: 0,
             mutation: Mutation::default(),
-            neighbours: Vec::new(),
-            listed: false,
+            neighbours: None,
             last: None,
         };
         Self {
@@ -187,7 +226,7 @@ impl<S: Real> Climbers<S> {
         if fitness <= climber.fitness {
             climber.position.copy_from_slice(position);
             climber.fitness = fitness;
-            climber.listed = false;
+            climber.neighbours = None;
         }
         if (mutated && climber.mutation.sigma < CONVERGED) || climber.stalled > climber.patience {
             climber.running = false;
@@ -205,7 +244,7 @@ impl<S: Real> Climber<S> {
         self.running = true;
         self.stalled = 0;
         self.patience = length * PATIENCE * dimension as u64;
-        self.listed = false;
+        self.neighbours = None;
         self.last = None;
         let (smallest, largest) = FIRST_STEP;
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
@@ -214,21 +253,20 @@ impl<S: Real> Climber<S> {
             .reset(dimension, largest * (smallest / largest).powf(share));
     }
 
-    /// Lists the neighbours of the current point in random order.
-    fn list_neighbours(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) {
-        let dimension = self.position.len();
-        self.listed = true;
-        self.neighbours.clear();
-        context.neighbours(&self.position, &mut |neighbour| {
-            self.neighbours.extend_from_slice(neighbour);
+    /// Moves `position` from the current point to a neighbour not tried yet; a point without one stays where it is, which is no
+    /// improvement.
+    fn to_neighbour(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, position: &mut [S]) {
+        let untried = self.neighbours.get_or_insert_with(|| {
+            let count = context.neighbour_count(&self.position);
+            self.patience = self.patience.max(NEIGHBOUR_PATIENCE * count as u64);
+            Untried::all(count, rng)
         });
-        let count = self.neighbours.len() / dimension;
-        self.patience = self.patience.max(NEIGHBOUR_PATIENCE * count as u64);
-        for i in (1..count).rev() {
-            let other = rng.below(i + 1);
-            for j in 0..dimension {
-                self.neighbours.swap(i * dimension + j, other * dimension + j);
-            }
+        let mut found = false;
+        while !found && let Some(index) = untried.next() {
+            context.neighbours(&self.position, index..index + 1, &mut |_, neighbour| {
+                position.copy_from_slice(neighbour);
+                found = true;
+            });
         }
     }
 
@@ -242,23 +280,13 @@ impl<S: Real> Climber<S> {
     ) {
         let space = context.space();
         let dimension = position.len();
-        let offered = context.offers_neighbours() && !(self.listed && self.neighbours.is_empty());
+        let offered = context.offers_neighbours() && self.neighbours.is_none_or(|untried| untried.left > 0);
         let continuous = integer_axes.len() < dimension;
         let chosen = moves.choose([!integer_axes.is_empty(), offered, continuous], rng);
         self.last = Some(chosen);
         position.copy_from_slice(&self.position);
         match chosen {
-            Move::Neighbour => {
-                if !self.listed {
-                    self.list_neighbours(context, rng);
-                }
-                // A point without neighbours stays where it is, which is no improvement.
-                let rest = self.neighbours.len().saturating_sub(dimension);
-                for (x, &there) in position.iter_mut().zip(&self.neighbours[rest..]) {
-                    *x = there;
-                }
-                self.neighbours.truncate(rest);
-            }
+            Move::Neighbour => self.to_neighbour(context, rng, position),
             Move::Lattice(way) => Moves::along(way, space, integer_axes, rng, position),
             Move::Mutation => {
                 let width = |axis: &crate::Axis<S>| {
@@ -272,5 +300,21 @@ impl<S: Real> Climber<S> {
             }
         }
         space.keep_inside(position);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_index_comes_once() {
+        let mut rng = SearchRng::new(1);
+        for count in (0..60).chain([1000, 1024, 30_030]) {
+            let mut untried = Untried::all(count, &mut rng);
+            let mut all: Vec<usize> = core::iter::from_fn(|| untried.next()).collect();
+            all.sort_unstable();
+            assert!(all.into_iter().eq(0..count), "{count}");
+        }
     }
 }

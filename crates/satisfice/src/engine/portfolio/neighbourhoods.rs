@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 
 use hashbrown::HashTable;
 
-use crate::context::Context;
+use crate::context::{Context, neighbours_at_once};
 use crate::scalar::Real;
 use crate::state::{Reader, Saved, State};
 
@@ -14,8 +14,12 @@ const MEMORY: f64 = 1000.0;
 /// Once so many candidates are known, only hits are expanded: some 60 MB at two axes.
 const MOST: usize = 1 << 20;
 
-/// The count of an entry for an evaluated point whose neighbours are not entered yet.
-const UNEXPANDED: u32 = u32::MAX;
+/// Coordinates of candidates, at most, so that many axes do not take all memory: 128 MB in double precision.
+const MOST_COORDINATES: usize = 1 << 24;
+
+/// The count of an entry for an evaluated point whose neighbours are not entered yet: this bit, and how many
+/// [parts](neighbours_at_once) of them are.
+const UNEXPANDED: u32 = 1 << 31;
 
 /// A neighbour of evaluated points.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
@@ -34,7 +38,7 @@ struct Entry {
     unfitness: u64,
     unage: u64,
     candidate: u32,
-    /// The candidate's count at entry: an entry that a later one has replaced is passed over. Or [`UNEXPANDED`].
+    /// The candidate's count at entry: an entry that a later one has replaced is passed over. Or [`UNEXPANDED`] and a part.
     count: u32,
 }
 
@@ -87,19 +91,32 @@ impl<S: Real> Neighbourhoods<S> {
 
     /// Takes note of an evaluated point, whose neighbours become candidates.
     pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: S, is_hit: bool) {
-        if !is_hit && self.candidates.len() >= MOST {
+        if self.positions.len() >= MOST_COORDINATES || !is_hit && self.candidates.len() >= MOST {
             return;
         }
         let fitness = fitness.f64();
-        if !self.lazy {
-            let prior = self.prior(fitness);
-            context.neighbours(position, &mut |neighbour| self.meet(neighbour, fitness, prior));
-            return;
-        }
         let index = self.index_of(position);
         let candidate = &mut self.candidates[index as usize];
         (candidate.proposed, candidate.sum) = (true, fitness);
-        self.enter(index, f64::midpoint(fitness, self.prior(fitness)), UNEXPANDED);
+        if self.lazy {
+            self.enter(index, f64::midpoint(fitness, self.prior(fitness)), UNEXPANDED);
+        } else {
+            self.expand_part(context, index, position, 0);
+        }
+    }
+
+    /// Makes candidates of a part of the neighbours of an evaluated point, and enters it once more if more are left.
+    fn expand_part(&mut self, context: &dyn Context<S>, index: u32, position: &[S], part: u32) {
+        let fitness = self.candidates[index as usize].sum;
+        let prior = self.prior(fitness);
+        let size = neighbours_at_once(position.len());
+        let start = part as usize * size;
+        context.neighbours(position, start..start + size, &mut |_, neighbour| {
+            self.meet(neighbour, fitness, prior);
+        });
+        if part + 1 < UNEXPANDED && context.neighbour_count(position) > start + size {
+            self.enter(index, f64::midpoint(fitness, prior), UNEXPANDED | (part + 1));
+        }
     }
 
     /// What is expected of a candidate without a neighbour, by a first one.
@@ -164,11 +181,9 @@ impl<S: Real> Neighbourhoods<S> {
             let index = entry.candidate as usize;
             let candidate = &mut self.candidates[index];
             let at = index * dimension..(index + 1) * dimension;
-            if entry.count == UNEXPANDED {
-                let fitness = candidate.sum;
-                let prior = self.prior(fitness);
+            if entry.count & UNEXPANDED != 0 {
                 position.copy_from_slice(&self.positions[at]);
-                context.neighbours(position, &mut |neighbour| self.meet(neighbour, fitness, prior));
+                self.expand_part(context, entry.candidate, position, entry.count & !UNEXPANDED);
             } else if !candidate.proposed && candidate.count == entry.count {
                 candidate.proposed = true;
                 position.copy_from_slice(&self.positions[at]);
