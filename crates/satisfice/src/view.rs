@@ -116,7 +116,11 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
                 }
                 let here = neighbour[j];
                 let one: P::Scalar = num_traits::one();
-                let there = if index % 2 == 0 { here - one } else { here + one };
+                let there = if index.is_multiple_of(2) {
+                    here - one
+                } else {
+                    here + one
+                };
                 if axis.lower() <= there && there < axis.end() {
                     neighbour[j] = there;
                     visit(index, neighbour);

@@ -132,7 +132,11 @@ impl<S: Real> Neighbourhood<Located<S>> for Bowls<S> {
 
     fn neighbour(&self, of: &Located<S>, index: usize) -> Option<Located<S>> {
         let axis = self.space.axes().get(index / 2)?;
-        let step = if index % 2 == 0 { -S::one() } else { S::one() };
+        let step = if index.is_multiple_of(2) {
+            -S::one()
+        } else {
+            S::one()
+        };
         let mut neighbour = of.clone();
         let there = &mut neighbour.coordinates[index / 2];
         *there = *there + step;

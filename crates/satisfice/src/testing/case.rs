@@ -208,7 +208,11 @@ impl<S: Real> Neighbourhood<Located<S>> for Case<S> {
             axis.width() * S::of(0.03)
         };
         let here = of.coordinates[index / 2];
-        let there = if index % 2 == 0 { here - step } else { here + step };
+        let there = if index.is_multiple_of(2) {
+            here - step
+        } else {
+            here + step
+        };
         (axis.lower() <= there && there <= axis.upper()).then(|| {
             let mut neighbour = of.clone();
             neighbour.coordinates[index / 2] = there;

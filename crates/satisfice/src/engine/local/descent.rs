@@ -112,7 +112,7 @@ impl<S: Real> RestartedDescent<S> {
                 if self.current < neighbours {
                     let index = self.current;
                     context.neighbours(&self.point, index..index + 1, &mut |_, neighbour| {
-                        propose(neighbour)
+                        propose(neighbour);
                     });
                 } else {
                     let step = compass_step(
@@ -182,7 +182,7 @@ fn compass_step<S: Real>(space: &Space<S>, point: &mut [S], step: S, index: usiz
         return None;
     }
     let (here, length) = (point[j], step * axis.width());
-    let there = if index % 2 == 0 {
+    let there = if index.is_multiple_of(2) {
         here - length
     } else {
         here + length

@@ -255,7 +255,7 @@ impl<S: Real> Climber<S> {
 
     /// Moves `position` from the current point to a neighbour not tried yet; a point without one stays where it is, which is no
     /// improvement.
-    fn to_neighbour(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, position: &mut [S]) {
+    fn step_to_neighbour(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, position: &mut [S]) {
         let untried = self.neighbours.get_or_insert_with(|| {
             let count = context.neighbour_count(&self.position);
             self.patience = self.patience.max(NEIGHBOUR_PATIENCE * count as u64);
@@ -286,7 +286,7 @@ impl<S: Real> Climber<S> {
         self.last = Some(chosen);
         position.copy_from_slice(&self.position);
         match chosen {
-            Move::Neighbour => self.to_neighbour(context, rng, position),
+            Move::Neighbour => self.step_to_neighbour(context, rng, position),
             Move::Lattice(way) => Moves::along(way, space, integer_axes, rng, position),
             Move::Mutation => {
                 let width = |axis: &crate::Axis<S>| {
