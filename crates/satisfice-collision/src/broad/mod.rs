@@ -3,6 +3,7 @@
 mod boxes;
 mod cells;
 mod clip;
+mod closest;
 mod exact;
 mod features;
 mod frame;
@@ -25,6 +26,8 @@ mod tests;
 
 pub(crate) use boxes::{Box32, Dirty, order_by_median};
 pub(crate) use clip::{BlockBounds, inflate, intersection};
+pub use closest::closest_pairs;
+pub(crate) use closest::{Closest, find_closest};
 pub use features::{FeatureTree, Refit};
 pub(crate) use frame::{exponent, power_of_two};
 pub use pair::Pair;

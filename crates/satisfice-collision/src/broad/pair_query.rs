@@ -3,13 +3,13 @@
 use super::boxes::Dirty;
 use super::features::FeatureTree;
 use super::pair::Pair;
-use super::relative::Relative;
+use super::relative::{Composition, Relative};
 use super::separating_axis::Triangles;
 use super::traverse::{Candidates, Descend, Trees, Visit};
 use super::trees::TreeWork;
 use crate::distance::{self, Threshold, Triangle, TriangleBatch};
 use crate::simd::dispatch;
-use crate::{Error, FeatureKind, Placement};
+use crate::{Error, FeatureKind, Placement, Shape};
 
 /// Which pairs of features count at all; `None` for all of them.
 pub type Keep<'a> = Option<&'a (dyn Fn(u32, u32) -> bool + Sync)>;
@@ -53,7 +53,7 @@ impl PairQuery<'_> {
     /// Brings both trees into one frame: that of the body with the coarser one. `then` is told whether the first of the trees
     /// is `b`.
     pub(crate) fn in_common_frame<R>(&self, then: impl FnOnce(Trees<'_>, bool) -> R) -> R {
-        let ((a, pose_a), (b, pose_b)) = (self.a, self.b);
+        let (a, b) = (self.a.0, self.b.0);
         if self.one_body {
             let filter = &a.frame.filter(self.threshold.get());
             let relative = &Relative::same();
@@ -70,13 +70,14 @@ impl PairQuery<'_> {
             );
         }
         let flip = b.frame.scale > a.frame.scale;
+        let way = self.composition(flip);
         let [moved_a, moved_b] = self.moved;
-        let ((a, pose_a, moved_a), (b, pose_b, moved_b)) = if flip {
-            ((b, pose_b, moved_b), (a, pose_a, moved_a))
+        let ((a, moved_a), (b, moved_b)) = if flip {
+            ((b, moved_b), (a, moved_a))
         } else {
-            ((a, pose_a, moved_a), (b, pose_b, moved_b))
+            ((a, moved_a), (b, moved_b))
         };
-        let (relative, filter) = &Relative::new(&a.frame, pose_a, &b.frame, pose_b, self.threshold.get());
+        let (relative, filter) = &Relative::new(&way, self.threshold.get());
         let moved = [moved_a, moved_b];
         then(
             Trees {
@@ -150,10 +151,24 @@ impl PairQuery<'_> {
 
     /// Whether feature `i` of `a` and feature `j` of `b` are closer than the threshold: the exact decision.
     pub(crate) fn within(&self, i: u32, j: u32) -> bool {
-        let ((a, pose_a), (b, pose_b), threshold) = (self.a, self.b, self.threshold);
-        let a = a.shape(i).map(|p| pose_a.apply(p));
-        let b = b.shape(j).map(|p| pose_b.apply(p));
-        distance::within(&a, &b, threshold)
+        let [a, b] = self.shapes(Pair { a: i, b: j });
+        distance::within(&a, &b, self.threshold)
+    }
+
+    /// The features of a pair in the world.
+    #[inline(always)]
+    pub(crate) fn shapes(&self, Pair { a: i, b: j }: Pair) -> [Shape; 2] {
+        let ((a, pose_a), (b, pose_b)) = (self.a, self.b);
+        [
+            a.shape(i).map(|p| pose_a.apply(p)),
+            b.shape(j).map(|p| pose_b.apply(p)),
+        ]
+    }
+
+    /// How the first body lies in the frame of the second, or the other way round if they are flipped.
+    pub(crate) fn composition(&self, flip: bool) -> Composition {
+        let ((a, pose_a), (b, pose_b)) = if flip { (self.b, self.a) } else { (self.a, self.b) };
+        Composition::new(&a.frame, pose_a, &b.frame, pose_b)
     }
 
     /// Triangle `i` of `a` and triangle `j` of `b` in the world.

@@ -13,30 +13,29 @@ use super::separating_axis::Directions;
 use crate::Placement;
 use crate::simd::Eight;
 
-/// Brings coordinates of one frame into another.
+/// How the frame of one posed body lies in that of another, in `f64`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Relative {
-    matrix: [[f32; 3]; 3],
-    shift: [f32; 3],
-    /// The absolute values of the matrix.
-    absolute: [[f32; 3]; 3],
-    /// Whether this changes nothing.
-    same: bool,
-    turned: bool,
-    /// One over the scale of the matrix.
-    inverse: f32,
+pub(crate) struct Composition {
+    /// A rotation.
+    pub(crate) matrix: [[f64; 3]; 3],
+    /// In the unit of the second frame.
+    pub(crate) shift: [f64; 3],
+    pub(crate) turned: bool,
+    /// The unit of the first frame in that of the second; at most 1.
+    pub(crate) ratio: f64,
+    /// The scale of the second frame.
+    pub(crate) scale: f64,
+    /// The sum of all lengths involved, in the unit of the second frame.
+    pub(crate) lengths: f64,
+    pub(crate) a_half: f64,
+    pub(crate) b_half: f64,
+    pub(crate) a_error: f64,
+    pub(crate) b_error: f64,
 }
 
-impl Relative {
-    /// From the frame `a` of a body at `pose_a` into the frame `b` of one at `pose_b`, and what `f32` distances there say
-    /// about the threshold `delta`. Wants `b.scale <= a.scale`.
-    pub(crate) fn new(
-        a: &Frame,
-        pose_a: &Placement,
-        b: &Frame,
-        pose_b: &Placement,
-        delta: f64,
-    ) -> (Self, Filter) {
+impl Composition {
+    /// From the frame `a` of a body at `pose_a` into the frame `b` of one at `pose_b`. Wants `b.scale <= a.scale`.
+    pub(crate) fn new(a: &Frame, pose_a: &Placement, b: &Frame, pose_b: &Placement) -> Self {
         let (ra, rb) = (pose_a.rotation(), pose_b.rotation());
         let (ta, tb) = (pose_a.translation(), pose_b.translation());
         let ratio = b.scale / a.scale;
@@ -70,22 +69,66 @@ impl Relative {
             .sum::<f64>()
             + a.half * ratio
             + b.half;
-        let c = largest(&shift);
-        let error = b.error
-            + 1.7321 * ratio * a.error
-            + 8.0 * U * (2.0 * ratio * a.half + c)
+        Self {
+            matrix,
+            shift,
+            turned,
+            ratio,
+            scale: b.scale,
+            lengths,
+            a_half: a.half,
+            b_half: b.half,
+            a_error: a.error,
+            b_error: b.error,
+        }
+    }
+}
+
+/// Brings coordinates of one frame into another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Relative {
+    matrix: [[f32; 3]; 3],
+    shift: [f32; 3],
+    /// The absolute values of the matrix.
+    absolute: [[f32; 3]; 3],
+    /// Whether this changes nothing.
+    same: bool,
+    turned: bool,
+    /// One over the scale of the matrix.
+    inverse: f32,
+}
+
+impl Relative {
+    /// From one frame into another, and what `f32` distances there say about the threshold `delta`.
+    pub(crate) fn new(way: &Composition, delta: f64) -> (Self, Filter) {
+        let Composition {
+            turned,
+            ratio,
+            a_half,
+            b_half,
+            lengths,
+            ..
+        } = *way;
+        let c = way.shift.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let error = way.b_error
+            + 1.7321 * ratio * way.a_error
+            + 8.0 * U * (2.0 * ratio * a_half + c)
             + power_of_two(-46) * lengths
             + power_of_two(-140);
-        let scaled = delta * b.scale;
+        let scaled = delta * way.scale;
         // beyond this f32 squares could overflow: let everything pass to the exact decision
         let sane = c < power_of_two(55) && scaled < power_of_two(55) && error.is_finite();
         let error = if sane { error } else { f64::INFINITY };
-        let matrix = matrix.map(|row| row.map(|m| (m * ratio) as f32));
+        let matrix = way.matrix.map(|row| row.map(|m| (m * ratio) as f32));
         let relative = Self {
             matrix,
             absolute: matrix.map(|row| row.map(f32::abs)),
             same: false,
-            shift: if sane { shift.map(|s| s as f32) } else { [0.0; 3] },
+            shift: if sane {
+                way.shift.map(|s| s as f32)
+            } else {
+                [0.0; 3]
+            },
             turned,
             // a matrix of denormal numbers says nothing about directions
             inverse: if ratio > power_of_two(-100) {
@@ -94,7 +137,7 @@ impl Relative {
                 0.0
             },
         };
-        let half = c + 2.0 * (ratio * a.half).max(b.half);
+        let half = c + 2.0 * (ratio * a_half).max(b_half);
         (relative, Filter::new(scaled, error, half))
     }
 

@@ -8,12 +8,12 @@ use super::relative::Relative;
 use crate::simd::{Eight, Lanes, Work};
 
 /// A group of one tree against a group of the other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Visit {
-    level_a: u8,
-    level_b: u8,
-    a: u32,
-    b: u32,
+    pub(super) level_a: u8,
+    pub(super) level_b: u8,
+    pub(super) a: u32,
+    pub(super) b: u32,
 }
 
 impl Visit {
@@ -72,7 +72,7 @@ impl Trees<'_> {
 
     /// Which pairs of the lanes of two groups count: bit `8 i + j` speaks of lane `i` of the first and `j` of the second.
     #[inline(always)]
-    fn wanted(&self, at: Visit) -> u64 {
+    pub(super) fn wanted(&self, at: Visit) -> u64 {
         let (lanes_a, lanes_b) = (self.a.lanes(at.level_a, at.a), self.b.lanes(at.level_b, at.b));
         let row = 0xff >> (8 - lanes_b);
         let mut wanted = (row * 0x0101_0101_0101_0101) & (u64::MAX >> (64 - 8 * lanes_a));
@@ -211,7 +211,7 @@ fn leaves<L: Lanes, C: Candidates>(
 
 /// The next pair of lanes of a mask that is not 0, which loses it.
 #[inline(always)]
-fn next(mask: &mut u64) -> (usize, usize) {
+pub(super) fn next(mask: &mut u64) -> (usize, usize) {
     let at = mask.trailing_zeros() as usize & 63;
     *mask &= *mask - 1;
     (at >> 3, at & 7)

@@ -18,6 +18,13 @@ pub struct Threshold {
 }
 
 impl Threshold {
+    /// The largest there is.
+    pub(crate) const LARGEST: Self = Self {
+        delta: f64::MAX,
+        squared_below: f64::MAX,
+        squared_above: f64::INFINITY,
+    };
+
     /// `delta`, in the unit of the coordinates.
     ///
     /// # Errors

@@ -5,6 +5,9 @@
 //! depth. A new body goes down to the child that grows least, and a full node is split along its longest axis. Rebuilding
 //! orders the bodies as [`BoxTree`](crate::broad) does and fills every node.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use crate::Aabb;
 use crate::broad::{Box32, exponent, order_by_median, power_of_two};
 
@@ -99,6 +102,19 @@ fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
     })
 }
 
+impl Box32 {
+    /// The bits of the squared distance of two boxes, which are ordered as the numbers are; 0 where there is none.
+    fn gap(&self, other: &Self) -> u32 {
+        let side = |k: usize| {
+            (other.min[k] - self.max[k])
+                .max(self.min[k] - other.max[k])
+                .max(0.0)
+        };
+        let square: f32 = (0..3).map(|k| side(k) * side(k)).sum();
+        if square.is_finite() { square.to_bits() } else { 0 }
+    }
+}
+
 /// The tree. Bodies are named by their slots.
 #[derive(Default)]
 pub(super) struct BodyTree {
@@ -190,12 +206,14 @@ impl BodyTree {
         };
     }
 
-    /// A box in the frame, rounded outwards: at least one step further than the rounded value.
+    /// A box in the frame, rounded outwards: at least one step further than the rounded value. It is finite, so that an empty lane
+    /// never overlaps it; what lies beyond the range of `f32` lies on its end.
     fn place(&self, bounds: &Aabb) -> Box32 {
         let at = |c: f64, k: usize| ((c - self.origin[k]) * self.scale) as f32;
+        let within = |c: f32| c.clamp(f32::MIN, f32::MAX);
         Box32 {
-            min: std::array::from_fn(|k| at(bounds.min[k], k).next_down()),
-            max: std::array::from_fn(|k| at(bounds.max[k], k).next_up()),
+            min: std::array::from_fn(|k| within(at(bounds.min[k], k).next_down())),
+            max: std::array::from_fn(|k| within(at(bounds.max[k], k).next_up())),
         }
     }
 
@@ -395,6 +413,84 @@ impl BodyTree {
                 }
             }
         }
+    }
+
+    /// Visits pairs of bodies, those with the least gap between their boxes first, as long as the gap is at most what the last visit
+    /// returned.
+    pub(super) fn closest_pairs<E>(
+        &self,
+        mut reach: f64,
+        mut visit: impl FnMut(u32, u32) -> Result<f64, E>,
+    ) -> Result<(), E> {
+        // of equal gaps, the pair nearest to the bodies first: few wait
+        let mut open: BinaryHeap<Reverse<(u32, u32, u32, u32)>> = BinaryHeap::new();
+        if let Some(root) = self.root {
+            open.push(Reverse((0, self.nodes[root as usize].level + 1, root, root)));
+        }
+        while let Some(Reverse((gap, height, a, b))) = open.pop() {
+            if self.way(gap) > reach {
+                return Ok(());
+            }
+            if height == 0 {
+                reach = visit(a, b)?;
+                continue;
+            }
+            let (one, two) = (&self.nodes[a as usize], &self.nodes[b as usize]);
+            for (lane, child) in one.children() {
+                let first = if a == b {
+                    lane + usize::from(height == 1)
+                } else {
+                    0
+                };
+                let bounds = one.lane_box(lane);
+                for (other, partner) in two.children().filter(|&(other, _)| other >= first) {
+                    let gap = bounds.gap(&two.lane_box(other));
+                    if self.way(gap) <= reach {
+                        open.push(Reverse((gap, height - 1, child, partner)));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Visits bodies, those with the least gap between their boxes and `bounds` first, as long as the gap is at most what the last
+    /// visit returned. The visitor is told a lower bound of their distance.
+    pub(super) fn nearest_to<E>(
+        &self,
+        bounds: &Aabb,
+        mut visit: impl FnMut(u32, f64) -> Result<f64, E>,
+    ) -> Result<(), E> {
+        let b = self.place(bounds);
+        let mut reach = f64::INFINITY;
+        let mut open: BinaryHeap<Reverse<(u32, u32, u32)>> = BinaryHeap::new();
+        if let Some(root) = self.root {
+            open.push(Reverse((0, self.nodes[root as usize].level + 1, root)));
+        }
+        while let Some(Reverse((gap, height, at))) = open.pop() {
+            if self.way(gap) > reach {
+                return Ok(());
+            }
+            if height == 0 {
+                reach = visit(at, self.way(gap))?;
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            for (lane, child) in node.children() {
+                let gap = node.lane_box(lane).gap(&b);
+                if self.way(gap) <= reach {
+                    open.push(Reverse((gap, height - 1, child)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A lower bound of the distance that belongs to a gap.
+    fn way(&self, gap: u32) -> f64 {
+        // the subtraction, the squares, the sums and the root round; what underflows proves nothing
+        let gap = f64::from(f32::from_bits(gap)).sqrt() - 1e-22;
+        (gap * (1.0 - 1e-6)).max(0.0) / self.scale
     }
 
     /// Whether the box with which a body was put into the tree still holds `bounds`.

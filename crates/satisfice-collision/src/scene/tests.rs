@@ -6,6 +6,7 @@ use crate::broad::Method;
 use crate::distance::{PairKind, Point, Threshold};
 use crate::{Error, Placement, generate, oracle};
 
+mod queries;
 mod referee;
 mod script;
 mod steady;

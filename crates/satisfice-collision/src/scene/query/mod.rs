@@ -1,4 +1,10 @@
-//! Questions that need not know every contact: which bodies touch, the first contact, the closest ones.
+//! Questions that need not know every contact: which bodies touch, and the first contact; in files of their own, the closest pairs
+//! and distances, what is in a box, and what a ray meets first.
+
+mod closest;
+mod region;
+
+pub use closest::NearestFeature;
 
 use std::collections::BTreeSet;
 
@@ -6,8 +12,7 @@ use super::filter::Filter;
 use super::pairs::Status;
 use super::{BodyId, Completeness, Contact, World};
 use crate::Error;
-use crate::broad::{Pair, Watch, inflate, intersection};
-use crate::distance::{Proximity, Threshold};
+use crate::broad::{Pair, Watch};
 
 /// Visits of a tree between two looks at the watch.
 pub(super) const VISITS: usize = 4096;
@@ -107,63 +112,6 @@ impl World {
         Ok((None, completeness(watch)))
     }
 
-    /// The `k` closest contacts with their distances, by distance, then by number; fewer if there are fewer. Looks at a small
-    /// part of the threshold first and widens it only while too few are found.
-    ///
-    /// # Errors
-    /// As [`World::update`].
-    pub fn closest(&mut self, k: usize) -> Result<Vec<(Contact, Proximity)>, Error> {
-        Ok(self.closest_watched(k, &Watch::none())?.0)
-    }
-
-    /// The same until `stop` says so: then the closest of what was found, and [`Completeness::Unknown`].
-    ///
-    /// # Errors
-    /// As [`World::update`].
-    pub fn closest_until(
-        &mut self,
-        k: usize,
-        stop: Stop<'_>,
-    ) -> Result<(Vec<(Contact, Proximity)>, Completeness), Error> {
-        self.closest_watched(k, &Watch::until(stop))
-    }
-
-    fn closest_watched(
-        &mut self,
-        k: usize,
-        watch: &Watch<'_>,
-    ) -> Result<(Vec<(Contact, Proximity)>, Completeness), Error> {
-        let records = self.by_bodies();
-        let whole = self.threshold;
-        let mut found = Vec::new();
-        for part in [64.0, 16.0, 4.0, 1.0] {
-            let Ok(threshold) = Threshold::new(whole.get() / part) else {
-                continue;
-            };
-            if found.len() >= k || watch.stopped() {
-                break;
-            }
-            // Closer ones are found again, unless there is no time for it.
-            for &record in &records {
-                let pairs = self.within(record, threshold, watch)?;
-                found.extend(
-                    pairs
-                        .into_iter()
-                        .map(|pair| self.contact(&self.pairs[record], pair)),
-                );
-            }
-            found.sort_unstable();
-            found.dedup();
-        }
-        let mut closest = Vec::with_capacity(found.len());
-        for contact in found {
-            closest.push((contact, self.proximity(contact)?));
-        }
-        closest.sort_by(|(a, p), (b, q)| p.distance.total_cmp(&q.distance).then(a.cmp(b)));
-        closest.truncate(k);
-        Ok((closest, completeness(watch)))
-    }
-
     /// The records of the present frame in the order of their bodies.
     pub(super) fn by_bodies(&mut self) -> Vec<u32> {
         self.settle();
@@ -206,27 +154,5 @@ impl World {
             }
         }
         Ok(found.into_iter().min())
-    }
-
-    /// All pairs of a record within a threshold of its own, or as many as the watch has time for; nothing remembered.
-    fn within(&mut self, record: u32, threshold: Threshold, watch: &Watch<'_>) -> Result<Vec<Pair>, Error> {
-        let bodies = self.pairs[record].bodies;
-        let [a, b] = bodies;
-        let boxes = [a, b].map(|slot| self.state(slot).bounds);
-        let apart = a != b && intersection(&boxes[0], &inflate(&boxes[1], threshold.get())).is_none();
-        if watch.stopped() || apart {
-            return Ok(Vec::new());
-        }
-        self.ensure_trees(bodies)?;
-        let mut spaces = std::mem::take(&mut self.workspaces);
-        let (one, two) = (self.state(a), self.state(b));
-        let filter = Filter::new(self.kind, one, two, a == b);
-        let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-        let pairs = match self.pair_query(bodies, threshold, &filter, &keep) {
-            Some(query) => spaces[0].join.all(&query, watch).to_vec(),
-            None => Vec::new(),
-        };
-        self.workspaces = spaces;
-        Ok(pairs)
     }
 }
