@@ -15,7 +15,7 @@ use super::Point;
 use super::candidates::edges;
 use super::vector::{exponent, ldexp};
 
-type Vector = [IBig; 3];
+pub(super) type Vector = [IBig; 3];
 
 /// The closest pair of points.
 #[derive(Debug, Clone)]
@@ -220,15 +220,15 @@ fn is_inside(steps: &[IBig], split: usize, unit: &IBig) -> bool {
             .all(|part| part.iter().fold(IBig::ZERO, |sum, step| sum + step) < *unit)
 }
 
-fn sub(p: &Vector, q: &Vector) -> Vector {
+pub(super) fn sub(p: &Vector, q: &Vector) -> Vector {
     [&p[0] - &q[0], &p[1] - &q[1], &p[2] - &q[2]]
 }
 
-fn dot(p: &Vector, q: &Vector) -> IBig {
+pub(super) fn dot(p: &Vector, q: &Vector) -> IBig {
     &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2]
 }
 
-fn cross(p: &Vector, q: &Vector) -> Vector {
+pub(super) fn cross(p: &Vector, q: &Vector) -> Vector {
     [
         &p[1] * &q[2] - &p[2] * &q[1],
         &p[2] * &q[0] - &p[0] * &q[2],
@@ -237,7 +237,7 @@ fn cross(p: &Vector, q: &Vector) -> Vector {
 }
 
 /// The exponent of the lowest bit set in any of the numbers; 0 if all are 0.
-fn common_unit(numbers: impl Iterator<Item = f64>) -> i32 {
+pub(super) fn common_unit(numbers: impl Iterator<Item = f64>) -> i32 {
     numbers
         .filter(|&x| x != 0.0)
         .map(|x| mantissa(x).1)
@@ -267,7 +267,7 @@ fn integer(x: f64, unit: i32) -> IBig {
     IBig::from(mantissa) << (exponent - unit) as usize
 }
 
-fn integers(points: &[Point], unit: i32) -> Vec<Vector> {
+pub(super) fn integers(points: &[Point], unit: i32) -> Vec<Vector> {
     points.iter().map(|p| p.map(|x| integer(x, unit))).collect()
 }
 
@@ -284,7 +284,7 @@ fn weights(part: Part<'_>, steps: &[IBig], unit: &IBig) -> [f64; 3] {
 }
 
 /// `numerator / denominator` in double precision, both positive, the quotient at most 1.
-fn ratio(numerator: &IBig, denominator: &IBig) -> f64 {
+pub(super) fn ratio(numerator: &IBig, denominator: &IBig) -> f64 {
     let (_, numerator) = numerator.clone().into_parts();
     let (_, denominator) = denominator.clone().into_parts();
     let (quotient, shift) = long_quotient(numerator, &denominator, 1);

@@ -34,6 +34,7 @@ pub mod edge_edge;
 pub mod edge_triangle;
 mod exact;
 mod extended;
+pub(crate) mod first_point;
 mod frame;
 mod gjk;
 mod kernel;

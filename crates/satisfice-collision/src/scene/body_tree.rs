@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::Aabb;
-use crate::broad::{Box32, exponent, order_by_median, power_of_two};
+use crate::broad::{Box32, Slabs, exponent, order_by_median, power_of_two};
 
 /// Marks an empty lane, and the parent of the root.
 const NONE: u32 = u32::MAX;
@@ -480,6 +480,39 @@ impl BodyTree {
                 let gap = node.lane_box(lane).gap(&b);
                 if self.way(gap) <= reach {
                     open.push(Reverse((gap, height - 1, child)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Visits the bodies whose boxes a segment meets, in the order in which it enters them, as long as the part of the way until
+    /// then is at most what the last visit returned.
+    pub(super) fn along<E>(
+        &self,
+        segment: [[f64; 3]; 2],
+        mut visit: impl FnMut(u32) -> Result<f64, E>,
+    ) -> Result<(), E> {
+        let local = |p: [f64; 3]| std::array::from_fn(|k| (p[k] - self.origin[k]) * self.scale);
+        let slabs = Slabs::new(segment.map(local), 0.0);
+        let mut bound = 1.0;
+        let mut open: BinaryHeap<Reverse<(u64, u32, u32)>> = BinaryHeap::new();
+        if let Some(root) = self.root {
+            open.push(Reverse((0, self.nodes[root as usize].level + 1, root)));
+        }
+        while let Some(Reverse((entry, height, at))) = open.pop() {
+            if f64::from_bits(entry) > bound {
+                return Ok(());
+            }
+            if height == 0 {
+                bound = visit(at)?;
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            for (lane, child) in node.children() {
+                let Box32 { min, max } = node.lane_box(lane);
+                if let Some(entry) = slabs.entry(min, max) {
+                    open.push(Reverse((entry.to_bits(), height - 1, child)));
                 }
             }
         }

@@ -57,11 +57,7 @@ impl<'a> Filter<'a> {
         let (kind_a, kind_b) = self.kind.features();
         let corners_a = self.a.corners_of(kind_a, pair.a);
         let corners_b = self.b.corners_of(kind_b, pair.b);
-        let counts = |state: &State, corners: &[u32; 3]| {
-            let counted = state.counted.as_ref();
-            counted.is_none_or(|counted| corners.iter().all(|&v| counted[v as usize]))
-        };
-        if !counts(self.a, &corners_a) || !counts(self.b, &corners_b) {
+        if !self.a.counts(kind_a, pair.a) || !self.b.counts(kind_b, pair.b) {
             self.filtered.fetch_add(1, Ordering::Relaxed);
             return false;
         }

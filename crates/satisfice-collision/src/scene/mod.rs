@@ -47,7 +47,7 @@ pub use body::{Body, BodyId, Motion};
 pub use changes::{BodyChange, Change, ChangeKind};
 pub use contact::{Completeness, Contact, Frame, Update};
 pub use pass::Pass;
-pub use query::NearestFeature;
+pub use query::{NearestFeature, RayHit};
 pub use shared_mesh::SharedMesh;
 pub use skips::Skips;
 

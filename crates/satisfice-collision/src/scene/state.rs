@@ -161,6 +161,16 @@ impl State {
         self.mesh.mesh().features(kind).corners(feature)
     }
 
+    /// Whether a feature counts: whether all of its vertices do.
+    pub(super) fn counts(&self, kind: FeatureKind, feature: u32) -> bool {
+        let counted = self.counted.as_ref();
+        counted.is_none_or(|counted| {
+            self.corners_of(kind, feature)
+                .iter()
+                .all(|&v| counted[v as usize])
+        })
+    }
+
     /// How far no vertex of a rigid body is from where it is in another placement.
     pub(super) fn away_from(&self, placement: &Placement) -> f64 {
         match *placement == self.placement {

@@ -194,11 +194,7 @@ impl World {
         let (_, kind) = self.feature_kinds();
         self.state_mut(slot).ensure_tree(kind)?;
         let state = self.state(slot);
-        let counts = |_: u32, feature: u32| {
-            let counted = state.counted.as_ref();
-            let mut corners = state.corners_of(kind, feature).into_iter();
-            counted.is_none_or(|counted| corners.all(|v| counted[v as usize]))
-        };
+        let counts = |_: u32, feature: u32| state.counts(kind, feature);
         if let Some(tree) = state.tree(kind) {
             let query = PairQuery {
                 a: (&probe.tree, &Placement::IDENTITY),

@@ -2,9 +2,11 @@
 //! and distances, what is in a box, and what a ray meets first.
 
 mod closest;
+mod ray;
 mod region;
 
 pub use closest::NearestFeature;
+pub use ray::RayHit;
 
 use std::collections::BTreeSet;
 

@@ -278,3 +278,114 @@ fn a_stopped_search_for_the_closest() {
         (10, crate::scene::Completeness::Proved)
     );
 }
+
+/// The first hit by trying every triangle with fractions that never round.
+fn first_by_trying(posed: &[(BodyId, Mesh)], from: [f64; 3], to: [f64; 3]) -> Option<(BodyId, u32)> {
+    let mut best: Option<(BodyId, u32, f64)> = None;
+    for (id, mesh) in posed {
+        for t in 0..mesh.triangles().len() {
+            let triangle = mesh.triangle(t);
+            if distance::edge_triangle::proximity(&[from, to], &triangle).distance != 0.0 {
+                continue;
+            }
+            // far from parallel rays only: the crossing with the plane
+            let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| p[k] - q[k]);
+            let ([a, b, c], way) = (triangle, minus(to, from));
+            let (x, y) = (minus(b, a), minus(c, a));
+            let normal = [0, 1, 2].map(|k| x[(k + 1) % 3] * y[(k + 2) % 3] - x[(k + 2) % 3] * y[(k + 1) % 3]);
+            let dot = |p: [f64; 3]| (0..3).map(|k| normal[k] * p[k]).sum::<f64>();
+            let part = dot(minus(a, from)) / dot(way);
+            if best.is_none_or(|(.., least)| part < least - 1e-9) {
+                best = Some((*id, t as u32, part));
+            }
+        }
+    }
+    best.map(|(id, t, _)| (id, t))
+}
+
+#[test]
+fn rays_meet_what_brute_force_finds_first() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(12);
+    let mut counts = [0; 2];
+    for seed in 0..4 {
+        let mut stage = stage(PairKind::VertexVertex, 50 + seed);
+        for round in 0..60 {
+            let mut point = |size: f64| [(); 3].map(|()| size * (rng.random::<f64>() - 0.5));
+            let (from, mut through) = (point(9.0), point(6.0));
+            if round % 3 > 0 {
+                let (_, mesh) = &stage.posed[round % stage.posed.len()];
+                through = Shape::Triangle(mesh.triangle(round % 7)).middle();
+            }
+            let to = [0, 1, 2].map(|k| from[k] + 1.7 * (through[k] - from[k]));
+            let hit = stage.world.cast_ray(from, to).unwrap();
+            let expected = first_by_trying(&stage.posed, from, to);
+            assert_eq!(
+                hit.map(|hit| (hit.body, hit.triangle)),
+                expected,
+                "{from:?} {to:?}"
+            );
+            counts[usize::from(hit.is_some())] += 1;
+            if let Some(hit) = hit {
+                assert!(hit.part >= 0.0 && hit.part <= 1.0);
+                let nearest = stage.world.distance_to_point(hit.body, hit.point).unwrap();
+                assert!(nearest.is_some());
+                // others only: not this one
+                let other = stage
+                    .world
+                    .cast_ray_where(from, to, |body| body != hit.body)
+                    .unwrap();
+                assert!(other.is_none_or(|other| other.body != hit.body && other.part >= hit.part));
+            }
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 20), "{counts:?}");
+}
+
+/// No ray from the inside gets out, however exactly it is aimed at an edge or a vertex, wherever the body is.
+#[test]
+fn closed_bodies_are_watertight() {
+    let ball = generate::icosphere(1.0, 2).unwrap();
+    for (scale, at) in [
+        (1.0, [0.0; 3]),
+        (1e-3, [700.0, -3.0, 0.1]),
+        (1e8, [1.0, 2e8, 3.0]),
+    ] {
+        let mesh = scaled(&ball, scale);
+        let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.1).unwrap());
+        let id = world.add(Body::rigid(mesh.clone())).unwrap();
+        let turned = Placement::from_axis_angle([0.3, 1.0, 0.2], 0.4)
+            .unwrap()
+            .moved(at)
+            .unwrap();
+        world.place(id, turned).unwrap();
+        let posed = turned.place(&mesh).unwrap();
+        let aims = posed.edges().iter().map(|&[a, b]| {
+            let (p, q) = (posed.vertex(a), posed.vertex(b));
+            [0, 1, 2].map(|k| p[k] / 2.0 + q[k] / 2.0)
+        });
+        for aim in aims.chain(posed.vertices().iter().copied()) {
+            let beyond = [0, 1, 2].map(|k| at[k] + 3.0 * (aim[k] - at[k]));
+            let hit = world.cast_ray(at, beyond).unwrap().unwrap();
+            assert!((hit.part - 1.0 / 3.0).abs() < 0.02, "{hit:?}");
+            assert!(
+                world
+                    .cast_ray(at, [0, 1, 2].map(|k| at[k] + 0.9 * (aim[k] - at[k])))
+                    .unwrap()
+                    .is_none()
+            );
+        }
+        // exactly through a vertex, from a point whose coordinates need not be rounded: one of its triangles, the first one
+        let vertex = posed.vertex(7);
+        let hit = world.cast_ray(vertex, vertex).unwrap().unwrap();
+        let around = (0..)
+            .zip(posed.triangles())
+            .find(|(_, corners)| corners.contains(&7));
+        assert_eq!(
+            (hit.triangle, hit.part, hit.point),
+            (around.unwrap().0, 0.0, vertex)
+        );
+    }
+    let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.1).unwrap());
+    assert!(world.cast_ray([0.0; 3], [1.0; 3]).unwrap().is_none());
+    assert!(world.cast_ray([0.0; 3], [1.0, f64::INFINITY, 0.0]).is_err());
+}
