@@ -67,7 +67,7 @@ where
 {
     Ok(Box::new(Built {
         problem: P::from_params(params)?,
-        parameters: Settings::typed(&params.texts(), P::PARAMETERS),
+        parameters: params.texts().into_iter().collect(),
         pairs,
     }))
 }

@@ -3,8 +3,7 @@
 use core::ops::ControlFlow;
 
 use satisfice::{
-    Archive, Checkpoint, Completeness, Counts, Identity, Observer, Real, Report, RunOptions,
-    SatisficingProblem, Search, StopReason, TracePoint,
+    Checkpoint, Observer, Report, RunOptions, SatisficingProblem, Search, StopReason, TracePoint,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -12,7 +11,7 @@ use serde::de::DeserializeOwned;
 use crate::checkpoint::{self, Saved, SavedRun};
 use crate::control::{Progress, RunControl};
 use crate::error::Error;
-use crate::report::{Best, RunReport, Slice, Solution};
+use crate::report::RunReport;
 use crate::spec::RunSpec;
 
 /// Runs `spec` on `problem`, whatever problem `spec` names; for problems with a name see
@@ -30,7 +29,12 @@ where
     let spec = spec.complete()?;
     let reports = run_slices(problem, &spec, &mut control)?;
     // Threads do not change a report, and JSON does not keep them.
-    write_up(problem, RunSpec { threads: 1, ..spec }, &reports)
+    let spec = RunSpec { threads: 1, ..spec };
+    let mut report = RunReport::of_slices(spec, &reports, serde_json::to_value)?;
+    if report.spec.budget.slices == 1 {
+        report.slices.clear();
+    }
+    Ok(report)
 }
 
 fn run_slices<P>(
@@ -134,116 +138,4 @@ impl<T> Observer<T> for Watcher<'_, '_> {
         }
         ControlFlow::Continue(())
     }
-}
-
-/// The hits of all slices, each at the evaluation and time that found it first, counted from the start of the first slice;
-/// the trace of that union; and each slice by itself.
-fn unite<T: Identity + Clone>(reports: &[Report<T>]) -> (Archive<T>, Vec<TracePoint>, Vec<Slice>) {
-    let (mut all, mut trace, mut slices) = (Archive::default(), Vec::new(), Vec::new());
-    let (mut evaluations, mut seconds) = (0, 0.0);
-    for report in reports {
-        let before = all.len();
-        for hit in report.hits() {
-            all.insert(
-                hit.solution.clone(),
-                hit.fitness,
-                evaluations + hit.evaluation,
-                seconds + hit.seconds,
-            );
-        }
-        trace.extend(report.trace.iter().map(|point| TracePoint {
-            evaluations: evaluations + point.evaluations,
-            elapsed_seconds: seconds + point.elapsed_seconds,
-            hits: all.found_by(evaluations + point.evaluations) as u64,
-        }));
-        slices.push(Slice {
-            counts: report.counts,
-            elapsed_seconds: report.elapsed.as_secs_f64(),
-            overshoot_seconds: report.overshoot.as_secs_f64(),
-            stop_reason: report.stop_reason,
-            hits: report.hit_count() as u64,
-            new_hits: (all.len() - before) as u64,
-            completeness: report.completeness,
-        });
-        evaluations += report.counts.evaluations;
-        seconds += report.elapsed.as_secs_f64();
-    }
-    (all, trace, slices)
-}
-
-/// The least fitness of all slices, at its evaluation counted from the start of the first slice.
-fn best<T: Serialize>(reports: &[Report<T>]) -> Result<Option<Best>, Error> {
-    let (mut evaluations, mut least) = (0, None);
-    for report in reports {
-        if let Some(best) = report.best()
-            && least.is_none_or(|(least, _): (&satisfice::Best<T>, u64)| best.fitness < least.fitness)
-        {
-            least = Some((best, evaluations + best.evaluation));
-        }
-        evaluations += report.counts.evaluations;
-    }
-    least
-        .map(|(best, evaluation)| {
-            Ok(Best {
-                solution: serde_json::to_value(&best.solution)?,
-                fitness: best.fitness,
-                evaluation,
-            })
-        })
-        .transpose()
-}
-
-fn sum(slices: &[Slice]) -> Counts {
-    slices.iter().fold(Counts::default(), |mut sum, slice| {
-        sum += slice.counts;
-        sum
-    })
-}
-
-fn write_up<P>(problem: &P, spec: RunSpec, reports: &[Report<P::Solution>]) -> Result<RunReport, Error>
-where
-    P: SatisficingProblem,
-    P::Solution: Serialize,
-{
-    let (all, trace, slices) = unite(reports);
-    let solutions = all
-        .iter()
-        .map(|hit| {
-            Ok(Solution {
-                solution: serde_json::to_value(hit.solution)?,
-                fitness: hit.fitness,
-                evaluation: hit.evaluation,
-                seconds: hit.seconds,
-            })
-        })
-        .collect::<Result<Vec<_>, Error>>()?;
-    let threshold = problem.threshold().f64();
-    let mut report = RunReport {
-        scalar: P::Scalar::NAME.to_owned(),
-        threshold: threshold.is_finite().then_some(threshold),
-        counts: sum(&slices),
-        elapsed_seconds: slices.iter().map(|slice| slice.elapsed_seconds).sum(),
-        overshoot_seconds: slices.iter().map(|slice| slice.overshoot_seconds).sum(),
-        hits: all.len() as u64,
-        best: best(reports)?,
-        trace,
-        solutions,
-        ..RunReport::new(spec)
-    };
-    if let Some(first) = reports.first() {
-        report.probe_share = first.probe_share;
-        report.version.clone_from(&first.version);
-    }
-    if let (Some(last), Some(slice)) = (reports.last(), slices.last()) {
-        report.stop_reason = slice.stop_reason;
-        // A slice that has covered the space is the last one.
-        if slice.completeness == Completeness::Proved {
-            report.completeness = Completeness::Proved;
-        }
-        report.set_unseen(last.unseen.as_ref(), report.hits - last.hit_count() as u64);
-    }
-    if report.spec.budget.slices > 1 {
-        report.slices = slices;
-    }
-    Ok(report)
 }

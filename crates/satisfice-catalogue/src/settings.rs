@@ -1,7 +1,7 @@
 //! Parameters as a report keeps them: names with typed values, in the order of their table.
 
 use indexmap::IndexMap;
-use satisfice::catalogue::{ParamKind, Parameter};
+use satisfice::catalogue::ParamValue;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -11,23 +11,6 @@ use serde_json::Value;
 pub struct Settings(IndexMap<String, Value>);
 
 impl Settings {
-    /// From texts, typed by the rows of `table` with the same names; a name without a row stays text.
-    #[must_use]
-    pub fn typed(texts: &[(String, String)], table: &[Parameter]) -> Self {
-        let typed = |(name, text): &(String, String)| {
-            let row = table.iter().find(|row| row.name == name);
-            let value = match row.map(|row| row.kind) {
-                Some(ParamKind::Integer { .. }) => text.parse::<i64>().ok().map(Value::from),
-                Some(ParamKind::Real { .. } | ParamKind::OptionalReal { .. }) => {
-                    text.parse::<f64>().ok().map(Value::from)
-                }
-                Some(ParamKind::Choice { .. } | ParamKind::Text { .. }) | None => None,
-            };
-            (name.clone(), value.unwrap_or_else(|| Value::String(text.clone())))
-        };
-        Self(texts.iter().map(typed).collect())
-    }
-
     /// Names and values, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, &Value)> {
         self.0.iter().map(|(name, value)| (name.as_str(), value))
@@ -64,14 +47,16 @@ impl Settings {
     }
 }
 
+/// From texts; those that are numbers become numbers.
 impl FromIterator<(String, String)> for Settings {
     fn from_iter<I: IntoIterator<Item = (String, String)>>(texts: I) -> Self {
-        Self(
-            texts
-                .into_iter()
-                .map(|(name, text)| (name, Value::String(text)))
-                .collect(),
-        )
+        let typed = |text: &str| match ParamValue::of(text) {
+            ParamValue::Integer(value) => Value::from(value),
+            ParamValue::Real(value) => Value::from(value),
+            ParamValue::Text(text) => Value::String(text),
+        };
+        let typed = |(name, text): (String, String)| (name, typed(&text));
+        Self(texts.into_iter().map(typed).collect())
     }
 }
 
@@ -79,18 +64,12 @@ impl FromIterator<(String, String)> for Settings {
 mod tests {
     use super::*;
 
-    const TABLE: &[Parameter] = &[
-        Parameter::integer("n", "queens", 8, 4, 20),
-        Parameter::real("delta", "threshold", 1e-9, 0.0, 1.0),
-        Parameter::text("mesh", "a file", ""),
-    ];
-
     #[test]
     fn numbers_are_numbers_and_come_back() {
-        let texts = [("n", "6"), ("delta", "0.1"), ("mesh", "7")].map(|(n, t)| (n.to_owned(), t.to_owned()));
-        let settings = Settings::typed(&texts, TABLE);
+        let texts = [("n", "6"), ("delta", "0.1"), ("mesh", "07")].map(|(n, t)| (n.to_owned(), t.to_owned()));
+        let settings: Settings = texts.iter().cloned().collect();
         let json = serde_json::to_string(&settings).unwrap();
-        assert_eq!(json, r#"{"n":6,"delta":0.1,"mesh":"7"}"#);
+        assert_eq!(json, r#"{"n":6,"delta":0.1,"mesh":"07"}"#);
         let back: Settings = serde_json::from_str(&json).unwrap();
         assert_eq!(back, settings);
         assert_eq!(back.texts(), texts);

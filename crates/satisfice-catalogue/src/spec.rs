@@ -165,8 +165,7 @@ impl RunSpec {
             satisfice::catalogue::Params::with(&[], &self.engine, pairs(&texts))?;
         } else {
             let built = self.configured_engine::<f64>()?;
-            let table = engine::find(&self.engine)?.parameters();
-            self.engine_parameters = Settings::typed(&built.parameters(), table);
+            self.engine_parameters = built.parameters().into_iter().collect();
             self.engine = built.name().to_owned();
         }
         Ok(self)

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use satisfice::Completeness;
 use satisfice_catalogue::RunReport;
-use satisfice_catalogue::report::Solution;
+use satisfice_catalogue::report::FoundSolution;
 
 /// The number of hits shown; all of them are in the JSON report.
 const SHOWN: usize = 5;
@@ -16,7 +16,7 @@ pub(crate) fn summary(report: &RunReport) -> String {
 }
 
 /// The summary of a report, with a function that formats its solutions.
-pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&Solution) -> String) -> String {
+pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> String) -> String {
     let mut text = format!(
         "{} by {}, seed {}\n",
         report.spec.problem, report.spec.engine, report.spec.seed

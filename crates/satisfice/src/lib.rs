@@ -46,7 +46,7 @@ pub use error::Error;
 pub use identity::{Identity, Located};
 pub use observer::Observer;
 pub use problem::{SatisficingProblem, from_fn};
-pub use report::{Completeness, Counts, Report, TracePoint};
+pub use report::{Completeness, Counts, Report, RunReport, TracePoint};
 pub use scalar::Real;
 pub use search::{Checkpoint, RunOptions, Search, Stepper};
 pub use seed::SearchRng;

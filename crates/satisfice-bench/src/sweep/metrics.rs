@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use satisfice_catalogue::RunReport;
-use satisfice_catalogue::report::{Solution, recall};
+use satisfice_catalogue::report::{FoundSolution, recall};
 
 /// Evaluations, seconds and hits at a moment of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -59,7 +59,7 @@ impl Metrics {
     )]
     pub fn of(report: &RunReport, at_evaluations: &[u64], at_seconds: &[f64], alone: bool) -> Self {
         let found = &report.solutions;
-        let cost = |hit: &Solution| Cost {
+        let cost = |hit: &FoundSolution| Cost {
             evaluations: hit.evaluation,
             seconds: alone.then_some(hit.seconds),
         };
@@ -84,7 +84,7 @@ impl Metrics {
             .time
             .map_or(0.0, |time| time.as_secs_f64())
             .max(report.elapsed_seconds);
-        let area = |cost: &dyn Fn(&Solution) -> f64, whole: f64| {
+        let area = |cost: &dyn Fn(&FoundSolution) -> f64, whole: f64| {
             let all = report.reference_hits.filter(|&all| all > 0 && whole > 0.0)? as f64;
             Some(
                 found

@@ -3,7 +3,7 @@
 use satisfice::{Completeness, StopReason};
 
 use super::Mismatch;
-use crate::report::{RunReport, Slice};
+use crate::report::{RunReport, SliceReport};
 
 /// Checks everything that can be checked without the problem.
 #[must_use]
@@ -173,7 +173,7 @@ fn slices(report: &RunReport, wrong: &mut Vec<Mismatch>) {
             format!("at most {}", report.spec.budget.slices),
         ));
     }
-    let sum = |part: fn(&Slice) -> u64| {
+    let sum = |part: fn(&SliceReport) -> u64| {
         report
             .slices
             .iter()

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::Mismatch;
-use crate::report::{RunReport, Solution};
+use crate::report::{FoundSolution, RunReport};
 
 /// Two evaluations of one solution may differ by this much of delta, or of F where that is greater: mathematical
 /// functions are rounded differently on different platforms.
@@ -102,7 +102,7 @@ pub const LISTED_BEFORE: &str = "a solution that is not listed before";
 pub fn solutions_by(
     report: &RunReport,
     threshold: f64,
-    mut evaluate: impl FnMut(&Solution) -> Result<f64, String>,
+    mut evaluate: impl FnMut(&FoundSolution) -> Result<f64, String>,
 ) -> Vec<Mismatch> {
     let mut mismatches = Vec::new();
     if report.threshold != threshold.is_finite().then_some(threshold) {

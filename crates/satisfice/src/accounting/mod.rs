@@ -223,6 +223,15 @@ impl<T> Ledger<T> {
         self.trace.push(point);
     }
 
+    /// Enters into the last point of the trace the hits that were inserted after it at the same evaluation, by an exchange.
+    pub(crate) fn correct_trace(&mut self) {
+        if let Some(last) = self.trace.last_mut()
+            && last.evaluations == self.counts.evaluations
+        {
+            last.hits = self.archive.len() as u64;
+        }
+    }
+
     /// Closes the accounts with a last point of the trace; returns the time taken and the overshoot.
     pub(crate) fn close(&mut self) -> (Duration, Duration) {
         self.alarm = None;

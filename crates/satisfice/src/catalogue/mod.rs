@@ -8,11 +8,13 @@ use crate::problem::SatisficingProblem;
 mod description;
 mod parameter;
 mod params;
+mod value;
 
 pub use description::Description;
 pub use parameter::{ParamKind, Parameter};
 pub use params::Params;
-pub(crate) use params::Value;
+pub use value::ParamValue;
+pub(crate) use value::as_map;
 
 /// A problem that a command line can name and build from parameters.
 pub trait Catalogued: SatisficingProblem + Sized {

@@ -1,6 +1,6 @@
 //! One parameter: name, summary, allowed values and default.
 
-use super::params::Value;
+use super::value::ParamValue;
 use crate::error::Error;
 
 /// The values that a parameter takes.
@@ -159,23 +159,23 @@ impl Parameter {
     }
 
     /// Parses and checks a value.
-    pub(crate) fn parse(&self, text: &str) -> Result<Value, Error> {
+    pub(crate) fn parse(&self, text: &str) -> Result<ParamValue, Error> {
         let bad = || Error::parameter(self.name, text, self.allowed());
         match self.kind {
             ParamKind::Integer { min, max, .. } => {
                 let value = text.parse::<i64>().ok().or_else(|| whole(text)).ok_or_else(bad)?;
                 if (min..=max).contains(&value) {
-                    Ok(Value::Integer(value))
+                    Ok(ParamValue::Integer(value))
                 } else {
                     Err(bad())
                 }
             }
-            ParamKind::OptionalReal { .. } if text == Self::AUTO => Ok(Value::Text(text.to_owned())),
+            ParamKind::OptionalReal { .. } if text == Self::AUTO => Ok(ParamValue::Text(text.to_owned())),
             ParamKind::Real { min, max, .. } | ParamKind::OptionalReal { min, max } => {
                 let value = text.parse::<f64>().map_err(|_| bad())?;
                 // NaN is in no range.
                 if (min..=max).contains(&value) {
-                    Ok(Value::Real(value))
+                    Ok(ParamValue::Real(value))
                 } else {
                     Err(bad())
                 }
@@ -183,11 +183,11 @@ impl Parameter {
             ParamKind::Choice { of, .. } => of
                 .iter()
                 .find(|&&word| word == text)
-                .map(|word| Value::Text((*word).to_owned()))
+                .map(|word| ParamValue::Text((*word).to_owned()))
                 .ok_or_else(|| {
                     Error::unknown(&format!("value of `{}`", self.name), text, of.iter().copied())
                 }),
-            ParamKind::Text { .. } => Ok(Value::Text(text.to_owned())),
+            ParamKind::Text { .. } => Ok(ParamValue::Text(text.to_owned())),
         }
     }
 }

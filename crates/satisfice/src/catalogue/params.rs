@@ -1,24 +1,8 @@
 //! Parameters of one problem: a value for each row of its table.
 
 use super::parameter::Parameter;
+use super::value::ParamValue;
 use crate::error::Error;
-
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Value {
-    Integer(i64),
-    Real(f64),
-    Text(String),
-}
-
-impl core::fmt::Display for Value {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Integer(value) => write!(f, "{value}"),
-            Self::Real(value) => write!(f, "{value}"),
-            Self::Text(value) => write!(f, "{value}"),
-        }
-    }
-}
 
 /// A value for every row of a table, each within its range.
 ///
@@ -33,7 +17,7 @@ impl core::fmt::Display for Value {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Params {
     table: &'static [Parameter],
-    values: Vec<Value>,
+    values: Vec<ParamValue>,
 }
 
 impl Params {
@@ -84,7 +68,7 @@ impl Params {
             .collect()
     }
 
-    fn value(&self, name: &str) -> &Value {
+    fn value(&self, name: &str) -> &ParamValue {
         // The code that reads a value stands beside its table: a wrong name is a mistake in the program, and a test builds
         // every registered table.
         let index = self.table.iter().position(|row| row.name == name);
@@ -98,7 +82,7 @@ impl Params {
     #[must_use]
     pub fn integer(&self, name: &str) -> i64 {
         match self.value(name) {
-            Value::Integer(value) => *value,
+            ParamValue::Integer(value) => *value,
             other => panic!("`{name}` is no whole number: {other}"),
         }
     }
@@ -119,7 +103,7 @@ impl Params {
     #[must_use]
     pub fn real(&self, name: &str) -> f64 {
         match self.value(name) {
-            Value::Real(value) => *value,
+            ParamValue::Real(value) => *value,
             other => panic!("`{name}` is no real number: {other}"),
         }
     }
@@ -131,8 +115,8 @@ impl Params {
     #[must_use]
     pub fn optional_real(&self, name: &str) -> Option<f64> {
         match self.value(name) {
-            Value::Real(value) => Some(*value),
-            Value::Text(text) if text == Parameter::AUTO => None,
+            ParamValue::Real(value) => Some(*value),
+            ParamValue::Text(text) if text == Parameter::AUTO => None,
             other => panic!("`{name}` is no optional number: {other}"),
         }
     }
@@ -144,7 +128,7 @@ impl Params {
     #[must_use]
     pub fn text(&self, name: &str) -> &str {
         match self.value(name) {
-            Value::Text(value) => value,
+            ParamValue::Text(value) => value,
             other => panic!("`{name}` is no text: {other}"),
         }
     }

@@ -116,6 +116,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
     /// Exchanges hits, and begins the next round or ends the search of the lanes.
     pub(super) fn between_rounds(&mut self, lanes: &mut [RunningLane<S, T>], observer: &mut dyn Observer<T>) {
         let over = self.exchange(lanes, observer);
+        self.common.ledger.correct_trace();
         let stops = || lanes.iter().map(|lane| lane.slice.ledger.stop);
         let covered = stops().any(|stop| stop == Some(StopReason::Covered));
         if over || covered || stops().all(|stop| stop.is_some()) {

@@ -390,15 +390,11 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Ok(running)
     }
 
-    /// Name and parameters of the engine, and the number of lanes if there are several.
+    /// Name and parameters of the engine.
     fn description(&self) -> Description {
-        let mut parameters = self.engine.parameters();
-        if self.islands > 1 {
-            parameters.push(("islands".to_owned(), self.islands.to_string()));
-        }
         Description {
             name: self.engine.name().to_owned(),
-            parameters,
+            parameters: self.engine.parameters(),
         }
     }
 
@@ -424,8 +420,11 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             engine: self.description(),
             scalar: P::Scalar::NAME.to_owned(),
             seed: self.seed,
+            islands: self.islands,
             slice: self.slices - 1,
             budget: slice.ledger.budget,
+            threshold: Some(problem.threshold().f64()).filter(|threshold| threshold.is_finite()),
+            requested_probe_share: self.probes,
             probe_share: slice.probes.share(),
             stop_reason,
             counts,

@@ -2,7 +2,7 @@
 
 use core::ops::RangeInclusive;
 
-use crate::catalogue::{ParamKind, Parameter, Value};
+use crate::catalogue::{ParamKind, ParamValue, Parameter};
 use crate::error::Error;
 
 /// A type that a field of an engine's settings may have: `usize`, `u64`, `f64`, `Option<f64>`, `bool`, or an enum declared by
@@ -41,7 +41,7 @@ macro_rules! counts {
             fn read(row: &Parameter, text: &str) -> Result<Self, Error> {
                 let not_allowed = || Error::parameter(row.name, text, row.allowed());
                 match row.parse(text)? {
-                    Value::Integer(value) => value.try_into().map_err(|_| not_allowed()),
+                    ParamValue::Integer(value) => value.try_into().map_err(|_| not_allowed()),
                     _ => Err(not_allowed()),
                 }
             }
@@ -68,7 +68,7 @@ impl Setting for f64 {
 
     fn read(row: &Parameter, text: &str) -> Result<Self, Error> {
         match row.parse(text)? {
-            Value::Real(value) => Ok(value),
+            ParamValue::Real(value) => Ok(value),
             _ => Err(Error::parameter(row.name, text, row.allowed())),
         }
     }
@@ -89,7 +89,7 @@ impl Setting for Option<f64> {
 
     fn read(row: &Parameter, text: &str) -> Result<Self, Error> {
         Ok(match row.parse(text)? {
-            Value::Real(value) => Some(value),
+            ParamValue::Real(value) => Some(value),
             _ => None,
         })
     }

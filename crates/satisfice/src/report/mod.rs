@@ -1,5 +1,10 @@
 //! What a slice found, and everything that is needed to replay it.
 
+mod json;
+mod run_report;
+
+pub use run_report::{FoundSolution, RunReport, SliceReport, recall};
+
 use core::time::Duration;
 use std::sync::Arc;
 
@@ -66,11 +71,20 @@ impl core::ops::AddAssign for Counts {
 }
 
 /// The result of one time slice: plain data.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-#[serde(bound(
-    serialize = "T: serde::Serialize",
-    deserialize = "T: serde::Deserialize<'de> + crate::Identity"
-))]
+///
+/// With serde it has the keys of a [`RunReport`], which are those of the command's `--json`. Reading needs a format that
+/// describes itself, such as JSON.
+///
+/// ```
+/// use satisfice::{from_fn, Budget, Search, Space};
+/// let problem = from_fn(Space::lattice(2, 50)?, 3.0, |x: &[f64]| x[0] + x[1]);
+/// let report = Search::new().run(&problem, &Budget::evaluations(2_000))?;
+/// let json = serde_json::to_value(&report)?;
+/// assert_eq!((&json["hits"], &json["evaluations"]), (&6.into(), &2_000.into()));
+/// assert!(json["solutions"][0]["fitness"].as_f64() < Some(3.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
 pub struct Report<T> {
     /// The problem and its parameters.
     pub problem: Description,
@@ -80,12 +94,17 @@ pub struct Report<T> {
     pub scalar: String,
     /// The seed.
     pub seed: u64,
+    /// The number of lanes.
+    pub islands: usize,
     /// Which slice of the search this was, from 0.
     pub slice: u64,
     /// The budget.
     pub budget: Budget,
+    /// delta: a hit is F < delta. `None` where it is infinite.
+    pub threshold: Option<f64>,
+    /// The share of probes that was asked for; `None` if it was left to the engine.
+    pub requested_probe_share: Option<f64>,
     /// The share of the evaluations spent on uniform probes.
-    #[serde(default)]
     pub probe_share: f64,
     /// Why it ended.
     pub stop_reason: StopReason,
@@ -98,10 +117,8 @@ pub struct Report<T> {
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
     /// An estimate of how many hits are missing; `None` if nothing was probed or proved.
-    #[serde(default)]
     pub unseen: Option<Unseen>,
     /// The least fitness evaluated, and where; `None` if no fitness was finite.
-    #[serde(default = "Option::default")]
     pub best: Option<Best<T>>,
     /// Hits at fixed evaluation counts (about ten a decade) and, under a time budget, at each hundredth of it.
     pub trace: Vec<TracePoint>,
@@ -131,9 +148,8 @@ impl<T> Report<T> {
 
     /// The share of `reference` hits that were found; `None` for a reference of 0.
     #[must_use]
-    #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub fn recall(&self, reference: u64) -> Option<f64> {
-        (reference > 0).then(|| self.archive.len() as f64 / reference as f64)
+        recall(self.archive.len() as u64, reference)
     }
 }
 
