@@ -103,13 +103,17 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         indices: Range<usize>,
         visit: &mut dyn FnMut(usize, &[P::Scalar]),
     ) {
+        let axes = self.problem.space().axes();
+        let indices = indices.start..indices.end.min(2 * axes.len());
+        if !indices.clone().any(|index| axes[index / 2].is_integer()) {
+            return;
+        }
         self.with_scratch(position, |scratch| {
             let neighbour = &mut scratch.values;
-            let axes = self.problem.space().axes();
             for (axis, x) in axes.iter().zip(&mut *neighbour) {
                 *x = axis.position(axis.value(*x));
             }
-            for index in indices.start..indices.end.min(2 * axes.len()) {
+            for index in indices {
                 let (j, axis) = (index / 2, &axes[index / 2]);
                 if !axis.is_integer() {
                     continue;

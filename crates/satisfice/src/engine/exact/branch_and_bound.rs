@@ -9,7 +9,7 @@ use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::Region;
+use crate::space::{Region, Space};
 use crate::state::{Reader, Saved, State};
 use crate::{engine_choice, engine_settings};
 
@@ -37,8 +37,9 @@ engine_settings! {
     ///   touches it, or where the problem does not say what a hit covers, regions shrink to `resolution`; those that no later hit
     ///   covers are given up, and the engine ends with [`Ask::Exhausted`], completeness `Unknown`.
     ///
-    /// Draws no random numbers. Memory: `regions` times 2 D numbers and about 60 bytes; deeper regions are then processed depth first,
-    /// so nothing is lost. Source: Land, Doig 1960, doi 10.2307/1910129.
+    /// Draws no random numbers. Memory: `regions` times 2 D numbers and about 60 bytes, but at most 2^25 numbers; deeper regions are then
+    /// processed depth first, in as much memory again. Only a lattice of thousands of axes has no room for that: regions that do not fit
+    /// are given up after one point inside, and completeness is `Unknown`. Source: Land, Doig 1960, doi 10.2307/1910129.
     pub struct BranchAndBound {
         /// An integer region of at most this many points is enumerated.
         pub leaf: usize = 32, 1..=1 << 20;
@@ -86,6 +87,8 @@ impl EngineConfig for BranchAndBound {
 const SILENCE: u32 = 64;
 /// So many points of a region are looked at for one that is not in C.
 const ATTEMPTS: u64 = 4;
+/// Coordinates of regions in best-first order, at most, and of those that are processed depth first: 256 MB each.
+const MOST_COORDINATES: usize = 1 << 25;
 /// Regions split in one `ask` at most, so that the clock is looked at.
 const WORK: usize = 64;
 
@@ -144,8 +147,18 @@ impl<S: Real> RegionSearch<S> {
             index,
             region,
         };
+        let room = MOST_COORDINATES / (2 * space.dimension());
+        if self.best_first.len() >= self.regions.min(room)
+            && self.depth_first.len() + self.proposed.len() >= room
+        {
+            self.given_up = true;
+            let mut point = node.inner_point(space, 0);
+            space.positions(&mut point);
+            out.push(&point);
+            return;
+        }
         if node.cardinality(space).is_some() {
-            self.keep(node);
+            self.keep(space, node);
             return;
         }
         for attempt in 0..ATTEMPTS {
@@ -157,11 +170,11 @@ impl<S: Real> RegionSearch<S> {
                 return;
             }
         }
-        self.keep(node);
+        self.keep(space, node);
     }
 
-    fn keep(&mut self, node: Node<S>) {
-        if self.best_first.len() < self.regions {
+    fn keep(&mut self, space: &Space<S>, node: Node<S>) {
+        if self.best_first.len() < self.regions.min(MOST_COORDINATES / (2 * space.dimension())) {
             self.best_first.push(node);
         } else {
             self.depth_first.push(node);
@@ -236,7 +249,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         }
     }
 
-    fn tell(&mut self, _: &dyn Context<S>, _: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+    fn tell(&mut self, context: &dyn Context<S>, _: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin != Origin::Engine {
             return;
         }
@@ -244,7 +257,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
             node.guide = outcomes
                 .get(place)
                 .map_or(S::infinity(), |outcome| outcome.fitness());
-            self.keep(node);
+            self.keep(context.space(), node);
         }
     }
 

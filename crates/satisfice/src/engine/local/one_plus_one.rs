@@ -1,7 +1,8 @@
 //! The (1+1) evolution strategy with covariance adaptation: a rotation-invariant local search, one candidate at a time.
 //!
 //! Igel, Suttorp, Hansen 2006, doi 10.1145/1143997.1144082, with the update of the Cholesky factor and of its inverse in
-//! O(D^2) of Suttorp, Hansen, Igel 2009, doi 10.1007/s10994-009-5102-1; constants as published there.
+//! O(D^2) of Suttorp, Hansen, Igel 2009, doi 10.1007/s10994-009-5102-1; constants as published there. In many dimensions only the
+//! variances are adapted, in O(D), at the rate of Ros, Hansen 2008, doi 10.1007/978-3-540-87700-4_30.
 
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -12,6 +13,9 @@ const TARGET: f64 = 2.0 / 11.0;
 const STALL: f64 = 0.44;
 const SMOOTHING: f64 = 1.0 / 12.0;
 
+/// In more dimensions than this, A is diagonal: two full matrices would take 16 D^2 bytes and every step 2 D^2 operations.
+const FULL: usize = 200;
+
 /// The mutation distribution sigma A N(0, I), in units of the axes' widths.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(in crate::engine) struct Mutation {
@@ -19,7 +23,7 @@ pub(in crate::engine) struct Mutation {
     pub(in crate::engine) sigma: f64,
     success: f64,
     path: Vec<f64>,
-    /// A and its inverse, row by row.
+    /// A and its inverse, row by row; or A's diagonal, and nothing.
     factor: Vec<f64>,
     inverse: Vec<f64>,
     /// The last draw of N(0, I) and A times it.
@@ -37,8 +41,13 @@ impl Mutation {
             vector.clear();
             vector.resize(dimension, 0.0);
         }
+        self.factor.clear();
+        self.inverse.clear();
+        if dimension > FULL {
+            self.factor.resize(dimension, 1.0);
+            return;
+        }
         for matrix in [&mut self.factor, &mut self.inverse] {
-            matrix.clear();
             matrix.resize(dimension * dimension, 0.0);
             for diagonal in matrix.iter_mut().step_by(dimension + 1) {
                 *diagonal = 1.0;
@@ -46,7 +55,7 @@ impl Mutation {
         }
     }
 
-    /// Adds a mutation, `widths` times the draw, to a position. Cost: O(D^2).
+    /// Adds a mutation, `widths` times the draw, to a position. Cost: O(D^2), or O(D) with variances only.
     pub(in crate::engine) fn apply<S: Real>(
         &mut self,
         rng: &mut SearchRng,
@@ -56,15 +65,25 @@ impl Mutation {
         for z in &mut self.draw {
             *z = rng.normal();
         }
-        for (row, step) in self.factor.chunks_exact(self.dimension).zip(&mut self.step) {
-            *step = row.iter().zip(&self.draw).map(|(a, z)| a * z).sum();
+        if self.is_diagonal() {
+            for ((step, a), z) in self.step.iter_mut().zip(&self.factor).zip(&self.draw) {
+                *step = a * z;
+            }
+        } else {
+            for (row, step) in self.factor.chunks_exact(self.dimension).zip(&mut self.step) {
+                *step = row.iter().zip(&self.draw).map(|(a, z)| a * z).sum();
+            }
         }
         for ((x, width), &step) in position.iter_mut().zip(widths).zip(&self.step) {
             *x = *x + width * S::of(self.sigma * step);
         }
     }
 
-    /// Adapts to whether the last mutation was a success. Cost: O(D^2) for a success, O(1) else.
+    fn is_diagonal(&self) -> bool {
+        self.dimension > FULL
+    }
+
+    /// Adapts to whether the last mutation was a success. Cost: that of [`apply`](Self::apply) for a success, O(1) else.
     pub(in crate::engine) fn adapt(&mut self, succeeded: bool) {
         let n = self.dimension as f64;
         self.success += SMOOTHING * (f64::from(u8::from(succeeded)) - self.success);
@@ -72,7 +91,8 @@ impl Mutation {
         if !succeeded {
             return;
         }
-        let (path_rate, rate) = (2.0 / (n + 2.0), 2.0 / (n * n + 6.0));
+        let faster = if self.is_diagonal() { (n + 2.0) / 3.0 } else { 1.0 };
+        let (path_rate, rate) = (2.0 / (n + 2.0), faster * 2.0 / (n * n + 6.0));
         let keep = if self.success < STALL {
             let weight = (path_rate * (2.0 - path_rate)).sqrt();
             for (p, s) in self.path.iter_mut().zip(&self.step) {
@@ -85,7 +105,13 @@ impl Mutation {
             }
             1.0 - rate + rate * path_rate * (2.0 - path_rate)
         };
-        self.update_factor(keep, rate);
+        if self.is_diagonal() {
+            for (a, p) in self.factor.iter_mut().zip(&self.path) {
+                *a = (keep * *a * *a + rate * p * p).sqrt();
+            }
+        } else {
+            self.update_factor(keep, rate);
+        }
     }
 
     /// A A^T := keep A A^T + rate p p^T, in A and in its inverse.
@@ -164,6 +190,25 @@ mod tests {
             4,
         );
         assert!(sphere < 600 && ridge < 6 * sphere, "{sphere} {ridge}");
+    }
+
+    /// Ros, Hansen 2008: the variances of the full update, at (n + 2) / 3 times its rate.
+    #[test]
+    fn many_dimensions_adapt_their_variances() {
+        let n = FULL + 1;
+        let mut mutation = Mutation::default();
+        mutation.reset(n, 1.0);
+        let mut y = vec![0.0_f64; n];
+        mutation.apply(&mut SearchRng::new(9), core::iter::repeat(1.0), &mut y);
+        mutation.adapt(true);
+        let d = n as f64;
+        let cc = 2.0 / (d + 2.0);
+        let ccov = 2.0 / (d * d + 6.0) * (d + 2.0) / 3.0;
+        for (a, y) in mutation.factor.iter().zip(&y) {
+            let expected = (1.0 - ccov) + ccov * cc * (2.0 - cc) * y * y;
+            approx::assert_relative_eq!(a * a, expected, max_relative = 1e-12);
+        }
+        assert_eq!((mutation.factor.len(), mutation.inverse.len()), (n, 0));
     }
 
     #[test]

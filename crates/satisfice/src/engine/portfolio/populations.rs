@@ -19,6 +19,8 @@ const FIRST_STEP: (f64, f64) = (0.003, 0.3);
 const CONVERGED: f64 = 1e-14;
 /// A population is hopeless where what is still lacking to delta is so many times what its members differ by.
 const HOPELESS: f64 = 1e4;
+/// Matrices have 320 kB at most.
+const MOST_AXES: usize = 200;
 /// The largest population: tags count its members.
 const LARGEST: usize = 1 << 12;
 
@@ -66,9 +68,11 @@ impl<S: Real> Populations<S> {
         }
     }
 
-    /// Populations are of use on continuous axes only.
+    /// Populations are of use on continuous axes only, and not on so many that a matrix would take more than a few steps' worth
+    /// of memory and time.
     pub(super) fn begin(&mut self, context: &dyn Context<S>) {
-        let continuous = context.space().axes().iter().all(|axis| !axis.is_integer());
+        let axes = context.space().axes();
+        let continuous = axes.len() <= MOST_AXES && axes.iter().all(|axis| !axis.is_integer());
         self.populations.clear();
         let idle = Population {
             running: false,

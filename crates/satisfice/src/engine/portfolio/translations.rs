@@ -5,10 +5,13 @@
 //! trial wherever hits repeat or lie on a manifold.
 
 use crate::scalar::Real;
-use crate::space::Space;
+use crate::space::{Axis, Space};
 
-/// At most so many steps are kept.
+/// At most so many steps are kept, unit steps included, but always [`FEWEST`] learned ones.
 const MOST: usize = 128;
+const FEWEST: usize = 16;
+/// Coordinates of learned steps, at most, where that leaves room for four: 8 MB.
+const MOST_COORDINATES: usize = 1 << 20;
 /// Past trials of a step are halved at this number, so that its rate follows the search.
 const MEMORY: f64 = 400.0;
 
@@ -25,6 +28,9 @@ struct Step {
 /// not O(hits x steps).
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Translations<S> {
+    /// The integer axes. Two steps for each come first, back and forth; they are not stored as vectors.
+    units: Vec<usize>,
+    /// The learned steps' vectors.
     vectors: Vec<S>,
     steps: Vec<Step>,
 }
@@ -32,22 +38,33 @@ pub(super) struct Translations<S> {
 impl<S: Real> Translations<S> {
     /// The unit steps along the integer axes, hopeful: one hit in two trials.
     pub(super) fn new(space: &Space<S>) -> Self {
-        let mut all = Self {
-            vectors: Vec::new(),
-            steps: Vec::new(),
+        let units: Vec<usize> = (0..space.dimension())
+            .filter(|&j| space.axes()[j].is_integer())
+            .collect();
+        let hopeful = Step {
+            trials: 2.0,
+            hits: 1.0,
+            cursor: 0,
         };
-        for j in (0..space.dimension()).filter(|&j| space.axes()[j].is_integer()) {
-            for unit in [-S::one(), S::one()] {
-                all.vectors
-                    .extend((0..space.dimension()).map(|i| if i == j { unit } else { S::zero() }));
-                all.steps.push(Step {
-                    trials: 2.0,
-                    hits: 1.0,
-                    cursor: 0,
-                });
-            }
+        Self {
+            steps: vec![hopeful; 2 * units.len()],
+            units,
+            vectors: Vec::new(),
         }
-        all
+    }
+
+    /// The axis and the length of unit step `index`; `None` for a learned one.
+    #[inline]
+    fn unit(&self, index: usize) -> Option<(usize, S)> {
+        let axis = *self.units.get(index / 2)?;
+        Some((
+            axis,
+            if index.is_multiple_of(2) {
+                -S::one()
+            } else {
+                S::one()
+            },
+        ))
     }
 
     /// A new list of hits begins.
@@ -79,7 +96,13 @@ impl<S: Real> Translations<S> {
             return false;
         };
         self.steps[index].cursor += 1;
-        let vector = &self.vectors[index * dimension..(index + 1) * dimension];
+        if let Some((axis, step)) = self.unit(index) {
+            position.copy_from_slice(hit);
+            position[axis] = position[axis] + step;
+            return true;
+        }
+        let learned = index - 2 * self.units.len();
+        let vector = &self.vectors[learned * dimension..(learned + 1) * dimension];
         for ((x, &h), &v) in position.iter_mut().zip(hit).zip(vector) {
             *x = h + v;
         }
@@ -101,21 +124,33 @@ impl<S: Real> Translations<S> {
     /// Learns a step that has just led to a hit, and its reverse.
     pub(super) fn learn(&mut self, vector: &[S], space: &Space<S>) {
         let dimension = vector.len();
+        let units = 2 * self.units.len();
+        let most = MOST
+            .saturating_sub(units)
+            .max(FEWEST)
+            .min((MOST_COORDINATES / dimension).max(4));
+        // On continuous axes, steps between hits differ a little where they mean the same.
+        let tolerance = |axis: &Axis<S>| {
+            if axis.is_integer() {
+                S::of(0.5)
+            } else {
+                S::of(5e-4) * axis.width()
+            }
+        };
+        let mut moved = (0..dimension).filter(|&j| vector[j].abs() > tolerance(&space.axes()[j]));
+        if let (Some(j), None) = (moved.next(), moved.next())
+            && space.axes()[j].is_integer()
+            && vector[j].abs() == S::one()
+        {
+            return;
+        }
         for sign in [S::one(), -S::one()] {
             let same = |known: &[S]| {
                 known
                     .iter()
                     .zip(vector)
                     .zip(space.axes())
-                    .all(|((&k, &v), axis)| {
-                        // On continuous axes, steps between hits differ a little where they mean the same.
-                        let tolerance = if axis.is_integer() {
-                            S::of(0.5)
-                        } else {
-                            S::of(5e-4) * axis.width()
-                        };
-                        (k - sign * v).abs() <= tolerance
-                    })
+                    .all(|((&k, &v), axis)| (k - sign * v).abs() <= tolerance(axis))
             };
             if self.vectors.chunks_exact(dimension).any(same) {
                 continue;
@@ -126,16 +161,17 @@ impl<S: Real> Translations<S> {
                 hits: 0.5,
                 cursor: 0,
             };
-            if self.steps.len() < MOST {
+            if self.steps.len() - units < most {
                 self.vectors.extend(signed);
                 self.steps.push(step);
                 continue;
             }
             let rate = |step: &Step| (step.hits + 0.1) / (step.trials + 1.0);
-            let worst = (0..MOST).min_by(|&a, &b| rate(&self.steps[a]).total_cmp(&rate(&self.steps[b])));
+            let learned = units..self.steps.len();
+            let worst = learned.min_by(|&a, &b| rate(&self.steps[a]).total_cmp(&rate(&self.steps[b])));
             if let Some(worst) = worst {
                 self.steps[worst] = step;
-                for (old, new) in self.vectors[worst * dimension..].iter_mut().zip(signed) {
+                for (old, new) in self.vectors[(worst - units) * dimension..].iter_mut().zip(signed) {
                     *old = new;
                 }
             }
