@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use std::ops::Range;
+
 use satisfice::engine::{Ask, BoundedSwarms, Descent, EngineConfig, NichingPsoDbscan, Origin, Pso, Spso2011};
 use satisfice::space::Region;
 use satisfice::{Axis, Batch, Boundary, Context, Engine, Outcome, SearchRng, Space};
@@ -28,9 +30,10 @@ impl Context<f64> for Plain {
     fn is_deleted(&self, _: &[f64]) -> bool {
         false
     }
-    fn neighbours(&self, _: &[f64], _: &mut dyn FnMut(&[f64])) -> bool {
-        false
+    fn neighbour_count(&self, of: &[f64]) -> usize {
+        2 * of.len() // all of them empty
     }
+    fn neighbours(&self, _: &[f64], _: Range<usize>, _: &mut dyn FnMut(usize, &[f64])) {}
     fn offers_neighbours(&self) -> bool {
         false
     }
