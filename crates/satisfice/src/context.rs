@@ -66,9 +66,9 @@ pub trait Context<S: Real> {
     fn previous_hit(&self, index: usize, position: &mut [S]) -> bool;
 }
 
-/// How many neighbours an engine takes at a time, so that it looks at the clock in between: 256 in most spaces, fewer where
+/// How many points an engine works on at a time, so that it looks at the clock in between: 256 in most spaces, fewer where
 /// each has more than a thousand coordinates.
-pub(crate) fn neighbours_at_once(dimension: usize) -> usize {
+pub(crate) fn points_at_once(dimension: usize) -> usize {
     const COORDINATES: usize = 1 << 18;
     (COORDINATES / dimension.max(1)).clamp(1, 256)
 }

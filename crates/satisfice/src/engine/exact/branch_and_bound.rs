@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 
 use super::region_tree::{Node, Split, Splitter};
 use crate::batch::{Batch, Outcome};
-use crate::context::Context;
+use crate::context::{Context, points_at_once};
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
@@ -89,8 +89,6 @@ const SILENCE: u32 = 64;
 const ATTEMPTS: u64 = 4;
 /// Coordinates of regions in best-first order, at most, and of those that are processed depth first: 256 MB each.
 const MOST_COORDINATES: usize = 1 << 25;
-/// Regions split in one `ask` at most, so that the clock is looked at.
-const WORK: usize = 64;
 
 /// The engine of [`BranchAndBound`].
 #[derive(Debug)]
@@ -229,7 +227,8 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
             self.started = true;
             self.enter(context, context.space().region(), S::neg_infinity(), out);
         }
-        for _ in 0..WORK {
+        // Few enough that the clock is looked at.
+        for _ in 0..(points_at_once(context.space().dimension()) / 4).max(1) {
             let next = self.depth_first.pop().or_else(|| self.best_first.pop());
             let Some(node) = next else { break };
             self.open(context, node, out);

@@ -8,7 +8,7 @@ use foldhash::fast::FixedState;
 use hashbrown::HashTable;
 
 use crate::batch::{Batch, Outcome};
-use crate::context::{Context, neighbours_at_once};
+use crate::context::{Context, points_at_once};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::state::{Part, Reader, Saved, State};
@@ -85,7 +85,7 @@ impl<S: Real> Flood<S> {
                 }
             };
             let count = context.neighbour_count(&self.centre);
-            let end = (count + dimension).min(self.next.saturating_add(neighbours_at_once(dimension)));
+            let end = (count + dimension).min(self.next.saturating_add(points_at_once(dimension)));
             let neighbours = self.next..end.min(count);
             if !neighbours.is_empty() {
                 context.neighbours(&self.centre, neighbours, &mut |_, position| propose(position));

@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 
 use hashbrown::HashTable;
 
-use crate::context::{Context, neighbours_at_once};
+use crate::context::{Context, points_at_once};
 use crate::scalar::Real;
 use crate::state::{Reader, Saved, State};
 
@@ -18,7 +18,7 @@ const MOST: usize = 1 << 20;
 const MOST_COORDINATES: usize = 1 << 24;
 
 /// The count of an entry for an evaluated point whose neighbours are not entered yet: this bit, and how many
-/// [parts](neighbours_at_once) of them are.
+/// [parts](points_at_once) of them are.
 const UNEXPANDED: u32 = 1 << 31;
 
 /// A neighbour of evaluated points.
@@ -109,7 +109,7 @@ impl<S: Real> Neighbourhoods<S> {
     fn expand_part(&mut self, context: &dyn Context<S>, index: u32, position: &[S], part: u32) {
         let fitness = self.candidates[index as usize].sum;
         let prior = self.prior(fitness);
-        let size = neighbours_at_once(position.len());
+        let size = points_at_once(position.len());
         let start = part as usize * size;
         context.neighbours(position, start..start + size, &mut |_, neighbour| {
             self.meet(neighbour, fitness, prior);
