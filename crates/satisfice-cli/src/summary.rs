@@ -9,10 +9,25 @@ use satisfice_catalogue::report::FoundSolution;
 
 /// The number of hits shown; all of them are in the JSON report.
 const SHOWN: usize = 5;
+/// Bytes of a solution that are shown.
+const LONGEST: usize = 300;
 
 /// The summary of a report.
 pub(crate) fn summary(report: &RunReport) -> String {
-    summary_with(report, |solution| solution.solution.to_string())
+    summary_with(report, |solution| shortened(&solution.solution.to_string()))
+}
+
+/// A solution on one line of a terminal: the first values of a long one.
+fn shortened(solution: &str) -> String {
+    if solution.len() <= LONGEST {
+        return solution.to_owned();
+    }
+    let end = (0..=LONGEST)
+        .rev()
+        .find(|&end| solution.is_char_boundary(end))
+        .unwrap_or(0);
+    let end = solution[..end].rfind(',').unwrap_or(end);
+    format!("{}, ... (whole in --json FILE)", &solution[..end])
 }
 
 /// The summary of a report, with a function that formats its solutions.
@@ -81,7 +96,7 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> 
                 "F = {} at evaluation {}, where a hit is below {threshold}: {}",
                 digits(best.fitness),
                 best.evaluation,
-                best.solution
+                shortened(&best.solution.to_string())
             ),
         );
     }
@@ -146,4 +161,19 @@ fn rate(evaluations: u64, seconds: f64) -> String {
         r => (r, ""),
     };
     format!(" ({value:.1} {unit}evaluations a second)")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_solutions_are_cut_between_values() {
+        assert_eq!(shortened("[1,2]"), "[1,2]");
+        let long = format!("[{}7]", "1234,".repeat(100));
+        let cut = shortened(&long);
+        assert!(long.starts_with(cut.strip_suffix(", ... (whole in --json FILE)").unwrap()));
+        assert!(cut.len() < LONGEST + 40 && cut.contains("1234, ..."));
+        assert!(shortened(&"ü".repeat(400)).starts_with("üüü"));
+    }
 }
