@@ -12,6 +12,9 @@ step() { printf '\n== %s (%s s)\n' "$*" "$SECONDS"; }
 step "format"
 cargo fmt --all --check
 
+step "licences and sources of the dependencies"
+if command -v python3 > /dev/null; then python3 scripts/licences.py; else echo "no python3: not checked"; fi
+
 step "clippy, all targets, warnings are errors"
 cargo clippy --workspace --all-targets --all-features --quiet -- -D warnings
 
