@@ -111,6 +111,45 @@ fn on_a_continuous_closure() {
     a_longer_run_allocates_for_its_hits_only(&problem, 2);
 }
 
+/// Every pair is a hit.
+struct Everything(Space<f64>);
+
+impl SatisficingProblem for Everything {
+    type Scalar = f64;
+    type Solution = [u32; 2];
+    fn space(&self) -> &Space<f64> {
+        &self.0
+    }
+    fn decode(&self, values: &[f64]) -> [u32; 2] {
+        [values[0] as u32, values[1] as u32]
+    }
+    fn fitness(&self, _: &[u32; 2]) -> f64 {
+        0.0
+    }
+    fn threshold(&self) -> f64 {
+        1.0
+    }
+}
+
+/// A million hits; 20 million with `SATISFICE_EXAMINE=full`.
+#[test]
+fn a_hit_takes_64_bytes_beside_its_solution() {
+    let full = std::env::var("SATISFICE_EXAMINE").is_ok_and(|extent| extent == "full");
+    let hits = if full { 20_000_000 } else { 1_000_000 };
+    let problem = Everything(Space::lattice(2, 1 << 30).unwrap());
+    let mut search = Search::named("random").unwrap().seed(1).probes(0.0);
+    let mut found = 0;
+    let memory = measure(|| {
+        let report = search.run(&problem, &Budget::evaluations(hits)).unwrap();
+        found = report.hit_count() as u64;
+    });
+    assert_eq!(found, hits);
+    let bytes = memory.bytes_current as f64 / hits as f64 - 8.0;
+    let most = memory.bytes_max as f64 / hits as f64 - 8.0;
+    println!("| bytes a hit beside its solution, {hits} hits: kept, at most | {bytes:.0}, {most:.0} |");
+    assert!(most <= 64.0, "{bytes} bytes a hit, {most} at most");
+}
+
 #[test]
 fn the_counter_counts() {
     let allocations = measure(|| drop::<Vec<u8>>(std::hint::black_box(Vec::with_capacity(10))));
