@@ -142,7 +142,7 @@ impl<S: Real> Batch<S> {
 }
 
 /// What became of one proposed point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Outcome<S> {
     /// A new hit with this F; it is in C now.
     Hit(S),

@@ -82,8 +82,4 @@ impl<T: Clone> BestSoFar<T> {
     pub(crate) fn get(&self) -> Option<&Best<T>> {
         self.best.as_ref()
     }
-
-    pub(crate) fn into_best(self) -> Option<Best<T>> {
-        self.best
-    }
 }

@@ -63,6 +63,12 @@ pub enum Error {
         /// How many were given.
         got: usize,
     },
+    /// A ticket that was never given out.
+    #[error("ticket {0} was never given out: tell the tickets that `ask` gave")]
+    Ticket(u64),
+    /// A solution from elsewhere that is not in the space.
+    #[error("the solution is not in the space: {0}")]
+    Solution(String),
     /// A saved state that does not fit.
     #[error("the saved state does not fit: {0}")]
     State(String),

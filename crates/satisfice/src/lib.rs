@@ -48,7 +48,10 @@ pub use observer::Observer;
 pub use problem::{SatisficingProblem, from_fn};
 pub use report::{Completeness, Counts, Report, RunReport, TracePoint};
 pub use scalar::Real;
-pub use search::{Checkpoint, RunOptions, Search, Stepper};
+pub use search::{
+    Asked, Checkpoint, Order, RunOptions, Search, Stepper, Ticket, TicketCounts, TicketEvent, TicketLog,
+    Tickets, Told,
+};
 pub use seed::SearchRng;
 pub use space::{Axis, AxisKind, Boundary, Region, Space};
 pub use unseen::{Method, Unseen};

@@ -133,6 +133,29 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
     }
 }
 
+/// A problem whose fitness is known elsewhere only, for [`Tickets`](crate::Tickets): all points of `space` with F < `threshold`.
+/// Its own fitness is NaN. Points are told apart as by [`from_fn`].
+///
+/// ```
+/// use satisfice::{problem::evaluated_elsewhere, Budget, Search, Space, Tickets};
+/// let problem = evaluated_elsewhere(Space::lattice(2, 50)?, 3.0);
+/// let mut tickets = Tickets::ordered(Search::new(), problem, &Budget::evaluations(3000))?;
+/// loop {
+///     let asked = tickets.ask(16);
+///     if asked.is_empty() {
+///         break;
+///     }
+///     for job in asked.iter().rev() {
+///         tickets.tell(job.ticket, job.solution.coordinates.iter().sum())?;
+///     }
+/// }
+/// assert_eq!(tickets.finish().hit_count(), 6);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+pub fn evaluated_elsewhere<S: Real>(space: Space<S>, threshold: S) -> FnProblem<S, fn(&[S]) -> S> {
+    from_fn(space, threshold, |_| S::nan())
+}
+
 impl<S: Real, F> FnProblem<S, F> {
     /// The same problem with another radius within which two points are one answer, in units of the space; 0 lets only
     /// equal points be one. A negative radius or NaN counts as 0.

@@ -277,6 +277,29 @@ impl<S: Real> Space<S> {
                 .all(|(axis, &x)| axis.lower <= x && x <= axis.end())
     }
 
+    /// Checks that these are values of the space: one an axis, inside the bounds, whole on integer axes. Cost: O(D).
+    ///
+    /// # Errors
+    /// [`Error::Solution`] with the axis.
+    pub fn check_values(&self, values: &[S]) -> Result<(), Error> {
+        if values.len() != self.axes.len() {
+            let (got, wanted) = (values.len(), self.axes.len());
+            return Err(Error::Solution(format!("{got} values for {wanted} axes")));
+        }
+        for (j, (axis, &x)) in self.axes.iter().zip(values).enumerate() {
+            let (lower, upper) = (axis.lower, axis.upper);
+            if !(lower <= x && x <= upper) {
+                return Err(Error::Solution(format!(
+                    "{x} on axis {j}, which is [{lower}, {upper}]"
+                )));
+            }
+            if axis.value(x) != x {
+                return Err(Error::Solution(format!("{x} on axis {j}, which is whole")));
+            }
+        }
+        Ok(())
+    }
+
     /// Brings a position inside by the boundary rule; one that is inside stays as it is. Cost: O(D).
     #[inline]
     pub fn keep_inside(&self, position: &mut [S]) {

@@ -241,8 +241,18 @@ impl<T> Ledger<T> {
             let point = self.point(elapsed);
             self.trace.push(point);
         }
+        self.times(elapsed)
+    }
+
+    /// A time taken and by how much it exceeds the budget.
+    fn times(&self, elapsed: Duration) -> (Duration, Duration) {
         let limit = self.budget.time.unwrap_or(Duration::MAX);
         (elapsed, elapsed.saturating_sub(limit))
+    }
+
+    /// The time taken so far and by how much it exceeds the budget.
+    pub(crate) fn times_so_far(&self) -> (Duration, Duration) {
+        self.times(self.clock.elapsed())
     }
 }
 

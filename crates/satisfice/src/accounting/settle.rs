@@ -93,6 +93,57 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         outcome
     }
 
+    /// Settles one solution whose fitness was computed elsewhere.
+    pub(crate) fn settle_one<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        solution: &T,
+        fitness: P::Scalar,
+        deletes: bool,
+        probing: bool,
+    ) -> Outcome<P::Scalar> {
+        let rules = Rules { deletes, probing };
+        self.evaluated_elsewhere(1);
+        self.counts.evaluations += 1;
+        let outcome = self.judge(problem, solution, fitness, problem.threshold(), rules, &mut ());
+        self.trace_if_due();
+        self.look_at_limits(&mut ());
+        outcome
+    }
+
+    /// Counts a candidate that is not evaluated because its solution is in the archive.
+    pub(crate) fn settle_deleted(&mut self) {
+        self.pass(1);
+        self.counts.evaluations += 1;
+        self.counts.duplicates += 1;
+        self.trace_if_due();
+        self.look_at_limits(&mut ());
+    }
+
+    /// Enters a fitness that the budget has not paid for.
+    pub(crate) fn inform<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        solution: &T,
+        fitness: P::Scalar,
+    ) -> Outcome<P::Scalar> {
+        self.counts.informed += 1;
+        if !fitness.is_finite() {
+            self.counts.non_finite += 1;
+            return Outcome::NonFinite;
+        }
+        self.best.offer(solution, fitness.f64(), self.counts.evaluations);
+        if fitness < problem.threshold() {
+            let rules = Rules {
+                deletes: true,
+                probing: false,
+            };
+            self.insert_hit(problem, solution, fitness, rules, &mut ())
+        } else {
+            Outcome::Miss(fitness)
+        }
+    }
+
     /// Whether no later candidate of the batch is settled: there are enough hits, or an observer has stopped the slice. Time
     /// that runs out in the middle of a batch loses nothing that was computed.
     pub(crate) fn stops_before_more(&self) -> bool {

@@ -42,6 +42,29 @@ pub enum Ask {
     Covered,
 }
 
+/// In what order an engine takes the answers to its proposals, where they [come as they come](crate::Tickets::eager).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Answers {
+    /// A batch at a time. While most answers to a batch are awaited, another engine of the same kind works beside it.
+    #[default]
+    ByBatch,
+    /// A batch at a time, and a second engine would do the same again. While answers are awaited, the batch is told without
+    /// them; they are told later.
+    Alone,
+    /// Each by itself, while it is asked for more: [`Engine::tell`] is then given parts of any batch, in any order.
+    AnyOrder,
+}
+
+impl Answers {
+    /// For an engine around one that takes answers so, and that keeps books of each batch.
+    pub(crate) fn in_batches(self) -> Self {
+        match self {
+            Self::Alone => Self::Alone,
+            Self::ByBatch | Self::AnyOrder => Self::ByBatch,
+        }
+    }
+}
+
 /// How a slice makes use of the hits of the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum WarmStart {
@@ -88,6 +111,11 @@ pub trait Engine<S: Real>: Send {
         true
     }
 
+    /// In what order it takes answers where points are evaluated [elsewhere](crate::Tickets).
+    fn answers(&self) -> Answers {
+        Answers::default()
+    }
+
     /// How this engine wants to start a slice that has a predecessor.
     fn warm_start(&self) -> WarmStart {
         WarmStart::default()
@@ -126,7 +154,8 @@ pub trait Steps<S> {
 pub enum Origin {
     /// The engine itself: the points are those of its last `ask`, in order.
     Engine,
-    /// The search: hits of the slice before, evaluated anew.
+    /// The search: hits of the slice before, evaluated anew; also start points, values from elsewhere, and answers that came
+    /// after their batch was told.
     WarmStart,
     /// The search: neighbours of a hit.
     Exhaustion,

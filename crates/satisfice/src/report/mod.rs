@@ -50,6 +50,9 @@ pub struct Counts {
     /// Uniform probes among the evaluations.
     #[serde(default)]
     pub probes: u64,
+    /// Values [from elsewhere](crate::Tickets::inform), which the budget has not paid for.
+    #[serde(default)]
+    pub informed: u64,
     /// Calls of the problem's neighbours.
     pub neighbour_calls: u64,
     /// Calls of the problem's bounds that it answered; each uses up the budget like an evaluation.
@@ -65,6 +68,7 @@ impl core::ops::AddAssign for Counts {
         self.non_finite += other.non_finite;
         self.verified += other.verified;
         self.probes += other.probes;
+        self.informed += other.informed;
         self.neighbour_calls += other.neighbour_calls;
         self.bound_calls += other.bound_calls;
     }

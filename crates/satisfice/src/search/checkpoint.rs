@@ -7,6 +7,7 @@ use super::Search;
 use super::lanes::Progress;
 use super::running::Running;
 use super::slice::Slice;
+use super::tickets::SavedTickets;
 use crate::archive::Archive;
 use crate::best::Best;
 use crate::budget::{Budget, StopReason};
@@ -63,6 +64,9 @@ pub struct Contents<T> {
     pub unfinished: Option<Unfinished<T>>,
     /// Random numbers and engine of each lane; none if all are as new.
     pub(super) lanes: Vec<State>,
+    /// Tickets that were out, if the slice had some.
+    #[serde(default = "Option::default")]
+    pub(super) tickets: Option<SavedTickets<T>>,
     /// The slices of several lanes, and how far they are.
     pub(super) exchange: Option<(Vec<Unfinished<T>>, Progress)>,
 }
@@ -198,6 +202,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
                 previous: Arc::clone(&self.previous),
                 unfinished: running.map(|running| running.reported().save()),
                 lanes,
+                tickets: None,
                 exchange,
             },
         }
@@ -205,7 +210,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
 }
 
 impl<S: Real> super::lane::Lane<S> {
-    fn save(&self) -> State {
+    pub(super) fn save(&self) -> State {
         let mut state = State::default();
         self.rng.save(&mut state);
         self.engine.save(&mut state);
@@ -214,7 +219,7 @@ impl<S: Real> super::lane::Lane<S> {
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
-    fn save(&self) -> Unfinished<T> {
+    pub(super) fn save(&self) -> Unfinished<T> {
         let mut state = State::default();
         self.last.save(&mut state);
         self.probes.save(&mut state);

@@ -16,7 +16,7 @@ use crate::threads::Threads;
 use crate::view::View;
 
 /// An engine that asks for more this often without proposing anything has nothing to propose.
-const EMPTY_ASKS: usize = 1000;
+pub(super) const EMPTY_ASKS: usize = 1000;
 
 /// What a lane keeps from slice to slice.
 pub(super) struct Lane<S> {

@@ -10,7 +10,9 @@ mod slice;
 mod stage;
 mod stepper;
 mod steps;
+mod tickets;
 
+use core::time::Duration;
 use std::sync::Arc;
 
 use num_traits::Float;
@@ -32,6 +34,7 @@ use crate::unseen::Unseen;
 pub use checkpoint::{Checkpoint, Contents, Fingerprint, Unfinished};
 pub use options::RunOptions;
 pub use stepper::Stepper;
+pub use tickets::{Asked, Order, Ticket, TicketCounts, TicketEvent, TicketLog, Tickets, Told};
 
 use lane::{Lane, RunningLane};
 use lanes::{Exchange, Progress};
@@ -283,6 +286,13 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// # Errors
     /// As [`Search::run`].
     pub fn start<'a>(&'a mut self, problem: &'a P, budget: &Budget) -> Result<Stepper<'a, P>, Error> {
+        let (probes, rule) = self.prepare(problem, budget)?;
+        let running = self.begin(problem, budget, &probes, rule)?;
+        Ok(Stepper::new(self, problem, running))
+    }
+
+    /// Checks everything and builds the engines, before a slice begins.
+    fn prepare(&mut self, problem: &P, budget: &Budget) -> Result<(Probes, WarmStart), Error> {
         budget.check()?;
         let now = self.check(problem)?;
         self.check_resumed(problem)?;
@@ -298,8 +308,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         }
         self.dimension = Some(now);
         self.problem = Some(Fingerprint::of(problem));
-        let running = self.begin(problem, budget, &probes, rule)?;
-        Ok(Stepper::new(self, problem, running))
+        Ok((probes, rule))
     }
 
     /// Checks what does not depend on the budget; returns the number of axes.
@@ -402,7 +411,22 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     fn report(&mut self, problem: &P, running: Running<P::Scalar, P::Solution>) -> Report<P::Solution> {
         let (mut slice, lanes) = running.into_parts();
         self.lanes = lanes;
-        let (elapsed, overshoot) = slice.ledger.close();
+        let times = slice.ledger.close();
+        let mut report = self.describe(problem, &slice, times);
+        slice.ledger.archive.rest();
+        self.previous = Arc::new(slice.ledger.archive);
+        report.archive = Arc::clone(&self.previous);
+        self.slices += 1;
+        report
+    }
+
+    /// The report of the slice as it is, without its hits; with the time it took and its overshoot.
+    fn describe(
+        &self,
+        problem: &P,
+        slice: &Slice<P::Scalar, P::Solution>,
+        (elapsed, overshoot): (Duration, Duration),
+    ) -> Report<P::Solution> {
         let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
         let counts = slice.counts();
         // A hit that only a probe found contradicts an engine that says it has covered everything.
@@ -412,17 +436,14 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         } else {
             slice.probes.estimate(problem, &slice.ledger.archive)
         };
-        slice.ledger.archive.rest();
-        self.previous = Arc::new(slice.ledger.archive);
-        self.slices += 1;
         Report {
             problem: problem.description(),
             engine: self.description(),
             scalar: P::Scalar::NAME.to_owned(),
             seed: self.seed,
             islands: self.islands,
-            slice: self.slices - 1,
-            budget: slice.ledger.budget,
+            slice: self.slices,
+            budget: slice.ledger.budget.clone(),
             threshold: Some(problem.threshold().f64()).filter(|threshold| threshold.is_finite()),
             requested_probe_share: self.probes,
             probe_share: slice.probes.share(),
@@ -436,10 +457,10 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
                 Completeness::Unknown
             },
             unseen,
-            best: slice.ledger.best.into_best(),
-            trace: slice.ledger.trace,
+            best: slice.ledger.best.get().cloned(),
+            trace: slice.ledger.trace.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            archive: Arc::clone(&self.previous),
+            archive: Arc::default(),
         }
     }
 }

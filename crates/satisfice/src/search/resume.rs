@@ -40,6 +40,29 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         checkpoint: Checkpoint<P::Solution>,
         engine: impl Into<ConfiguredEngine<P::Scalar>>,
     ) -> Result<Self, Error> {
+        let (mut search, saved, lanes) = Self::resume_parts(checkpoint, engine)?;
+        if saved.tickets.is_some() {
+            return Err(Error::State(
+                "its slice has tickets: `Tickets::resume` continues it".to_owned(),
+            ));
+        }
+        if !lanes.is_empty() && lanes.len() != search.islands {
+            return Err(Error::State("it has another number of lanes".to_owned()));
+        }
+        if saved.unfinished.is_some() {
+            search.unfinished = Some(restore(saved, lanes)?);
+        } else {
+            search.lanes = lanes;
+        }
+        Ok(search)
+    }
+
+    /// The search, the rest of the checkpoint, and its engines.
+    #[expect(clippy::type_complexity, reason = "three things")]
+    pub(super) fn resume_parts(
+        checkpoint: Checkpoint<P::Solution>,
+        engine: impl Into<ConfiguredEngine<P::Scalar>>,
+    ) -> Result<(Self, Contents<P::Solution>, Vec<Lane<P::Scalar>>), Error> {
         let saved = checkpoint.contents;
         fits("version", &saved.version, env!("CARGO_PKG_VERSION"))?;
         fits("scalar", &saved.scalar, P::Scalar::NAME)?;
@@ -57,15 +80,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             .iter()
             .map(|state| Lane::restore(&search.engine, state))
             .collect::<Result<Vec<_>, Error>>()?;
-        if !lanes.is_empty() && lanes.len() != search.islands {
-            return Err(Error::State("it has another number of lanes".to_owned()));
-        }
-        if saved.unfinished.is_some() {
-            search.unfinished = Some(restore(saved, lanes)?);
-        } else {
-            search.lanes = lanes;
-        }
-        Ok(search)
+        Ok((search, saved, lanes))
     }
 
     /// Runs the slice that had not ended when the search was saved to its end. Its budget is the one it began with, with the
@@ -114,7 +129,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
 }
 
 /// The slice of all lanes.
-fn restore<S: Real, T: Identity + Clone + Send + Sync>(
+pub(super) fn restore<S: Real, T: Identity + Clone + Send + Sync>(
     saved: Contents<T>,
     lanes: Vec<Lane<S>>,
 ) -> Result<Running<S, T>, Error> {
@@ -165,7 +180,7 @@ impl<S: Real> Lane<S> {
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
-    fn restore(saved: Unfinished<T>, dimension: usize, previous: usize) -> Result<Self, Error> {
+    pub(super) fn restore(saved: Unfinished<T>, dimension: usize, previous: usize) -> Result<Self, Error> {
         let mut reader = Reader::new(&saved.state);
         let last = reader.read()?;
         let probes: Probes = reader.read()?;

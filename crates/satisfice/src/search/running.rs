@@ -18,7 +18,7 @@ pub(super) struct Running<S, T> {
 }
 
 /// What the next step of a slice needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(super) enum Turn {
     /// This lane has a batch out.
     Lane(usize),

@@ -3,7 +3,7 @@
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::region_tree::{Split, Splitter};
-use crate::engine::{Ask, Engine, Origin, WarmStart};
+use crate::engine::{Answers, Ask, Engine, Origin, WarmStart};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -282,6 +282,9 @@ impl<S: Real> Engine<S> for Pruned<S> {
     }
     fn warm_start(&self) -> WarmStart {
         self.inner.warm_start()
+    }
+    fn answers(&self) -> Answers {
+        self.inner.answers().in_batches()
     }
     fn probes(&self) -> f64 {
         self.inner.probes()

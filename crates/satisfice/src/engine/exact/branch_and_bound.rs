@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 use super::region_tree::{Node, Split, Splitter};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
-use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -258,6 +258,10 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
                 .map_or(S::infinity(), |outcome| outcome.fitness());
             self.keep(context.space(), node);
         }
+    }
+
+    fn answers(&self) -> Answers {
+        Answers::Alone
     }
 
     fn save(&self, state: &mut State) {

@@ -2,7 +2,7 @@
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -42,6 +42,10 @@ impl<S: Real> Engine<S> for UniformSampler {
     }
 
     fn tell(&mut self, _: &dyn Context<S>, _: &Batch<S>, _: &[Outcome<S>], _: Origin) {}
+
+    fn answers(&self) -> Answers {
+        Answers::AnyOrder
+    }
 
     crate::saved_fields!();
 }

@@ -11,7 +11,7 @@ use super::target::Target;
 use super::units::Units;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
@@ -240,6 +240,10 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
                 Outcome::NotEvaluated => {}
             }
         }
+    }
+
+    fn answers(&self) -> Answers {
+        Answers::AnyOrder
     }
 
     fn save(&self, state: &mut State) {

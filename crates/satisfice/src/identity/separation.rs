@@ -1,0 +1,261 @@
+//! How far apart two solutions have to be to be two.
+
+use std::sync::Arc;
+
+use crate::scalar::Real;
+
+/// How far apart two points have to be to count as two: the same radius on all axes, or each axis by itself.
+///
+/// ```
+/// use satisfice::{AxisSeparation, Located, Identity, Separation};
+/// // The first axis is exact, the second counts to a tenth, the third is an angle in degrees.
+/// let apart = Separation::axes([
+///     AxisSeparation::exact(),
+///     AxisSeparation::within(0.1),
+///     AxisSeparation::within(5.0).periodic(360.0),
+/// ]);
+/// let at = |x: [f64; 3]| Located::new(&x, apart.clone());
+/// assert!(at([1.0, 0.5, 359.0]).same(&at([1.0, 0.55, 1.0])));
+/// assert!(!at([1.0, 0.5, 359.0]).same(&at([2.0, 0.5, 359.0])));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub enum Separation<S> {
+    /// Two are the same if their Euclidean distance is at most this; 0 means equal coordinates only.
+    Radius(S),
+    /// Two are the same if they are in an ellipsoid: if the squares of distance / radius of the axes sum to at most 1, and
+    /// axes of radius 0 are equal.
+    Axes(Arc<Vec<AxisSeparation<S>>>),
+}
+
+/// The part of one axis in [`Separation::Axes`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisSeparation<S> {
+    radius: S,
+    /// 0 where the axis is not periodic.
+    period: S,
+    logarithmic: bool,
+}
+
+impl<S: Real> AxisSeparation<S> {
+    /// Only equal coordinates are the same.
+    #[must_use]
+    pub fn exact() -> Self {
+        Self::within(S::zero())
+    }
+
+    /// Coordinates up to `radius` apart may be the same. A negative radius or NaN counts as 0.
+    #[must_use]
+    pub fn within(radius: S) -> Self {
+        Self {
+            radius: radius.max(S::zero()),
+            period: S::zero(),
+            logarithmic: false,
+        }
+    }
+
+    /// Coordinates a period apart are the same. A period that is not positive and finite counts as none.
+    #[must_use]
+    pub fn periodic(mut self, period: S) -> Self {
+        self.period = if period > S::zero() && period.is_finite() {
+            period
+        } else {
+            S::zero()
+        };
+        self
+    }
+
+    /// The distance is that of the natural logarithms: a radius of 0.01 is about one percent.
+    #[must_use]
+    pub fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
+        self
+    }
+
+    /// The radius.
+    #[must_use]
+    pub fn radius(&self) -> S {
+        self.radius
+    }
+
+    /// Whether distances are differences.
+    pub(super) fn is_plain(&self) -> bool {
+        self.period == S::zero() && !self.logarithmic
+    }
+
+    /// Whether solutions that are the same have the very same coordinate.
+    #[inline]
+    pub(super) fn is_hashed_exactly(&self) -> bool {
+        self.radius == S::zero() && self.period == S::zero()
+    }
+
+    /// Whether solutions that are the same are in neighbouring cells.
+    #[inline]
+    pub(super) fn is_hashed_by_cells(&self) -> bool {
+        self.radius > S::zero() && self.period == S::zero()
+    }
+
+    /// The coordinate that distances are measured by.
+    #[inline]
+    pub(super) fn measured(&self, x: S) -> S {
+        if self.logarithmic { x.ln() } else { x }
+    }
+
+    /// The distance of two coordinates.
+    #[inline]
+    fn distance(&self, a: S, b: S) -> S {
+        let d = (self.measured(a) - self.measured(b)).abs();
+        if self.period > S::zero() {
+            let d = d % self.period;
+            d.min(self.period - d)
+        } else {
+            d
+        }
+    }
+
+    /// The square of distance / radius; infinite where the axis is exact and they differ.
+    #[inline]
+    pub(super) fn square(&self, a: S, b: S) -> S {
+        if a == b {
+            return S::zero();
+        }
+        if self.is_hashed_exactly() {
+            return S::infinity();
+        }
+        let d = self.distance(a, b);
+        if self.radius == S::zero() {
+            return if d == S::zero() { d } else { S::infinity() };
+        }
+        let d = d / self.radius;
+        d * d
+    }
+}
+
+impl<S: Real> Separation<S> {
+    /// Each axis by itself.
+    #[must_use]
+    pub fn axes(axes: impl IntoIterator<Item = AxisSeparation<S>>) -> Self {
+        Self::Axes(Arc::new(axes.into_iter().collect()))
+    }
+
+    /// Becomes another one, without counting references to the same axes.
+    #[inline]
+    pub(super) fn set(&mut self, other: &Self) {
+        match (&mut *self, other) {
+            (Self::Radius(radius), Self::Radius(other)) => *radius = *other,
+            (Self::Axes(axes), Self::Axes(other)) if Arc::ptr_eq(axes, other) => {}
+            _ => self.clone_from(other),
+        }
+    }
+
+    /// The radius of an axis.
+    #[must_use]
+    pub fn radius(&self, axis: usize) -> S {
+        match self {
+            Self::Radius(radius) => *radius,
+            Self::Axes(axes) => axes.get(axis).map_or(S::zero(), |axis| axis.radius),
+        }
+    }
+}
+
+impl<S: Real> From<S> for Separation<S> {
+    fn from(radius: S) -> Self {
+        Self::Radius(radius)
+    }
+}
+
+mod serial {
+    //! A radius is written as a number, axes as a list.
+
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{AxisSeparation, Separation};
+    use crate::scalar::Real;
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged, bound(deserialize = "S: Real"))]
+    enum Plain<S> {
+        Radius(S),
+        Axes(Vec<PlainAxis<S>>),
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged, bound(deserialize = "S: Real"))]
+    enum PlainAxis<S> {
+        Radius(S),
+        Axis(Axis<S>),
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(bound(deserialize = "S: Real"))]
+    enum Tagged<S> {
+        Radius(S),
+        Axes(Vec<Axis<S>>),
+    }
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(bound(deserialize = "S: Real"))]
+    struct Axis<S> {
+        radius: S,
+        period: S,
+        logarithmic: bool,
+    }
+
+    impl<S: Real> From<&AxisSeparation<S>> for Axis<S> {
+        fn from(axis: &AxisSeparation<S>) -> Self {
+            Self {
+                radius: axis.radius,
+                period: axis.period,
+                logarithmic: axis.logarithmic,
+            }
+        }
+    }
+
+    impl<S: Real> From<Axis<S>> for AxisSeparation<S> {
+        fn from(axis: Axis<S>) -> Self {
+            let one = Self::within(axis.radius).periodic(axis.period);
+            if axis.logarithmic { one.logarithmic() } else { one }
+        }
+    }
+
+    fn plain<S: Real>(axis: &AxisSeparation<S>) -> PlainAxis<S> {
+        if axis.is_plain() {
+            PlainAxis::Radius(axis.radius)
+        } else {
+            PlainAxis::Axis(axis.into())
+        }
+    }
+
+    fn read<S: Real>(axis: PlainAxis<S>) -> AxisSeparation<S> {
+        match axis {
+            PlainAxis::Radius(radius) => AxisSeparation::within(radius),
+            PlainAxis::Axis(axis) => axis.into(),
+        }
+    }
+
+    impl<S: Real> Serialize for Separation<S> {
+        fn serialize<W: Serializer>(&self, serializer: W) -> Result<W::Ok, W::Error> {
+            match (self, serializer.is_human_readable()) {
+                (Self::Radius(radius), true) => radius.serialize(serializer),
+                (Self::Axes(axes), true) => serializer.collect_seq(axes.iter().map(plain)),
+                (Self::Radius(radius), false) => Tagged::Radius(*radius).serialize(serializer),
+                (Self::Axes(axes), false) => Tagged::Axes(axes.iter().map(Axis::from).collect()).serialize(serializer),
+            }
+        }
+    }
+
+    impl<'de, S: Real> Deserialize<'de> for Separation<S> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            Ok(if deserializer.is_human_readable() {
+                match Plain::deserialize(deserializer)? {
+                    Plain::Radius(radius) => Self::Radius(radius),
+                    Plain::Axes(axes) => Self::axes(axes.into_iter().map(read)),
+                }
+            } else {
+                match Tagged::deserialize(deserializer)? {
+                    Tagged::Radius(radius) => Self::Radius(radius),
+                    Tagged::Axes(axes) => Self::axes(axes.into_iter().map(AxisSeparation::from)),
+                }
+            })
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! Answers that reach the engines in the order asked: each lane has a batch out, which is settled when it is complete.
+
+use crate::archive::Archive;
+use crate::budget::StopReason;
+use crate::engine::Origin;
+use crate::identity::Identity;
+use crate::problem::SatisficingProblem;
+use crate::scalar::Real;
+use crate::search::lanes::Exchange;
+use crate::search::running::{Running, Turn};
+use crate::search::stage::Stage;
+
+use super::Told;
+
+/// A slice with its batches that are out.
+pub(super) struct Ordered<S, T> {
+    pub(super) running: Running<S, T>,
+    pub(super) out: Vec<Out<S>>,
+    /// Values from elsewhere that wait for a batch to be settled, with their positions.
+    pub(super) informed: Vec<(T, S, Vec<S>)>,
+}
+
+/// A batch that is out.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(super) struct Out<S> {
+    /// Whose it is.
+    pub(super) turn: Turn,
+    /// The tickets of those given out, in the order of the batch and ascending.
+    pub(super) tickets: Vec<u64>,
+    /// One for each solution of the batch.
+    pub(super) answers: Vec<Answer<S>>,
+}
+
+/// What is known of a solution that is out.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) enum Answer<S> {
+    Awaited,
+    Value(S),
+    Forgotten,
+}
+
+impl<S: Real> Out<S> {
+    fn is_answered(&self) -> bool {
+        !self.answers.contains(&Answer::Awaited)
+    }
+
+    fn computed(&self) -> Vec<Option<S>> {
+        let value = |answer: &Answer<S>| match *answer {
+            Answer::Value(value) => Some(value),
+            Answer::Awaited | Answer::Forgotten => None,
+        };
+        self.answers.iter().map(value).collect()
+    }
+}
+
+impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
+    pub(super) fn new(running: Running<S, T>) -> Self {
+        Self {
+            running,
+            out: Vec::new(),
+            informed: Vec::new(),
+        }
+    }
+
+    /// Gives out the next solution under a number; `None` if others have to be answered first or the slice is over.
+    pub(super) fn next<P>(&mut self, number: u64, problem: &P, previous: &Archive<T>) -> Option<T>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        loop {
+            let free = self
+                .out
+                .iter_mut()
+                .find(|out| out.tickets.len() < out.answers.len());
+            if let Some(out) = free {
+                let slice = self.running.slice_at(out.turn)?;
+                let solution = slice.candidates.live().get(out.tickets.len())?.clone();
+                out.tickets.push(number);
+                return Some(solution);
+            }
+            if !self.propose(problem, previous) {
+                return None;
+            }
+        }
+    }
+
+    /// Lets the next lane propose that has no batch out, or lets the lanes exchange; `false` if none of it is possible.
+    fn propose<P>(&mut self, problem: &P, previous: &Archive<T>) -> bool
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let Running { lanes, exchange } = &mut self.running;
+        let searching = exchange.as_ref().is_none_or(Exchange::is_searching);
+        if searching {
+            let out = &self.out;
+            let next = (0..lanes.len()).find(|&lane| {
+                out.iter().all(|out| out.turn != Turn::Lane(lane))
+                    && lanes[lane].propose(problem, previous, None)
+            });
+            if let Some(lane) = next {
+                self.register(Turn::Lane(lane), problem, previous);
+                return true;
+            }
+        }
+        let (Some(exchange), true) = (exchange, self.out.is_empty()) else {
+            return false;
+        };
+        if searching {
+            exchange.between_rounds(lanes, &mut ());
+            return true;
+        }
+        let probes = exchange.propose_probes(problem);
+        if probes {
+            self.register(Turn::Probes, problem, previous);
+        }
+        probes
+    }
+
+    /// Notes a batch that is proposed; one whose solutions are all in the archive is settled at once.
+    fn register<P>(&mut self, turn: Turn, problem: &P, previous: &Archive<T>)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let Some(slice) = self.running.slice_at(turn) else {
+            return;
+        };
+        if let Stage::Settle(from) = slice.stage {
+            slice.stage = Stage::Asked(from);
+        }
+        let live = slice.candidates.live().len();
+        if live == 0 {
+            self.running.settle(turn, problem, previous, &mut ());
+        } else {
+            self.out.push(Out {
+                turn,
+                tickets: Vec::new(),
+                answers: vec![Answer::Awaited; live],
+            });
+        }
+    }
+
+    /// Proposes a batch again that was out when the slice was saved; `false` if there is none such.
+    pub(super) fn propose_again<P>(&mut self, out: Out<S>, problem: &P, previous: &Archive<T>) -> bool
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let Some(slice) = self.running.slice_at(out.turn) else {
+            return false;
+        };
+        if !matches!(slice.stage, Stage::Repeat(_)) {
+            return false;
+        }
+        let proposed = match (out.turn, &mut self.running.exchange) {
+            (Turn::Lane(lane), _) => self.running.lanes[lane].propose(problem, previous, None),
+            (Turn::Probes, Some(exchange)) => exchange.propose_probes(problem),
+            (Turn::Probes, None) | (Turn::Over, _) => false,
+        };
+        let before = self.out.len();
+        if proposed {
+            self.register(out.turn, problem, previous);
+        }
+        let fits = self.out.len() == before + 1
+            && self.out[before].answers.len() == out.answers.len()
+            && out.tickets.len() <= out.answers.len()
+            && out.tickets.is_sorted_by(|a, b| a < b);
+        if fits {
+            self.out[before] = out;
+        }
+        fits
+    }
+
+    fn find(&self, number: u64) -> Option<(usize, usize)> {
+        self.out.iter().enumerate().find_map(|(at, out)| {
+            let slot = out.tickets.binary_search(&number).ok()?;
+            (out.answers[slot] == Answer::Awaited).then_some((at, slot))
+        })
+    }
+
+    /// Takes a value, or forgets a ticket; `None` if it is not open.
+    pub(super) fn tell<P>(
+        &mut self,
+        number: u64,
+        value: Option<S>,
+        problem: &P,
+        previous: &Archive<T>,
+    ) -> Option<Told>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let (at, slot) = self.find(number)?;
+        self.out[at].answers[slot] = value.map_or(Answer::Forgotten, Answer::Value);
+        if self.out[at].is_answered() {
+            let out = self.out.remove(at);
+            self.settle(&out, problem, previous);
+        }
+        Some(Told::Taken)
+    }
+
+    fn settle<P>(&mut self, out: &Out<S>, problem: &P, previous: &Archive<T>)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let computed = out.computed();
+        if let Some(slice) = self.running.slice_at(out.turn) {
+            slice.candidates.resume(&computed);
+            slice
+                .ledger
+                .evaluated_elsewhere(computed.iter().flatten().count());
+        }
+        self.running.settle(out.turn, problem, previous, &mut ());
+        self.enter_informed(problem, previous);
+    }
+
+    /// Takes a value from elsewhere. It waits while a batch is out that was prepared without it.
+    pub(super) fn inform<P>(
+        &mut self,
+        problem: &P,
+        previous: &Archive<T>,
+        solution: &T,
+        value: S,
+        position: Vec<S>,
+    ) where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        self.informed.push((solution.clone(), value, position));
+        self.enter_informed(problem, previous);
+    }
+
+    /// Enters values from elsewhere in the first lane, or in the common archive once the lanes have ended, and tells every
+    /// engine.
+    fn enter_informed<P>(&mut self, problem: &P, previous: &Archive<T>)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let searching = self.running.exchange.as_ref().is_none_or(Exchange::is_searching);
+        let turn = if searching { Turn::Lane(0) } else { Turn::Probes };
+        if self.out.iter().any(|out| out.turn == turn) {
+            return;
+        }
+        for (solution, value, position) in core::mem::take(&mut self.informed) {
+            let Some(slice) = self.running.slice_at(turn) else {
+                return;
+            };
+            let outcome = slice.ledger.inform(problem, &solution, value);
+            if position.is_empty() {
+                continue;
+            }
+            let batch = super::eager::one(&position);
+            for lane in &mut self.running.lanes {
+                let view = lane.slice.view(problem, previous);
+                lane.lane
+                    .engine
+                    .tell(&view, &batch, &[outcome], Origin::WarmStart);
+            }
+        }
+    }
+
+    pub(super) fn open(&self) -> usize {
+        self.out
+            .iter()
+            .flat_map(|out| &out.answers[..out.tickets.len()])
+            .filter(|&answer| *answer == Answer::Awaited)
+            .count()
+    }
+
+    pub(super) fn pending(&self) -> Vec<u64> {
+        let given = |out: &Out<S>| {
+            let pairs = out.tickets.iter().zip(&out.answers);
+            let open = pairs.filter(|&(_, answer)| *answer == Answer::Awaited);
+            open.map(|(&ticket, _)| ticket).collect::<Vec<_>>()
+        };
+        let mut numbers: Vec<u64> = self.out.iter().flat_map(given).collect();
+        numbers.sort_unstable();
+        numbers
+    }
+
+    pub(super) fn solution(&self, number: u64) -> Option<&T> {
+        let (at, slot) = self.find(number)?;
+        let slice = match (self.out[at].turn, &self.running.exchange) {
+            (Turn::Lane(lane), _) => &self.running.lanes.get(lane)?.slice,
+            (Turn::Probes, Some(exchange)) => &exchange.common,
+            (Turn::Probes, None) | (Turn::Over, _) => return None,
+        };
+        slice.candidates.live().get(slot)
+    }
+
+    /// Enters the answers of batches that are not complete, and ends the slice.
+    pub(super) fn finish<P>(mut self, problem: &P, previous: &Archive<T>) -> Running<S, T>
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        for out in core::mem::take(&mut self.out) {
+            self.settle(&out, problem, previous);
+        }
+        let Running { lanes, exchange } = &mut self.running;
+        let over = lanes.iter_mut().all(|lane| lane.slice.ledger.is_over());
+        match exchange {
+            // What the lanes have found since their last exchange.
+            Some(exchange) if exchange.is_searching() && over => exchange.between_rounds(lanes, &mut ()),
+            Some(exchange) if exchange.is_searching() => self.running.end(StopReason::Cancelled),
+            _ => {}
+        }
+        self.running
+    }
+}
