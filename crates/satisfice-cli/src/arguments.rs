@@ -15,9 +15,9 @@ pub(crate) const DEFAULT_ENGINE: &str = "portfolio";
 /// The wall time of a search without `--time` and `--evaluations`.
 const DEFAULT_TIME: Duration = Duration::from_secs(1);
 
-/// Parses the command line.
-pub(crate) fn parse() -> Result<Subcommands, clap::Error> {
-    Satisfice::try_parse().map(|satisfice| satisfice.command)
+/// Parses the command line, the name of the program included.
+pub(crate) fn parse(arguments: &[std::ffi::OsString]) -> Result<Subcommands, clap::Error> {
+    Satisfice::try_parse_from(arguments).map(|satisfice| satisfice.command)
 }
 
 /// Find as many good-enough answers as possible before a deadline, and report how complete they are.

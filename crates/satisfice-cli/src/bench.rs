@@ -1,5 +1,6 @@
 //! `satisfice bench`: a sweep, from its suite to its report.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,7 +13,11 @@ use crate::arguments::BenchArguments;
 use crate::progress::{Counting, Runs};
 use crate::{interrupt, message, output};
 
-pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
+pub(crate) fn bench(
+    arguments: &BenchArguments,
+    catalogue: &Catalogue,
+    given: &[OsString],
+) -> anyhow::Result<ExitCode> {
     let mut suite = Suite::open(&arguments.suite)?;
     if let Some(seeds) = &arguments.seeds {
         suite = suite.with_seeds(seeds);
@@ -69,7 +74,7 @@ pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow
         let mut tell = |what: &str| doing.say(format!("study {name}: {what}"));
         findings.extend((studies::find(name)?.run)(seeds, &cancel, &mut tell)?);
     }
-    let groups = sweep::publish(&folder, &plan, &finished.rows, &findings, &command())?;
+    let groups = sweep::publish(&folder, &plan, &finished.rows, &findings, &command(given))?;
     let mut text = sweep::table(&groups);
     findings
         .iter()
@@ -98,7 +103,7 @@ pub(crate) fn bench(arguments: &BenchArguments, catalogue: &Catalogue) -> anyhow
 }
 
 /// The command line, to be given again.
-fn command() -> String {
+fn command(given: &[OsString]) -> String {
     let plain = |text: &str| {
         text.chars()
             .all(|c| c.is_ascii_alphanumeric() || "-_./,=".contains(c))
@@ -111,7 +116,12 @@ fn command() -> String {
         }
     };
     std::iter::once("satisfice".to_owned())
-        .chain(std::env::args().skip(1).map(quoted))
+        .chain(
+            given
+                .iter()
+                .skip(1)
+                .map(|text| quoted(text.to_string_lossy().into_owned())),
+        )
         .collect::<Vec<_>>()
         .join(" ")
 }

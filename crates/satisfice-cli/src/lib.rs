@@ -60,6 +60,7 @@ mod run;
 mod summary;
 mod verify;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use arguments::Subcommands;
@@ -112,7 +113,15 @@ impl Command {
     /// `verify` finds a mismatch), and 2 after an error.
     #[must_use]
     pub fn main(self) -> ExitCode {
-        let subcommand = match arguments::parse() {
+        self.run(std::env::args_os())
+    }
+
+    /// Runs the command with these arguments, the first of which is the name of the program; for a command within another
+    /// program. Otherwise as [`Command::main`]. Ctrl-C can be listened for once in a process, so this can be called once.
+    #[must_use]
+    pub fn run(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+        let arguments: Vec<OsString> = arguments.into_iter().collect();
+        let subcommand = match arguments::parse(&arguments) {
             Ok(subcommand) => subcommand,
             Err(error) => return failure::usage(&error),
         };
@@ -121,7 +130,7 @@ impl Command {
             Subcommands::List(arguments) => list::list(&arguments, catalogue),
             Subcommands::Run(arguments) => run::run(&arguments, catalogue),
             Subcommands::Collide(arguments) => collide::collide(&arguments),
-            Subcommands::Bench(arguments) => bench::bench(&arguments, catalogue),
+            Subcommands::Bench(bench) => bench::bench(&bench, catalogue, &arguments),
             Subcommands::Verify(arguments) => verify::verify(&arguments, catalogue),
             Subcommands::Completions(arguments) => completions::completions(&arguments, catalogue),
         };

@@ -193,16 +193,27 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         &self.solutions[..self.live]
     }
 
-    /// Takes fitness values computed elsewhere.
+    /// Takes all fitness values, computed elsewhere.
     pub(crate) fn take_fitness(&mut self, fitness: &[S]) -> Result<(), Error> {
-        if fitness.len() != self.live {
+        if fitness.len() < self.live {
             return Err(Error::Tell {
                 wanted: self.live,
                 got: fitness.len(),
             });
         }
-        self.fitness[..self.live].copy_from_slice(fitness);
-        self.ready = self.live;
+        self.take_first(fitness)
+    }
+
+    /// Takes the fitness of the first live ones, computed elsewhere.
+    pub(crate) fn take_first(&mut self, fitness: &[S]) -> Result<(), Error> {
+        if fitness.len() > self.live {
+            return Err(Error::Tell {
+                wanted: self.live,
+                got: fitness.len(),
+            });
+        }
+        self.fitness[..fitness.len()].copy_from_slice(fitness);
+        self.ready = fitness.len();
         Ok(())
     }
 }

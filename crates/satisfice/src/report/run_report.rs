@@ -38,6 +38,9 @@ pub struct RunReport<Spec, S> {
     /// What was counted, summed over the slices.
     #[serde(flatten)]
     pub counts: Counts,
+    /// Evaluations that gave no value: a program that failed, an exception that was caught. They are non-finite as well.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub failed: u64,
     /// Wall time in seconds, summed over the slices.
     pub elapsed_seconds: f64,
     /// How much longer than the time budget it took, in seconds, summed over the slices.
@@ -112,6 +115,11 @@ pub struct FoundSolution<S> {
     pub evaluation: u64,
     /// When, in seconds of running time over all slices.
     pub seconds: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Tells new hits from those of slices before.
@@ -265,6 +273,7 @@ impl<Spec, S> RunReport<Spec, S> {
             threshold: None,
             probe_share: 0.0,
             counts: Counts::default(),
+            failed: 0,
             elapsed_seconds: 0.0,
             overshoot_seconds: 0.0,
             stop_reason: StopReason::Exhausted,
@@ -369,6 +378,7 @@ impl<Spec, S> RunReport<Spec, S> {
             .flatten()
             .min_by(|a, b| a.fitness.total_cmp(&b.fitness));
         self.counts += next.counts;
+        self.failed += next.failed;
         self.elapsed_seconds += next.elapsed_seconds;
         self.overshoot_seconds += next.overshoot_seconds;
         self.stop_reason = next.stop_reason;

@@ -76,6 +76,14 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
     /// # Errors
     /// [`Error::Tell`] if the last ones have not been told.
     pub fn ask(&mut self) -> Result<&[P::Solution], Error> {
+        self.ask_with(&mut ())
+    }
+
+    /// [`Stepper::ask`] with an observer, which is told of hits and progress and may end the slice.
+    ///
+    /// # Errors
+    /// As [`Stepper::ask`].
+    pub fn ask_with(&mut self, observer: &mut dyn Observer<P::Solution>) -> Result<&[P::Solution], Error> {
         let Some(running) = &mut self.running else {
             return Ok(&[]);
         };
@@ -87,7 +95,7 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
         }
         let previous = Arc::clone(&self.search.previous);
         loop {
-            let turn = running.propose(self.problem, &previous, &mut ());
+            let turn = running.propose(self.problem, &previous, observer);
             match running.slice_at(turn) {
                 None => return Ok(&[]),
                 Some(slice) if !slice.candidates.live().is_empty() => {
@@ -97,8 +105,11 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
                     self.turn = turn;
                     break;
                 }
-                // All of them are in the archive: there is nothing to evaluate.
-                Some(_) => running.settle(turn, self.problem, &previous, &mut ()),
+                // All of them are in the archive: there is nothing to evaluate, but time passes.
+                Some(slice) => {
+                    slice.ledger.evaluated_elsewhere(slice.candidates.outcomes.len());
+                    running.settle(turn, self.problem, &previous, observer);
+                }
             }
         }
         Ok(match running.slice_at(self.turn) {
@@ -112,6 +123,18 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
     /// # Errors
     /// [`Error::Tell`] if nothing was asked, or for another number of values; then the batch is still to be told.
     pub fn tell(&mut self, fitness: &[P::Scalar]) -> Result<(), Error> {
+        self.tell_with(fitness, &mut ())
+    }
+
+    /// [`Stepper::tell`] with an observer, which is told of hits and progress and may end the slice.
+    ///
+    /// # Errors
+    /// As [`Stepper::tell`].
+    pub fn tell_with(
+        &mut self,
+        fitness: &[P::Scalar],
+        observer: &mut dyn Observer<P::Solution>,
+    ) -> Result<(), Error> {
         let turn = self.turn;
         let slice = self.running.as_mut().and_then(|running| running.slice_at(turn));
         let Some(slice) = slice else {
@@ -124,9 +147,62 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
         slice.ledger.evaluated_elsewhere(fitness.len());
         self.turn = Turn::Over;
         if let Some(running) = &mut self.running {
-            running.settle(turn, self.problem, &self.search.previous, &mut ());
+            running.settle(turn, self.problem, &self.search.previous, observer);
         }
         Ok(())
+    }
+
+    /// Whether the time is up or the slice is cancelled. To be asked between the evaluations of a batch, which
+    /// [`finish_with`](Stepper::finish_with) can end early.
+    pub fn is_interrupted(&mut self) -> bool {
+        let turn = self.turn;
+        let slice = self.running.as_mut().and_then(|running| running.slice_at(turn));
+        slice.is_some_and(|slice| slice.ledger.has_stopped())
+    }
+
+    /// Ends the slice in the middle of a batch and reports: `fitness` is that of the first of the candidates that
+    /// [`ask`](Stepper::ask) gave, as far as they are evaluated. The others are not counted.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Budget, Search, Space, StopReason};
+    /// let problem = from_fn(Space::lattice(2, 50)?, 3.0, |x: &[f64]| x[0] + x[1]);
+    /// let mut search = Search::named("random")?;
+    /// let mut slice = search.start(&problem, &Budget::evaluations(5000))?;
+    /// assert!(slice.ask()?.len() > 3);
+    /// let report = slice.finish_with(&[1.0, 7.0, 2.0])?; // and then the power failed
+    /// assert_eq!((report.hit_count(), report.counts.evaluations), (2, 3));
+    /// assert_eq!(report.stop_reason, StopReason::Cancelled);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Tell`] for more values than candidates.
+    pub fn finish_with(mut self, fitness: &[P::Scalar]) -> Result<Report<P::Solution>, Error> {
+        let turn = self.turn;
+        let slice = self.running.as_mut().and_then(|running| running.slice_at(turn));
+        match slice {
+            Some(slice) => {
+                slice.candidates.take_first(fitness)?;
+                slice.ledger.evaluated_elsewhere(fitness.len());
+                slice.ledger.stop.get_or_insert(StopReason::Cancelled);
+            }
+            None if fitness.is_empty() => {}
+            None => {
+                return Err(Error::Tell {
+                    wanted: 0,
+                    got: fitness.len(),
+                });
+            }
+        }
+        if let Some(running) = &mut self.running {
+            running.settle(turn, self.problem, &self.search.previous, &mut ());
+            if running.exchange.is_some() {
+                let reason = running.slice_at(turn).and_then(|slice| slice.ledger.stop);
+                running.end(reason.unwrap_or(StopReason::Cancelled));
+            }
+        }
+        self.turn = Turn::Over;
+        Ok(self.finish())
     }
 
     /// The search and the slice as they are now; a batch that is out is asked for again after resuming. Cost: a copy of the

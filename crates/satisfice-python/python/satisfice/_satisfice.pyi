@@ -1,0 +1,182 @@
+"""Native part of the package `satisfice`."""
+
+from collections.abc import Callable
+from os import PathLike
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+def version() -> str:
+    """The version of the framework."""
+
+def listing() -> str:
+    """Every engine and problem with its parameters, as the JSON of `satisfice list --json`."""
+
+def command(arguments: list[str]) -> int:
+    """Run the command; the first argument is the name of the program.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+
+def find(
+    function: Callable[[Any], Any],
+    question: dict[str, Any],
+    run: dict[str, Any],
+    vectorized: bool,
+    callback: Callable[[int, int, float, float], bool] | None,
+    catch: tuple[type[BaseException], ...],
+) -> Report:
+    """Search a function; `satisfice.find` is the way to call it."""
+
+@final
+class Problem:
+    """A problem of the catalogue with its parameters set; `satisfice.problem` makes it."""
+
+    def __new__(cls, name: str, given: list[tuple[str, str]]) -> Problem: ...
+    @property
+    def name(self) -> str:
+        """Its name in the catalogue."""
+    def reference_hits(self) -> int | None:
+        """The number of all hits, where it is known. May take long; Ctrl-C ends the wait."""
+    def _parameters(self) -> str: ...
+    def _run(
+        self,
+        run: dict[str, Any],
+        callback: Callable[[int, int, float, float], bool] | None,
+        reference: bool,
+    ) -> Report: ...
+    def __reduce__(self) -> tuple[Any, tuple[str, list[tuple[str, str]]]]: ...
+
+@final
+class Best:
+    """The candidate with the least value, hit or not."""
+
+    @property
+    def x(self) -> Any:
+        """Its coordinates, shape (d,); the solution itself where solutions are no points."""
+    @property
+    def fun(self) -> float:
+        """Its value."""
+    @property
+    def evaluation(self) -> int:
+        """The evaluation that found it, counted from 1."""
+
+@final
+class Report:
+    """What a search did and found: plain data that can be pickled, and written and read as JSON.
+
+    Its length is the number of hits. Arrays are made once and kept.
+    """
+
+    @classmethod
+    def from_json(cls, text: str) -> Report:
+        """The report of a JSON text that `to_json` or ``satisfice run --json`` wrote.
+
+        Raises
+        ------
+        ValueError
+            For any other text.
+        """
+    def to_json(self, path: str | PathLike[str] | None = None) -> str | None:
+        """The report as JSON, as the command writes it.
+
+        Parameters
+        ----------
+        path : path, optional
+            Write to this file and return nothing.
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `to_json` as a dict."""
+    def to_pandas(self) -> Any:
+        """The hits as a `pandas.DataFrame`: a column per axis (``x0``, ``x1``, ...), ``fun``, ``evaluation``, ``time``.
+
+        Raises
+        ------
+        ImportError
+            Without pandas.
+        """
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Coordinates of the hits in the order found, shape (n, d).
+
+        Raises
+        ------
+        ValueError
+            For a problem whose solutions are no points or lists of numbers; see `solutions`.
+        """
+    @property
+    def fun(self) -> NDArray[np.float64]:
+        """Values of the hits, shape (n,)."""
+    @property
+    def evaluation(self) -> NDArray[np.uint64]:
+        """The evaluation that found each hit, counted from 1, shape (n,)."""
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """When each hit was found, in seconds from the start, shape (n,)."""
+    @property
+    def solutions(self) -> list[Any]:
+        """The hits as plain Python values, as they stand in the JSON."""
+    @property
+    def best(self) -> Best | None:
+        """The candidate with the least finite value, hit or not."""
+    @property
+    def trace(self) -> dict[str, NDArray[Any]]:
+        """Distinct hits against evaluations and seconds: arrays ``evaluations``, ``time`` and ``hits``."""
+    @property
+    def hits(self) -> int:
+        """The number of distinct hits."""
+    @property
+    def evaluations(self) -> int:
+        """Candidates that used up the budget, those that were known included."""
+    @property
+    def nfev(self) -> int:
+        """Calls of the function, a point each."""
+    @property
+    def duplicates(self) -> int:
+        """Candidates that were known hits."""
+    @property
+    def non_finite(self) -> int:
+        """Values that were NaN or infinite."""
+    @property
+    def failed(self) -> int:
+        """Values lost to exceptions that were caught; they are among `non_finite`."""
+    @property
+    def seed(self) -> int:
+        """The seed, given or drawn."""
+    @property
+    def engine(self) -> str:
+        """Name of the engine."""
+    @property
+    def problem(self) -> str:
+        """Name of the problem; ``"function"`` for a function."""
+    @property
+    def delta(self) -> float:
+        """A hit is a point with f(x) < delta."""
+    @property
+    def elapsed(self) -> float:
+        """Wall time in seconds."""
+    @property
+    def stop_reason(self) -> str:
+        """Why the search ended: ``"Time"``, ``"Evaluations"``, ``"Hits"``, ``"Cancelled"`` (a signal, an exception),
+        ``"Observer"`` (the callback), ``"Exhausted"`` (the engine has no more to propose), ``"Covered"`` (the whole space)."""
+    @property
+    def completeness(self) -> str:
+        """``"Proved"`` if all hits are known to be listed, else ``"Unknown"``."""
+    @property
+    def unseen_estimate(self) -> float | None:
+        """The estimated number of hits not seen; ``None`` without `probes`."""
+    @property
+    def unseen_interval(self) -> tuple[float, float | None] | None:
+        """The interval of `unseen_estimate`; no upper end where nothing bounds it."""
+    @property
+    def reference_hits(self) -> int | None:
+        """The number of all hits, where it is known and was asked for."""
+    @property
+    def recall(self) -> float | None:
+        """``hits / reference_hits``."""
+    def __len__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, tuple[str]]: ...

@@ -1,0 +1,59 @@
+//! What Python says about a run.
+
+use std::time::Duration;
+
+use pyo3::prelude::*;
+use satisfice::{Budget, Cancel};
+use satisfice_catalogue::RunSpec;
+
+use crate::refused;
+
+/// Engine, seed and budget of a run, as a dict.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Run {
+    engine: String,
+    options: Vec<(String, String)>,
+    seed: u64,
+    time: Option<f64>,
+    evaluations: Option<u64>,
+    hits: Option<u64>,
+    slices: u64,
+    probes: Option<f64>,
+    islands: usize,
+    threads: usize,
+}
+
+impl Run {
+    /// The specification of the run, with every parameter of its engine.
+    pub(crate) fn spec(&self) -> PyResult<RunSpec> {
+        let mut spec = RunSpec::new(&self.engine).seed(self.seed).slices(self.slices);
+        for (name, text) in &self.options {
+            spec = spec.set(name, text);
+        }
+        spec.budget.time = match self.time {
+            Some(seconds) => Some(Duration::try_from_secs_f64(seconds).map_err(|_| {
+                refused(format!(
+                    "time = {seconds} is not allowed: a positive number of seconds"
+                ))
+            })?),
+            None => None,
+        };
+        spec.budget.evaluations = self.evaluations;
+        spec.budget.hits = self.hits;
+        spec.probes = self.probes;
+        spec.islands = self.islands;
+        spec.threads = self.threads;
+        spec.complete().map_err(refused)
+    }
+}
+
+/// The budget of a specification, which `cancel` ends as well.
+pub(crate) fn budget(spec: &RunSpec, cancel: &Cancel) -> Budget {
+    Budget {
+        time: spec.budget.time,
+        evaluations: spec.budget.evaluations,
+        hits: spec.budget.hits,
+        ..Budget::until(cancel)
+    }
+}

@@ -1,0 +1,165 @@
+//! A search of a function written in Python.
+
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use satisfice::{Axis, Cancel, Search, Space, Stepper};
+use satisfice_catalogue::black_box::{BlackBox, Point, Separation};
+use satisfice_catalogue::{RunSpec, Settings, report_of};
+use serde_json::Value;
+
+use crate::arguments::{Run, budget};
+use crate::caller::Caller;
+use crate::refused;
+use crate::report::Report;
+use crate::watch::Watcher;
+
+/// A function is called by Python, never by the search.
+type Function = BlackBox<fn(&[f64]) -> f64>;
+
+/// The space and what a hit is, as a dict.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Question {
+    /// Lower and upper end of each axis, and whether it is one of integers.
+    axes: Vec<(f64, f64, bool)>,
+    delta: f64,
+    separation: Option<Vec<f64>>,
+    /// What a report says about the problem: its name, and its parameters as JSON.
+    name: String,
+    parameters: String,
+}
+
+impl Question {
+    fn problem(&self) -> PyResult<Function> {
+        let axes = self.axes.iter().map(|&(lower, upper, integer)| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "Python has checked that they are whole and small"
+            )]
+            if integer {
+                Axis::integer(lower as i64, upper as i64)
+            } else {
+                Axis::continuous(lower, upper)
+            }
+        });
+        let space = Space::new(axes).map_err(refused)?;
+        let separation = self
+            .separation
+            .clone()
+            .map_or(Separation::Exact, Separation::PerAxis);
+        let unevaluated: fn(&[f64]) -> f64 = |_| f64::NAN;
+        BlackBox::new(space, self.delta, &separation, unevaluated).map_err(refused)
+    }
+
+    /// Enters the problem in a specification.
+    fn enter(&self, spec: &mut RunSpec) -> PyResult<()> {
+        spec.problem.clone_from(&self.name);
+        let parameters: Value = serde_json::from_str(&self.parameters).map_err(refused)?;
+        let mut settings = Settings::default();
+        for (name, value) in parameters.as_object().into_iter().flatten() {
+            settings.set(name, value.clone());
+        }
+        spec.problem_parameters = settings;
+        Ok(())
+    }
+}
+
+/// Searches a function for all points with f(x) < delta. The Python function of the same name has the documentation.
+#[pyfunction]
+pub(crate) fn find<'py>(
+    py: Python<'py>,
+    function: Bound<'py, PyAny>,
+    question: Question,
+    run: Run,
+    vectorized: bool,
+    callback: Option<Py<PyAny>>,
+    catch: Bound<'py, PyTuple>,
+) -> PyResult<Report> {
+    let mut spec = run.spec()?;
+    let problem = question.problem()?;
+    let mut search = search(&spec)?;
+    question.enter(&mut spec)?;
+
+    let cancel = Cancel::new();
+    let mut watcher = Watcher::new(callback, cancel.clone());
+    let mut caller = Caller::new(function, vectorized, catch);
+    let budget = budget(&spec, &cancel);
+    let stepper = search.start(&problem, &budget).map_err(refused)?;
+    let (report, raised) = drive(py, stepper, &mut caller, &mut watcher, question.axes.len())?;
+
+    let mut report = report_of(&problem, RunSpec { threads: 1, ..spec }, &[report]).map_err(refused)?;
+    report.failed = caller.failed;
+    let report = Report::new(report);
+    match raised {
+        None => Ok(report),
+        Some(error) => Err(with_report(py, error, report)),
+    }
+}
+
+/// A search by the engine of a complete specification.
+fn search(spec: &RunSpec) -> PyResult<Search<Function>> {
+    let mut search = Search::named(&spec.engine).map_err(refused)?;
+    for (name, text) in spec.engine_parameters.texts() {
+        search = search.set(&name, &text).map_err(refused)?;
+    }
+    search = search.seed(spec.seed).islands(spec.islands);
+    if let Some(share) = spec.probes {
+        search = search.probes(share);
+    }
+    Ok(search)
+}
+
+/// Runs a slice to its end, or to an exception. Engines work without the interpreter's lock.
+fn drive<'py>(
+    py: Python<'py>,
+    mut stepper: Stepper<'_, Function>,
+    caller: &mut Caller<'py>,
+    watcher: &mut Watcher,
+    dimension: usize,
+) -> PyResult<(satisfice::Report<Point>, Option<PyErr>)> {
+    let mut values = Vec::new();
+    let mut asked = false;
+    loop {
+        let points = py
+            .detach(|| {
+                if asked {
+                    stepper.tell_with(&values, watcher)?;
+                }
+                values.clear();
+                let points = stepper.ask_with(watcher)?;
+                let mut flat = Vec::with_capacity(points.len() * dimension);
+                points
+                    .iter()
+                    .for_each(|point| flat.extend_from_slice(&point.coordinates));
+                Ok::<_, satisfice::Error>(flat)
+            })
+            .map_err(refused)?;
+        if let Some(error) = watcher.raised.take() {
+            return Ok((stepper.finish(), Some(error)));
+        }
+        if points.is_empty() {
+            return Ok((stepper.finish(), None));
+        }
+        asked = true;
+        let evaluated = caller.evaluate(py, points, dimension, &mut values, || stepper.is_interrupted());
+        let raised = match evaluated {
+            Ok(true) => continue,
+            Ok(false) => None,
+            Err(error) => Some(error),
+        };
+        return Ok((stepper.finish_with(&values).map_err(refused)?, raised));
+    }
+}
+
+/// The exception with what was found until then.
+pub(crate) fn with_report(py: Python<'_>, error: PyErr, report: Report) -> PyErr {
+    let attached = Py::new(py, report).and_then(|report| {
+        let value = error.value(py);
+        value.setattr("report", report)?;
+        let note = "satisfice: what was found until then is in the attribute `report` of this exception";
+        value.call_method1("add_note", (note,))
+    });
+    // An exception that takes no attribute is raised as it is.
+    drop(attached);
+    error
+}

@@ -1,0 +1,29 @@
+//! The native part of the Python package `satisfice`: searches, reports and the command. Its Python part is in `python/`.
+
+mod arguments;
+mod caller;
+mod find;
+mod listing;
+mod problem;
+mod report;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// Native part of the package `satisfice`.
+#[pymodule]
+mod _satisfice {
+    #[pymodule_export]
+    use crate::find::find;
+    #[pymodule_export]
+    use crate::listing::{command, listing, version};
+    #[pymodule_export]
+    use crate::problem::Problem;
+    #[pymodule_export]
+    use crate::report::{Best, Report};
+}
+
+/// A refusal of the framework, as Python sees it.
+pub(crate) fn refused(error: impl std::fmt::Display) -> PyErr {
+    pyo3::exceptions::PyValueError::new_err(error.to_string())
+}

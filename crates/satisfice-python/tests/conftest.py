@@ -1,0 +1,39 @@
+"""What several tests use."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+TIMES = {"elapsed_seconds", "overshoot_seconds", "seconds"}
+
+
+def without_times(report):
+    """The JSON of a report without what differs from run to run."""
+    return _without_times(json.loads(report))
+
+
+def _without_times(value):
+    if isinstance(value, dict):
+        return {key: _without_times(part) for key, part in value.items() if key not in TIMES}
+    if isinstance(value, list):
+        return [_without_times(part) for part in value]
+    return value
+
+
+def command(*arguments, **options):
+    """The command as a user runs it."""
+    return subprocess.run(
+        [sys.executable, "-m", "satisfice", *map(str, arguments)], capture_output=True, text=True, timeout=60, **options
+    )
+
+
+@pytest.fixture
+def circle():
+    """Distance from the unit circle."""
+
+    def distance(x):
+        return abs((x[0] ** 2 + x[1] ** 2) ** 0.5 - 1.0)
+
+    return distance

@@ -1,0 +1,120 @@
+"""Signals, exceptions and the interpreter's lock."""
+
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+import satisfice
+
+SQUARE = [(-2, 2), (-2, 2)]
+
+
+def interrupt(after):
+    """Sends SIGINT to this process and returns when it was sent."""
+    sent = []
+
+    def send():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(after, send).start()
+    return sent
+
+
+@pytest.mark.parametrize(
+    ("f", "options"),
+    [
+        (lambda x: float(x[0]), {}),
+        (np.sum, {}),  # written in C: it looks for no signals
+        (lambda x: x[:, 0], {"vectorized": True}),
+        (lambda x: float(x[0]), {"integrality": True}),  # 25 points: soon nothing is left to evaluate
+        (lambda x: [time.sleep(0.01), 1.0][1], {}),
+    ],
+)
+def test_ctrl_c_ends_a_search_and_keeps_its_report(f, options):
+    sent = interrupt(0.3)
+    with pytest.raises(KeyboardInterrupt) as raised:
+        satisfice.find(f, SQUARE, delta=-1.5, time=20, seed=1, engine="random", **options)
+    assert time.monotonic() - sent[0] < 0.1
+    report = raised.value.report
+    assert report.stop_reason == "Cancelled" and report.nfev > 5
+    if "vectorized" in options:
+        assert report.hits > 0
+
+
+@pytest.mark.parametrize("engine", ["random", "portfolio"])
+def test_ctrl_c_ends_a_problem_of_the_catalogue(engine):
+    problem = satisfice.problem("queens", n=12)
+    sent = interrupt(0.3)
+    with pytest.raises(KeyboardInterrupt) as raised:
+        satisfice.find(problem, time=20, seed=1, engine=engine)
+    assert time.monotonic() - sent[0] < 0.1
+    assert raised.value.report.stop_reason == "Cancelled" and raised.value.report.evaluations > 1000
+
+
+def test_an_exception_of_the_function_keeps_the_report():
+    calls = []
+
+    def f(x):
+        calls.append(x.copy())
+        if len(calls) == 100:
+            raise RuntimeError("the simulator diverged")
+        return -1.0
+
+    with pytest.raises(RuntimeError, match="diverged") as raised:
+        satisfice.find(f, SQUARE, delta=0, evaluations=1000, seed=1, engine="random")
+    report = raised.value.report
+    assert report.nfev == report.hits == 99 and np.array_equal(report.x, calls[:99])
+    assert "report" in raised.value.__notes__[0]
+
+
+def test_exceptions_that_are_caught_are_counted():
+    def f(x):
+        if x[0] < 0:
+            raise ZeroDivisionError
+        return -1.0
+
+    report = satisfice.find(f, SQUARE, delta=0, evaluations=1000, seed=1, engine="random", catch=ZeroDivisionError)
+    assert report.failed == report.non_finite == 1000 - report.hits and 300 < report.failed < 700
+    assert report.to_dict()["failed"] == report.failed
+    with pytest.raises(ZeroDivisionError):
+        satisfice.find(f, SQUARE, delta=0, evaluations=1000, seed=1, engine="random", catch=(ValueError, KeyError))
+    report = satisfice.find(lambda x: 1 / 0, SQUARE, delta=0, evaluations=64, seed=1, vectorized=True, catch=(ArithmeticError,))
+    assert report.failed == report.nfev == 64 and report.best is None
+
+
+def test_an_exception_of_the_callback_keeps_the_report():
+    def callback(progress):
+        raise LookupError("no such dashboard")
+
+    with pytest.raises(LookupError) as raised:
+        satisfice.find(lambda x: x.sum(), SQUARE, delta=-3, time=20, seed=1, callback=callback)
+    assert raised.value.report.stop_reason == "Cancelled"
+    with pytest.raises(LookupError) as raised:
+        satisfice.find(satisfice.problem("queens", n=12), time=20, seed=1, callback=callback)
+    assert raised.value.report.stop_reason == "Cancelled"
+
+
+def test_other_threads_run_while_engines_think():
+    counts, done = [0], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counts[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        satisfice.find(satisfice.problem("queens", n=12), time=0.3, seed=1)
+        built_in = counts[0]
+        # 121 points: nearly all of the time goes into proposals that are known.
+        satisfice.find(lambda x: -1.0, [(0, 10)] * 2, delta=0, integrality=True, time=0.3, seed=1, engine="random")
+        function = counts[0] - built_in
+    finally:
+        done.set()
+        thread.join()
+    assert built_in > 60 and function > 60
