@@ -2,6 +2,7 @@
 
 mod arguments;
 mod caller;
+mod collision;
 mod find;
 mod listing;
 mod problem;
@@ -13,6 +14,8 @@ use pyo3::prelude::*;
 /// Native part of the package `satisfice`.
 #[pymodule]
 mod _satisfice {
+    #[pymodule_export]
+    use crate::collision::{Body, Mesh, Step, World, close_pairs};
     #[pymodule_export]
     use crate::find::find;
     #[pymodule_export]

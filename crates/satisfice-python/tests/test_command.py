@@ -114,7 +114,7 @@ def test_the_examples_of_the_docstrings():
     import doctest
     import importlib
 
-    for name in ("satisfice", "satisfice._find", "satisfice._names"):
+    for name in ("satisfice", "satisfice._find", "satisfice._names", "satisfice.collision"):
         result = doctest.testmod(importlib.import_module(name))
         assert result.failed == 0 and result.attempted > 0
 

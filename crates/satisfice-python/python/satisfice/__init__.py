@@ -10,6 +10,7 @@ True
 `find` searches a function or a problem of the catalogue; `engines` and `problems` list what there is by name.
 """
 
+from . import collision
 from ._find import Progress, find
 from ._names import Engine, Parameter, ProblemInfo, engines, problem, problems
 from ._satisfice import Best, Problem, Report, version
@@ -24,6 +25,7 @@ __all__ = [
     "ProblemInfo",
     "Progress",
     "Report",
+    "collision",
     "engines",
     "find",
     "problem",

@@ -1,0 +1,339 @@
+"""Meshes, close pairs, worlds and steps, against brute force in NumPy."""
+
+import itertools
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+from satisfice import collision
+
+
+def sheet(n, height=0.0, seed=0, noise=0.0):
+    """A square of n x n vertices with triangles, its height disturbed."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n), indexing="ij")
+    z = height + noise * rng.standard_normal((n, n))
+    vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    faces = np.concatenate(
+        [np.stack([corner, corner + n, corner + 1], 1), np.stack([corner + 1, corner + n, corner + n + 1], 1)]
+    )
+    return vertices, faces
+
+
+def point_triangle(p, t):
+    """Distance of points (n, 3) and triangles (n, 3, 3), by the seven regions."""
+    a, b, c = t[:, 0], t[:, 1], t[:, 2]
+    normal = np.cross(b - a, c - a)
+    inside = np.ones(len(p), bool)
+    for u, v in ((a, b), (b, c), (c, a)):
+        inside &= np.einsum("ij,ij->i", np.cross(v - u, p - u), normal) >= 0
+    plane = np.abs(np.einsum("ij,ij->i", p - a, normal)) / np.linalg.norm(normal, axis=1)
+    edges = np.min([point_segment(p, u, v) for u, v in ((a, b), (b, c), (c, a))], axis=0)
+    return np.where(inside, plane, edges)
+
+
+def point_segment(p, u, v):
+    share = np.clip(np.einsum("ij,ij->i", p - u, v - u) / np.einsum("ij,ij->i", v - u, v - u), 0, 1)
+    return np.linalg.norm(p - u - share[:, None] * (v - u), axis=1)
+
+
+def segment_segment(a, b, c, d):
+    """Distance of segments: the four ends, and the inner point where both are inside."""
+    ends = np.min([point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)], axis=0)
+    u, v, w = b - a, d - c, a - c
+    uu, uv, vv = (np.einsum("ij,ij->i", x, y) for x, y in ((u, u), (u, v), (v, v)))
+    uw, vw = np.einsum("ij,ij->i", u, w), np.einsum("ij,ij->i", v, w)
+    det = uu * vv - uv * uv
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s, t = (uv * vw - vv * uw) / det, (uu * vw - uv * uw) / det
+        inner = np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1)
+        return np.where((s >= 0) & (s <= 1) & (t >= 0) & (t <= 1) & (det > 1e-14), np.minimum(ends, inner), ends)
+
+
+def triangle_triangle(s, t):
+    """Distance of triangles that do not meet."""
+    parts = [point_triangle(s[:, i], t) for i in range(3)] + [point_triangle(t[:, i], s) for i in range(3)]
+    for i, j in itertools.product(range(3), repeat=2):
+        parts.append(segment_segment(s[:, i], s[:, (i + 1) % 3], t[:, j], t[:, (j + 1) % 3]))
+    return np.min(parts, axis=0)
+
+
+def all_pairs(m, n):
+    i, j = np.meshgrid(np.arange(m), np.arange(n), indexing="ij")
+    return i.ravel(), j.ravel()
+
+
+A, B = sheet(9, 0.0, seed=1, noise=0.01), sheet(8, 0.1, seed=2, noise=0.01)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize(
+    ("pairs", "count", "measure"),
+    [
+        ("vertex-vertex", (81, 64), lambda i, j: np.linalg.norm(A[0][i] - B[0][j], axis=1)),
+        ("vertex-triangle", (81, 98), lambda i, j: point_triangle(A[0][i], B[0][B[1][j]])),
+        ("triangle-triangle", (128, 98), lambda i, j: triangle_triangle(A[0][A[1][i]], B[0][B[1][j]])),
+    ],
+)
+def test_close_pairs_agree_with_brute_force(pairs, count, measure, threads):
+    i, j = all_pairs(*count)
+    expected = measure(i, j)
+    threshold = 0.12
+    close = expected < threshold
+    assert np.abs(expected - threshold).min() > 1e-9
+    found = collision.close_pairs(A, B, threshold=threshold, pairs=pairs, threads=threads, witnesses=True)
+    assert found.complete and len(found) == close.sum() > 20
+    assert np.array_equal(found.i, i[close]) and np.array_equal(found.j, j[close])
+    np.testing.assert_allclose(found.distance, expected[close], rtol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(found.point_a - found.point_b, axis=1), found.distance, rtol=1e-9)
+
+
+def test_the_threshold_is_strict():
+    points = [np.zeros((1, 3)), np.array([[3.0, 4.0, 0.0]])]
+    assert len(collision.close_pairs(*points, threshold=5.0, pairs="vertex-vertex")) == 0
+    assert len(collision.close_pairs(*points, threshold=np.nextafter(5.0, 6.0), pairs="vertex-vertex")) == 1
+
+
+def test_pairs_of_a_mesh_with_itself():
+    vertices, faces = sheet(6)
+    vertices[:, 2] = np.where(vertices[:, 0] > 0.5, 0.05, 0.0)
+    vertices[:, 0] = np.abs(vertices[:, 0] - 0.5)  # folded
+    found = collision.close_pairs((vertices, faces), threshold=0.08, pairs="vertex-vertex")
+    i, j = np.triu_indices(len(vertices), 1)
+    edges = {tuple(sorted(edge)) for face in faces for edge in itertools.combinations(face.tolist(), 2)}
+    close = np.linalg.norm(vertices[i] - vertices[j], axis=1) < 0.08
+    expected = [(a, b) for a, b in zip(i[close].tolist(), j[close].tolist(), strict=True) if (a, b) not in edges]
+    assert list(zip(found.i.tolist(), found.j.tolist(), strict=True)) == expected and len(expected) > 5
+
+
+class Mesh:
+    """What trimesh, meshio wrappers and others have in common."""
+
+    def __init__(self, vertices, faces):
+        self.vertices, self.faces = vertices, faces
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        lambda v, f: (v, f),
+        Mesh,
+        lambda v, f: Mesh(np.asfortranarray(v), np.asfortranarray(f.astype(np.int32))),
+        lambda v, f: (v.astype(">f8"), f.astype(np.uint64)),
+        lambda v, f: (v.tolist(), f.tolist()),
+        lambda v, f: (np.repeat(v, 2, axis=0)[::2], f[::-1][::-1]),
+        lambda v, f: collision.mesh(v, f),
+    ],
+)
+def test_meshes_of_any_form(form):
+    expected = collision.close_pairs(A, B, threshold=0.11)
+    for array in A:
+        array.setflags(write=False)
+    found = collision.close_pairs(form(*A), form(*B), threshold=0.11)
+    assert np.array_equal(found.i, expected.i) and np.array_equal(found.distance, expected.distance) and len(found) > 0
+
+
+def test_transforms_move_the_meshes():
+    angle = 2.0
+    c, s = np.cos(angle), np.sin(angle)
+    rotation = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    transform = np.eye(4)
+    transform[:3, :3], transform[:3, 3] = rotation, [1, 2, 3]
+    moved = [(v @ rotation.T + [1, 2, 3], f) for v, f in (A, B)]
+    by_transform = collision.close_pairs(A, moved[1], threshold=0.12, transform_a=transform)
+    still = collision.close_pairs(A, B, threshold=0.12)
+    assert np.array_equal(by_transform.i, still.i)
+    np.testing.assert_allclose(by_transform.distance, still.distance, atol=1e-12)
+    for turn in (np.diag([-1.0, -1, 1]), np.diag([-1.0, 1, -1]), np.diag([1.0, -1, -1])):
+        half = np.eye(4)
+        half[:3, :3] = turn
+        found = collision.close_pairs(A, (B[0] @ turn.T, B[1]), threshold=0.12, transform_a=half)
+        assert np.array_equal(found.i, still.i)
+    shifted = collision.close_pairs(A, (B[0] + [1, 2, 3], B[1]), threshold=0.12, transform_a=[1, 2, 3])
+    assert np.array_equal(shifted.i, still.i)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "says"),
+    [
+        ((A, B), {"threshold": 0.0}, "threshold"),
+        ((A, B), {"threshold": float("nan")}, "threshold"),
+        ((A, B), {"threshold": 1, "pairs": "vertex-vertx"}, "vertex-vertx"),
+        ((3, B), {"threshold": 1}, "no mesh"),
+        (("teapot", B), {"threshold": 1}, "no mesh"),
+        ((A[0][:, :2], B), {"threshold": 1}, r"shape \(n, 3\)"),
+        (((A[0], A[1][:, :2]), B), {"threshold": 1}, r"shape \(m, 3\)"),
+        (((A[0], A[1] * 1.5), B), {"threshold": 1}, "whole numbers"),
+        (((A[0], A[1] + 1), B), {"threshold": 1}, "81"),
+        (((A[0], A[1] - 1), B), {"threshold": 1}, "vertex -1"),
+        (((A[0] * np.nan, A[1]), B), {"threshold": 1}, "NaN"),
+        ((np.zeros((0, 3)), B), {"threshold": 1}, ""),
+        ((A, B), {"threshold": 1, "transform_a": np.eye(3)}, r"shape \(4, 4\)"),
+        ((A, B), {"threshold": 1, "transform_a": 2 * np.eye(4)}, "rotation"),
+        ((A, B), {"threshold": 1, "transform_a": np.diag([-1.0, 1, 1, 1])}, "rotation"),
+        ((A,), {"threshold": 1, "transform_a": np.eye(4)}, "itself"),
+        ((A, B), {"threshold": 1, "time": -1}, "time"),
+    ],
+)
+def test_bad_input_is_refused(arguments, options, says):
+    with pytest.raises(ValueError, match=says):
+        collision.close_pairs(*arguments, **options)
+
+
+def test_a_limit_and_a_time_end_a_query_early():
+    fine = sheet(120)
+    above = (fine[0] + [0, 0, 0.001], fine[1])
+    some = collision.close_pairs(fine, above, threshold=0.02, limit=1000)
+    assert not some.complete and len(some) == 1000 and (some.distance < 0.02).all()
+    begun = time.monotonic()
+    some = collision.close_pairs(fine, above, threshold=0.2, pairs="vertex-vertex", time=0.05)
+    assert not some.complete and time.monotonic() - begun < 1.0
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_ctrl_c_ends_a_query(threads):
+    fine = sheet(400)
+    mesh, above = collision.mesh(*fine), collision.mesh(fine[0] + [0, 0, 0.001], fine[1])
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        # 10^9 pairs
+        collision.close_pairs(mesh, above, threshold=0.5, pairs="vertex-vertex", limit=10**7, threads=threads)
+        time.sleep(5)
+    assert time.monotonic() - begun < 5
+
+
+def test_pairs_as_a_sparse_matrix():
+    pytest.importorskip("scipy")
+    found = collision.close_pairs(A, B, threshold=0.12)
+    matrix = found.to_coo((128, 98))
+    assert matrix.nnz == len(found) and matrix.toarray()[found.i[0], found.j[0]] == found.distance[0]
+
+
+def test_pairs_agree_with_the_tree_of_scipy():
+    spatial = pytest.importorskip("scipy.spatial")
+    rng = np.random.default_rng(3)
+    a, b = rng.random((2000, 3)), rng.random((2000, 3))
+    found = collision.close_pairs(a, b, threshold=0.05, pairs="vertex-vertex")
+    theirs = spatial.cKDTree(a).sparse_distance_matrix(spatial.cKDTree(b), 0.05, output_type="coo_matrix")
+    assert set(zip(found.i.tolist(), found.j.tolist(), strict=True)) == set(
+        zip(theirs.row.tolist(), theirs.col.tolist(), strict=True)
+    )
+
+
+def test_a_trimesh_is_a_mesh():
+    trimesh = pytest.importorskip("trimesh")
+    one, two = trimesh.creation.icosphere(2), trimesh.creation.icosphere(2)
+    two.apply_translation([2.5, 0, 0])
+    nearest = collision.distance(one, two)
+    assert nearest.distance == pytest.approx(0.5, abs=1e-9)
+    assert collision.any_closer(one, two, threshold=0.51) and not collision.any_closer(one, two, threshold=0.49)
+
+
+def test_distance_and_any_closer():
+    i, j = all_pairs(128, 98)
+    expected = triangle_triangle(A[0][A[1][i]], B[0][B[1][j]])
+    nearest = collision.distance(A, B)
+    assert nearest.distance == pytest.approx(expected.min(), rel=1e-9)
+    assert expected[nearest.a * 98 + nearest.b] == pytest.approx(expected.min(), rel=1e-9)
+    assert np.linalg.norm(nearest.point_a - nearest.point_b) == pytest.approx(nearest.distance)
+    back = collision.distance(B, A)
+    assert (back.distance, back.a, back.b) == (nearest.distance, nearest.b, nearest.a)
+    assert collision.any_closer(A, B, threshold=np.nextafter(nearest.distance, 1))
+    assert not collision.any_closer(A, B, threshold=nearest.distance)
+    assert not collision.any_closer(A, threshold=1e-6)
+    assert collision.distance(A, A).distance == 0.0
+    with pytest.raises(ValueError, match="no features"):
+        collision.distance(A[0], B)
+
+
+def test_a_world_over_frames():
+    world = collision.World(threshold=0.12, pairs="vertex-vertex")
+    floor = world.add(A, "fixed")
+    lid = world.add(B, transform=[0, 0, 5])
+    cloth = world.add((A[0] + [10, 0, 0], A[1]), "deforming")
+    assert world.update().complete and len(world.contacts()) == 0 and len(world) == 3 and list(world)[1] == lid
+    for height in (0.0, 0.01, 0.05, 3.0):
+        world.place(lid, [0, 0, height])
+        update = world.update()
+        contacts = world.contacts()
+        expected = collision.close_pairs(A, B, threshold=0.12, pairs="vertex-vertex", transform_b=[0, 0, height])
+        assert update.complete and np.array_equal(contacts["a"], expected.i) and np.array_equal(contacts["b"], expected.j)
+        assert np.array_equal(contacts["distance"], expected.distance)
+        assert set(contacts["body_a"]) <= {floor.index} and set(contacts["body_b"]) <= {lid.index}
+    assert len(world.changes()["ended"]) > 0 and len(world.changes()["begun"]) == 0
+    assert world.update().recomputed == 0
+    world.deform(cloth, A[0] + [0, 0, 0.01])
+    assert [(a.index, b.index) for a, b in world.touching()] == [(floor.index, cloth.index)]
+    assert world.first()[:2] == (floor.index, cloth.index)
+    world.exclude(floor, cloth)
+    assert world.first() is None
+    world.include(floor, cloth)
+    world.threshold = 0.005
+    assert world.threshold == 0.005 and world.first() is None
+    assert world.nearest(3)["distance"][0] == pytest.approx(0.01)
+    assert world.distance(floor, lid).distance > 2.5
+    assert world.cast_ray([0.5, 0.5, 9], [0.5, 0.5, -9])[0] == lid
+    assert world.nearest_to_point([0.0, 0.0, 9.0])[0] == lid
+    assert world.bodies_in([-1, -1, 2], [2, 2, 4]) == [lid]
+    world.remove(lid)
+    with pytest.raises(ValueError, match="handle"):
+        world.place(lid, None)
+    with pytest.raises(ValueError, match="motion"):
+        world.add(A, "floating")
+
+
+def test_a_world_is_used_from_threads():
+    from concurrent.futures import ThreadPoolExecutor
+
+    world = collision.World(threshold=0.12)
+    world.add(A, "fixed")
+    lid = world.add(B)
+
+    def frame(height):
+        world.place(lid, [0, 0, height])
+        world.update()
+        return len(world.contacts())
+
+    with ThreadPoolExecutor(4) as pool:
+        assert all(count >= 0 for count in pool.map(frame, np.linspace(0, 1, 40)))
+
+
+def test_impacts_of_a_falling_sheet():
+    low, high = A, (B[0] + [0, 0, 1.0], B[1])
+    step = collision.Step()
+    step.add(*low[:1], low[0], low[1])
+    step.add(high[0], high[0] - [0, 0, 2.0], high[1])
+    found = step.impacts(tolerance=1e-9)
+    assert found.complete and len(found) > 50
+    assert (found.time[:, 0] <= found.time[:, 1]).all() and (np.diff(found.time, axis=1) <= 1e-9).all()
+    # Vertices of the upper sheet against triangles of the lower one, referee: where the line meets the plane.
+    upper = found.body_a == 1
+    start = high[0][found.a[upper]]
+    corners = low[0][low[1][found.b[upper]]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    height = np.einsum("ij,ij->i", start - corners[:, 0], normal) / normal[:, 2]
+    np.testing.assert_allclose(found.time[upper].mean(axis=1), height / 2.0, atol=1e-8)
+    edges = step.impacts(pairs="edge-edge", threads=2)
+    first = min(found.time[:, 0].min(), edges.time[:, 0].min())
+    assert step.free_step() == pytest.approx(first, abs=2e-6) and 0 < step.free_step() <= first + 1e-12
+    (lower, upper_bound), pair, proved = step.earliest()
+    assert proved and lower <= first + 1e-9 and upper_bound >= first - 1e-9 and pair[0] in ("vertex-triangle", "edge-edge")
+
+
+def test_a_sheet_that_folds_onto_itself():
+    vertices, faces = sheet(7)
+    folded = vertices.copy()
+    folded[vertices[:, 0] > 0.5, 0] = 1.0 - folded[vertices[:, 0] > 0.5, 0]
+    folded[vertices[:, 0] > 0.5, 2] = -0.3
+    free = collision.free_step(vertices + [0, 0, 0.1] * (vertices[:, :1] > 0.5), folded, faces)
+    assert 0 < free < 1
+    assert len(collision.impacts(vertices, vertices, faces)) == 0 and collision.free_step(vertices, vertices, faces) == 1.0
+    with pytest.raises(ValueError, match="edge-edge"):
+        collision.impacts(vertices, folded, faces, pairs="triangle-triangle")
+    with pytest.raises(ValueError, match="as many"):
+        collision.impacts(vertices, folded[1:], faces)
