@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use satisfice::{Axis, Cancel, Search, Space, Stepper};
 use satisfice_catalogue::black_box::{BlackBox, Point, Separation};
-use satisfice_catalogue::{RunSpec, Settings, report_of};
+use satisfice_catalogue::{RunReport, RunSpec, Settings};
 use serde_json::Value;
 
 use crate::arguments::{Run, budget};
@@ -87,7 +87,9 @@ pub(crate) fn find<'py>(
     let stepper = search.start(&problem, &budget).map_err(refused)?;
     let (report, raised) = drive(py, stepper, &mut caller, &mut watcher, question.axes.len())?;
 
-    let mut report = report_of(&problem, RunSpec { threads: 1, ..spec }, &[report]).map_err(refused)?;
+    let spec = RunSpec { threads: 1, ..spec };
+    let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value).map_err(refused)?;
+    report.slices.clear();
     report.failed = caller.failed;
     let report = Report::new(report);
     match raised {

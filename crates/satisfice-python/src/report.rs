@@ -5,7 +5,7 @@ use pyo3::exceptions::{PyImportError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyType};
-use satisfice_catalogue::report::Solution;
+use satisfice_catalogue::report::FoundSolution;
 use satisfice_catalogue::{RunReport, json};
 use serde_json::Value;
 
@@ -58,7 +58,7 @@ impl Report {
         &self,
         py: Python<'_>,
         cell: &PyOnceLock<Py<PyArray1<T>>>,
-        value: impl Fn(&Solution) -> T,
+        value: impl Fn(&FoundSolution) -> T,
     ) -> Py<PyArray1<T>> {
         let array = || {
             let column: Vec<T> = self.report.solutions.iter().map(value).collect();

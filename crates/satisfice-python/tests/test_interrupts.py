@@ -12,16 +12,22 @@ import satisfice
 SQUARE = [(-2, 2), (-2, 2)]
 
 
-def interrupt(after):
-    """Sends SIGINT to this process and returns when it was sent."""
-    sent = []
+def interrupted(search):
+    """The report of a search that Ctrl-C ends within 100 ms; a machine that is busy with other things has three tries."""
+    for _ in range(3):
+        sent = []
 
-    def send():
-        sent.append(time.monotonic())
-        os.kill(os.getpid(), signal.SIGINT)
+        def send(sent=sent):
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
 
-    threading.Timer(after, send).start()
-    return sent
+        threading.Timer(0.2, send).start()
+        with pytest.raises(KeyboardInterrupt) as raised:
+            search()
+        took = time.monotonic() - sent[0]
+        if took < 0.1:
+            return raised.value.report
+    raise AssertionError(f"it took {took} s")
 
 
 @pytest.mark.parametrize(
@@ -35,11 +41,10 @@ def interrupt(after):
     ],
 )
 def test_ctrl_c_ends_a_search_and_keeps_its_report(f, options):
-    sent = interrupt(0.3)
-    with pytest.raises(KeyboardInterrupt) as raised:
-        satisfice.find(f, SQUARE, delta=-1.5, time=20, seed=1, engine="random", **options)
-    assert time.monotonic() - sent[0] < 0.1
-    report = raised.value.report
+    def search():
+        satisfice.find(f, SQUARE, delta=-1.99, time=20, seed=1, engine="random", **options)
+
+    report = interrupted(search)
     assert report.stop_reason == "Cancelled" and report.nfev > 5
     if "vectorized" in options:
         assert report.hits > 0
@@ -48,11 +53,8 @@ def test_ctrl_c_ends_a_search_and_keeps_its_report(f, options):
 @pytest.mark.parametrize("engine", ["random", "portfolio"])
 def test_ctrl_c_ends_a_problem_of_the_catalogue(engine):
     problem = satisfice.problem("queens", n=12)
-    sent = interrupt(0.3)
-    with pytest.raises(KeyboardInterrupt) as raised:
-        satisfice.find(problem, time=20, seed=1, engine=engine)
-    assert time.monotonic() - sent[0] < 0.1
-    assert raised.value.report.stop_reason == "Cancelled" and raised.value.report.evaluations > 1000
+    report = interrupted(lambda: satisfice.find(problem, time=20, seed=1, engine=engine))
+    assert report.stop_reason == "Cancelled" and report.evaluations > 1000
 
 
 def test_an_exception_of_the_function_keeps_the_report():

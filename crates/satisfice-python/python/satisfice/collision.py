@@ -84,12 +84,12 @@ def mesh(value: Any, faces: Any = None, edges: Any = None) -> Mesh:
 
 def _vertices(value: Any) -> NDArray[np.float64]:
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(f"no mesh: {type(value).__name__} has no vertices and faces, and is no array of shape (n, 3)") from None
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"vertices have shape {array.shape}: they need shape (n, 3)")
-    return array
+    return np.ascontiguousarray(array)
 
 
 def _indices(name: str, value: Any, corners: int) -> NDArray[np.int64] | None:
