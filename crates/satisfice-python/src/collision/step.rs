@@ -163,7 +163,6 @@ impl Step {
     }
 
     /// Bounds of the time of the first impact, the pair and its kind, and whether that is proved.
-    #[expect(clippy::type_complexity, reason = "a tuple for Python")]
     fn earliest(
         &self,
         py: Python<'_>,
