@@ -18,6 +18,8 @@ pub(super) struct Ordered<S, T> {
     pub(super) out: Vec<Out<S>>,
     /// Values from elsewhere that wait for a batch to be settled, with their positions.
     pub(super) informed: Vec<(T, S, Vec<S>)>,
+    /// Whether a proposal was forgotten: then nothing is proved.
+    pub(super) has_gaps: bool,
 }
 
 /// A batch that is out.
@@ -59,6 +61,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             running,
             out: Vec::new(),
             informed: Vec::new(),
+            has_gaps: false,
         }
     }
 
@@ -78,7 +81,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
                 out.tickets.push(number);
                 return Some(solution);
             }
-            if !self.propose(problem, previous) {
+            let proposed = self.propose(problem, previous);
+            self.withdraw_proofs();
+            if !proposed {
                 return None;
             }
         }
@@ -114,6 +119,20 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             self.register(Turn::Probes, problem, previous);
         }
         probes
+    }
+
+    /// An engine that says it has covered the space does not know of what was forgotten.
+    fn withdraw_proofs(&mut self) {
+        if !self.has_gaps {
+            return;
+        }
+        let Running { lanes, exchange } = &mut self.running;
+        let common = exchange.as_mut().map(|exchange| &mut exchange.common);
+        for slice in lanes.iter_mut().map(|lane| &mut lane.slice).chain(common) {
+            if slice.ledger.stop == Some(StopReason::Covered) {
+                slice.ledger.stop = Some(StopReason::Exhausted);
+            }
+        }
     }
 
     /// Notes a batch that is proposed; one whose solutions are all in the archive is settled at once.
@@ -188,6 +207,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
         let (at, slot) = self.find(number)?;
+        self.has_gaps |= value.is_none();
         self.out[at].answers[slot] = value.map_or(Answer::Forgotten, Answer::Value);
         if self.out[at].is_answered() {
             let out = self.out.remove(at);
@@ -208,6 +228,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
                 .evaluated_elsewhere(computed.iter().flatten().count());
         }
         self.running.settle(out.turn, problem, previous, &mut ());
+        self.withdraw_proofs();
         self.enter_informed(problem, previous);
     }
 

@@ -99,6 +99,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         let state = match tickets.order {
             Order::Ordered => {
                 let mut ordered = Ordered::new(crate::search::resume::restore(saved, lanes)?);
+                ordered.has_gaps = !tickets.forgotten.is_empty();
                 let out: Vec<Out<P::Scalar>> = reader.read()?;
                 for out in out {
                     if !ordered.propose_again(out, &*problem, &search.previous) {
