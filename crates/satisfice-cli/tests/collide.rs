@@ -372,6 +372,25 @@ fn a_picture_is_drawn() {
     }
 }
 
+/// What a page shows is tested with the pages; here, that every kind of answer becomes one, whatever bodies are called.
+#[test]
+fn a_page_is_written() {
+    let folder = bodies();
+    let hostile = "<script>alert(1)<script>.obj";
+    fs::copy(folder.path().join("b.obj"), folder.path().join(hostile)).unwrap();
+    for arguments in [
+        "b.obj --pairs vertex-triangle --page -",
+        "b.obj --pairs edge-edge --method random --evaluations 2000 --up z --page -",
+        &format!("{hostile} --closest 3 --page -"),
+    ] {
+        let done = satisfice_in(folder.path(), &format!("collide a.obj --threshold 0.12 {arguments}"));
+        assert!(done.code <= 1, "{}", done.stderr);
+        let text = &done.stdout;
+        assert!(text.starts_with("<!DOCTYPE html>") && text.ends_with("</html>"), "{arguments}");
+        assert!(!text.contains("<script>alert"), "{arguments}");
+    }
+}
+
 #[test]
 fn slips_of_units_and_scale_are_warned_of() {
     let folder = bodies();
@@ -430,6 +449,7 @@ fn mistakes_are_told_in_one_line() {
         "collide points.obj --self --threshold 1 --pairs edge-edge",
         "collide triangle.obj above.obj --threshold 1 --picture scene.jpg",
         "collide triangle.obj above.obj --threshold 1 --up x",
+        "collide triangle.obj above.obj --threshold 1 --page scene.png",
         "collide triangle.obj above.obj --threshold 1 --picture scene.png --up w",
         "collide triangle.obj above.obj --threshold 1 --json - --out -",
         "collide triangle.obj above.obj --threshold 1 --method qpso --engine-set particle=3",

@@ -121,8 +121,12 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "FILE.png", value_hint = ValueHint::FilePath)]
     pub(crate) picture: Option<PathBuf>,
 
-    /// Which axis points upwards in the picture [default: y, or z if the first mesh is an STL file].
-    #[arg(long, value_name = "AXIS", requires = "picture")]
+    /// Write a page to look into: the bodies and pairs in three dimensions, in the order found, as one file that works offline.
+    #[arg(long, value_name = "FILE.html", value_hint = ValueHint::FilePath)]
+    pub(crate) page: Option<PathBuf>,
+
+    /// Which axis points upwards in the picture and the page [default: y, or z if the first mesh is an STL file].
+    #[arg(long, value_name = "AXIS")]
     pub(crate) up: Option<Axis>,
 }
 

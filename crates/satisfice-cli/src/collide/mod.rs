@@ -7,6 +7,7 @@ mod files;
 pub(crate) mod inputs;
 mod memory;
 mod motion;
+mod page;
 mod pairs;
 mod picture;
 mod report;
@@ -83,6 +84,10 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
             &report.pairs.pairs,
             &missed,
         )?)?;
+    }
+    if let Some(file) = &mut files.page {
+        let missed = picture::missed(&answer.reference, &report.pairs.pairs);
+        file.write(page::html(&report, arguments.up, &missed)?.as_bytes())?;
     }
     if let Some(file) = &mut files.json {
         file.write_by(&mut |out| json::write(&report, out))?;
@@ -198,7 +203,12 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
     if method == "grid" && arguments.pairs_at_rest() != arguments::PairKind::VertexVertex {
         bail!("--method grid is for --pairs vertex-vertex: choose exact or tree");
     }
-    picture::check(arguments.picture.as_deref())
+    let draws = arguments.picture.is_some() || arguments.page.is_some();
+    if arguments.up.is_some() && !draws {
+        bail!("--up says how a picture or a page is drawn: add --picture FILE.png or --page FILE.html");
+    }
+    picture::check(arguments.picture.as_deref())?;
+    page::check(arguments.page.as_deref())
 }
 
 fn warn(world: &World) {

@@ -36,6 +36,14 @@ fn usual_up(mesh: &Path) -> Axis {
     if is_stl { Axis::Z } else { Axis::Y }
 }
 
+/// The axis that points upwards in what is drawn of a scene.
+pub(super) fn up_of(world: &World, asked: Option<Axis>) -> Axis {
+    let first = world.bodies.first();
+    asked
+        .or(first.map(|body| usual_up(&body.file)))
+        .unwrap_or(Axis::Z)
+}
+
 /// The scene with the pairs that were found and, if they are known, those that were missed.
 pub(super) fn draw(
     world: &World,
@@ -43,8 +51,7 @@ pub(super) fn draw(
     found: &[Pair],
     missed: &[Pair],
 ) -> anyhow::Result<Vec<u8>> {
-    let first = world.bodies.first();
-    let up = up.or(first.map(|body| usual_up(&body.file))).unwrap_or(Axis::Z);
+    let up = up_of(world, up);
     let view = View {
         up: match up {
             Axis::X => Up::X,

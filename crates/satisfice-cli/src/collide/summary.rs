@@ -94,7 +94,7 @@ fn count(report: &Report<'_>) -> String {
     }
 }
 
-fn completeness(report: &Report<'_>) -> String {
+pub(super) fn completeness(report: &Report<'_>) -> String {
     let head = &report.head;
     if head.completeness == Completeness::Proved {
         return "proved: these are all".to_owned();

@@ -85,6 +85,8 @@ fn check(arguments: &CollideArguments) -> anyhow::Result<()> {
         (arguments.weld.is_some(), "--weld"),
         (arguments.ring_width.is_some(), "--ring-width"),
         (arguments.picture.is_some(), "--picture"),
+        (arguments.page.is_some(), "--page"),
+        (arguments.up.is_some(), "--up"),
     ];
     let given = useless
         .iter()
