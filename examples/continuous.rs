@@ -1,6 +1,6 @@
 //! Motion between two frames: a bullet that passes through a sheet, which neither frame shows, and a pleated cloth that is
-//! squeezed. All pairs that touch, the first impact between proved bounds, what a tenth of the time knows, and a picture with the
-//! impacts coloured by their time.
+//! squeezed. All pairs that touch, the first impact between proved bounds, what a tenth of the time knows, and a picture and
+//! a page with the impacts coloured by their time.
 //!
 //! `cargo run --release --example continuous`
 
@@ -13,7 +13,10 @@ use std::{env, fs};
 use satisfice_collision::continuous::{Moving, MovingContact, Separation, Step, impact};
 use satisfice_collision::distance::{PairKind, Threshold, edge_edge};
 use satisfice_collision::{Mesh, Placement, generate};
+use satisfice_page::{Contact, Feature, FeatureKind, ScenePage};
 
+/// The page shows the step at so many equal parts of it.
+const PARTS: u32 = 20;
 /// Half the sheet's width, in pixels.
 const HALF: f64 = 400.0;
 
@@ -59,7 +62,11 @@ fn bullet() -> Result<(), Box<dyn Error>> {
         hits.pairs.len(),
         hits.candidates
     );
-    let mut impacts = Vec::new();
+    let mut page = ScenePage::new("A bullet through a sheet");
+    for (name, mesh) in [("ball", &above), ("sheet", &sheet)] {
+        page.body(name, mesh.vertices(), mesh.triangles(), mesh.lines());
+    }
+    let (mut impacts, mut contacts) = (Vec::new(), Vec::new());
     for MovingContact { a, b } in hits.pairs {
         let ends = |mesh: &Mesh, e: u32| mesh.edges()[e as usize].map(|v| mesh.vertex(v));
         let moving = Moving::new(ends(&above, a.index), ends(&below, a.index));
@@ -71,7 +78,22 @@ fn bullet() -> Result<(), Box<dyn Error>> {
             "no pair is before the first impact"
         );
         impacts.push((impact.time[0], impact.point_b));
+        let kind = FeatureKind::Edge;
+        let features = [(0, a.index), (1, b.index)].map(|(body, number)| Feature { body, kind, number });
+        let contact = Contact::new(features, [impact.point_a, impact.point_b]).impact(impact.time[0]);
+        contacts.push((impact.time[0], contact));
     }
+    for part in 0..=PARTS {
+        let time = f64::from(part) / f64::from(PARTS);
+        page.frame(format!("{time:.2} of the step"));
+        let ends = above.vertices().iter().zip(below.vertices());
+        let now = ends.map(|(from, to)| std::array::from_fn(|k| from[k] + time * (to[k] - from[k])));
+        page.move_body(0, &now.collect::<Vec<_>>())?;
+        let so_far = contacts.iter().filter(|(impact, _)| *impact <= time);
+        so_far.for_each(|(_, contact)| page.contact(*contact));
+        page.counts(None, Some(contacts.len() as u64));
+    }
+    write("continuous.html", &page.html()?)?;
     write("continuous.svg", &picture(&sheet, &impacts)?)
 }
 

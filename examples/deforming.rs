@@ -1,5 +1,5 @@
 //! A deforming scene frame by frame: a pleated cloth with travelling waves, a ball that passes down through it, a table that
-//! stays. For each frame: the contacts, the time, what was skipped, and how much a tenth of the time finds.
+//! stays. For each frame: the contacts, the time, what was skipped, and how much a tenth of the time finds; a picture, and a page with all frames.
 //!
 //! `cargo run --release --example deforming`
 
@@ -14,6 +14,7 @@ use satisfice_collision::broad::Method;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, BodyId, Completeness, Contact, Skips, World};
 use satisfice_collision::{Mesh, Placement, generate};
+use satisfice_page::{Feature, FeatureKind, ScenePage};
 use satisfice_picture::{Picture, View};
 
 const KIND: PairKind = PairKind::TriangleTriangle;
@@ -26,6 +27,8 @@ const FRAMES: usize = 20;
 const REST: usize = 12;
 /// The frame compared with brute force.
 const SAMPLED: usize = 7;
+/// The page lists so many pairs of a frame, evenly chosen.
+const LISTED: usize = 800;
 /// The frame drawn.
 const DRAWN: usize = 11;
 
@@ -49,6 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("frame      ms    pairs   kept  tenth  skipped");
     let mut csv = "frame,milliseconds,pairs,kept,found_in_a_tenth,skipped\n".to_owned();
     let (mut before, mut shares, mut rested) = (Vec::new(), Vec::new(), false);
+    let mut page = film.page()?;
     for frame in 0..FRAMES {
         film.go_to(&mut scene, frame)?;
         let (answer, milliseconds) = timed(|| scene.frame())?;
@@ -115,12 +119,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             "{frame},{milliseconds},{},{kept},{tenth},{skips}",
             contacts.len()
         )?;
+        film.add_frame(&mut page, &scene, frame, &contacts, &found)?;
         if frame == DRAWN {
             write("deforming.png", &film.picture(&scene, frame, &contacts)?)?;
         }
         before = contacts;
     }
     write("deforming.csv", csv.as_bytes())?;
+    write("deforming.html", page.html()?.as_bytes())?;
     println!(
         "\nin a tenth of the time {:.0} % of the pairs of a moving frame on the mean",
         100.0 * shares.iter().sum::<f64>() / shares.len() as f64
@@ -179,6 +185,49 @@ impl Film {
         let mut scene = self.scene(Method::BruteForce)?;
         self.go_to(&mut scene, frame)?;
         Ok(scene.frame()?.contacts)
+    }
+
+    /// A page with the bodies as they begin.
+    fn page(&self) -> Result<ScenePage, Box<dyn Error>> {
+        let mut page = ScenePage::new("A cloth, a ball and a table");
+        page.threshold(DELTA);
+        page.method("a tenth of the time of the whole frame");
+        let (ball, cloth) = (Self::course(0)?.place(&self.ball)?, self.cloth(0)?);
+        for (name, mesh) in [("table", &self.table), ("ball", &ball), ("cloth", &cloth)] {
+            page.body(name, mesh.vertices(), mesh.triangles(), mesh.lines());
+        }
+        Ok(page)
+    }
+
+    /// A frame of the page: pairs found in a tenth of the time, and those missed.
+    fn add_frame(
+        &self,
+        page: &mut ScenePage,
+        scene: &World,
+        frame: usize,
+        contacts: &[Contact],
+        found: &[Contact],
+    ) -> Result<(), Box<dyn Error>> {
+        page.frame(format!("frame {frame}"));
+        page.move_body(BALL.index(), Self::course(frame)?.place(&self.ball)?.vertices())?;
+        page.move_body(CLOTH.index(), self.cloth(frame)?.vertices())?;
+        page.counts(Some(found.len() as u64), Some(contacts.len() as u64));
+        for contact in contacts.iter().step_by(contacts.len().div_ceil(LISTED).max(1)) {
+            let near = scene.proximity(*contact)?;
+            let side = |body: BodyId, number| Feature {
+                body: body.index(),
+                kind: FeatureKind::Triangle,
+                number,
+            };
+            let features = [side(contact.body_a, contact.a), side(contact.body_b, contact.b)];
+            let listed = satisfice_page::Contact::new(features, [near.point_a, near.point_b]);
+            let listed = listed.distance(near.distance);
+            page.contact(match found.binary_search(contact) {
+                Ok(_) => listed,
+                Err(_) => listed.missed(),
+            });
+        }
+        Ok(())
     }
 
     fn picture(&self, scene: &World, frame: usize, contacts: &[Contact]) -> Result<Vec<u8>, Box<dyn Error>> {

@@ -1,6 +1,6 @@
 //! Experiment I: two teapots run into each other. How many of the vertex pairs closer than delta does each engine find?
 //!
-//! `cargo run --release --example teapots` writes a picture to `out/teapots`, or to the folder `SATISFICE_OUT`.
+//! `cargo run --release --example teapots` writes a picture and a page to look into to `out/teapots`, or to the folder `SATISFICE_OUT`.
 //! `satisfice bench experiment-one` draws charts of such runs. `SATISFICE_QUICK=1` uses two seeds and short runs: a check that it works, not a measurement.
 
 use std::collections::BTreeSet;
@@ -15,6 +15,7 @@ use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
 use satisfice_collision::broad::PointGrid;
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::Teapots;
+use satisfice_page::{Contact, Feature, FeatureKind, ScenePage};
 use satisfice_picture::{Picture, View};
 
 type Pair = (u32, u32);
@@ -78,6 +79,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         truth.len()
     );
     write(&folder, "scene.png", &picture(&hilbert, shown, &truth)?)?;
+    println!("  the same to look into, hit by hit, for every engine:");
+    write(&folder, "scene.html", page(&hilbert, &runs, &truth)?.as_bytes())?;
 
     println!("\nHits at {evaluations} evaluations, mean of {seeds} seeds (least..most):");
     println!("  engine             Hilbert order            random order");
@@ -259,6 +262,41 @@ fn picture(
         picture.pair(a, b, report.archive.contains(pair));
     }
     picture.png()
+}
+
+/// A frame for the median run of each engine: its hits in the order found, and those that it missed.
+fn page(
+    problem: &Teapots,
+    runs: &[(&str, Vec<Found>)],
+    truth: &BTreeSet<Pair>,
+) -> Result<String, satisfice_page::Error> {
+    let pairs = problem.pairs();
+    let bodies = [pairs.a(), pairs.b()];
+    let mut page = ScenePage::new("Two teapots, 100 ms");
+    page.threshold(problem.threshold());
+    for (name, mesh) in ["left teapot", "right teapot"].into_iter().zip(bodies) {
+        page.body(name, mesh.vertices(), mesh.triangles(), mesh.lines());
+    }
+    let contact = |&(a, b): &Pair| {
+        let points = [bodies[0].vertex(a), bodies[1].vertex(b)];
+        let kind = FeatureKind::Vertex;
+        let features = [(0, a), (1, b)].map(|(body, number)| Feature { body, kind, number });
+        Contact::new(features, points)
+    };
+    for (name, reports) in runs {
+        let report = median(reports);
+        page.frame(*name);
+        page.frame_fact("Evaluations", report.counts.evaluations.to_string());
+        page.counts(None, Some(truth.len() as u64));
+        for hit in report.hits() {
+            let found = contact(hit.solution).distance(hit.fitness);
+            page.contact(found.found(hit.evaluation, hit.seconds));
+        }
+        for pair in truth.iter().filter(|pair| !report.archive.contains(pair)) {
+            page.contact(contact(pair).missed());
+        }
+    }
+    page.html()
 }
 
 fn write(folder: &Path, name: &str, bytes: &[u8]) -> std::io::Result<()> {

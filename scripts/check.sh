@@ -36,6 +36,11 @@ done
 # Checkpoints are the one thing that a feature adds to the state of a search.
 cargo test -p satisfice --quiet --no-default-features --features serde --test checkpoint
 
+if rustup target list --installed 2> /dev/null | grep -q '^wasm32-unknown-unknown$'; then
+  step "the core compiles for the web"
+  cargo check -p satisfice --quiet --no-default-features --target wasm32-unknown-unknown
+fi
+
 step "every example, as a user runs it ($profile)"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

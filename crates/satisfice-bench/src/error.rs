@@ -15,6 +15,9 @@ pub enum Error {
     /// A picture of a scene cannot be drawn.
     #[error(transparent)]
     Picture(#[from] satisfice_picture::Error),
+    /// A page cannot be made.
+    #[error(transparent)]
+    Page(#[from] satisfice_page::Error),
     /// A suite that cannot be run as it is written.
     #[error("{place}: {what}")]
     Suite {

@@ -119,6 +119,10 @@ pub(crate) struct RunArguments {
     /// Draw hits against evaluations and time, as .svg or .png.
     #[arg(long, value_name = "FILE.svg|.png", value_hint = ValueHint::FilePath)]
     pub(crate) plot: Option<PathBuf>,
+
+    /// Write a page to look into: hits over any axes, how they came in, a table; one file that works offline.
+    #[arg(long, value_name = "FILE.html", value_hint = ValueHint::FilePath)]
+    pub(crate) page: Option<PathBuf>,
 }
 
 /// Options of every search.

@@ -52,6 +52,7 @@ mod interrupt;
 mod list;
 mod message;
 mod output;
+mod page;
 mod plot;
 mod progress;
 mod quantity;

@@ -1,5 +1,6 @@
 //! `satisfice run`: an engine on a problem of the catalogue.
 
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,7 +13,7 @@ use crate::checkpoint::{self, Keeper};
 use crate::output::{self, Output};
 use crate::plot::chart;
 use crate::progress::Bar;
-use crate::{interrupt, reference, summary};
+use crate::{interrupt, page, reference, summary};
 
 pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     output::check_distinct(
@@ -21,8 +22,10 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
             ("--json", arguments.json.as_ref()),
             ("--checkpoint", arguments.checkpoint.as_ref()),
             ("--plot", arguments.plot.as_ref()),
+            ("--page", arguments.page.as_ref()),
         ],
     )?;
+    page::check(arguments.page.as_deref())?;
     let known = catalogue.find(&arguments.problem)?;
     let resume = arguments.resume.as_deref();
     let resumed = resume
@@ -39,6 +42,7 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     let cancel = interrupt::listen()?;
     let mut keeper = arguments.checkpoint.as_deref().map(Keeper::new).transpose()?;
     let mut json_file = output::open(arguments.json.as_ref())?;
+    let mut page_file = output::open(arguments.page.as_ref())?;
     let mut figure = match &arguments.plot {
         Some(path) => Some((Format::of(path)?, Output::open(path)?)),
         None => None,
@@ -75,7 +79,14 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     if let Some((format, figure)) = &mut figure {
         figure.write(&plot::draw(&chart(&report), *format)?)?;
     }
-    let shown = show(&report, arguments.json.as_deref())?;
+    if let Some(file) = &mut page_file {
+        file.write(page::html(&report)?.as_bytes())?;
+    }
+    let to_stdout = [&arguments.json, &arguments.page]
+        .into_iter()
+        .flatten()
+        .any(|path| path == Path::new("-"));
+    let shown = show(&report, to_stdout)?;
     keeper.map_or(Ok(()), Keeper::finish)?;
     Ok(shown)
 }
@@ -103,8 +114,8 @@ fn spec(arguments: &RunArguments, saved: Option<&RunSpec>) -> anyhow::Result<Run
 }
 
 /// The summary, unless stdout has the report itself.
-fn show(report: &RunReport, json: Option<&std::path::Path>) -> anyhow::Result<ExitCode> {
-    if json != Some(std::path::Path::new("-")) {
+fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
+    if !to_stdout {
         output::print(summary::summary(report).as_bytes())?;
     }
     Ok(summary::exit_code(report))

@@ -383,10 +383,16 @@ fn a_page_is_written() {
         "b.obj --pairs edge-edge --method random --evaluations 2000 --up z --page -",
         &format!("{hostile} --closest 3 --page -"),
     ] {
-        let done = satisfice_in(folder.path(), &format!("collide a.obj --threshold 0.12 {arguments}"));
+        let done = satisfice_in(
+            folder.path(),
+            &format!("collide a.obj --threshold 0.12 {arguments}"),
+        );
         assert!(done.code <= 1, "{}", done.stderr);
         let text = &done.stdout;
-        assert!(text.starts_with("<!DOCTYPE html>") && text.ends_with("</html>"), "{arguments}");
+        assert!(
+            text.starts_with("<!DOCTYPE html>") && text.ends_with("</html>"),
+            "{arguments}"
+        );
         assert!(!text.contains("<script>alert"), "{arguments}");
     }
 }

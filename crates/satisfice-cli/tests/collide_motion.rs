@@ -73,6 +73,16 @@ fn bounds(value: &Value) -> [f64; 2] {
 }
 
 #[test]
+fn a_page_is_written() {
+    let folder = folder();
+    for arguments in ["--page -", "--first --up x --page -"] {
+        let done = satisfice_in(folder.path(), &format!("{FALL} --threshold 0.01 {arguments}"));
+        assert!(done.code == 0, "{}", done.stderr);
+        assert!(done.stdout.starts_with("<!DOCTYPE html>") && done.stdout.ends_with("</html>"));
+    }
+}
+
+#[test]
 fn a_point_falls_through_a_triangle() {
     let folder = folder();
     let report = report(

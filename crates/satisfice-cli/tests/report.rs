@@ -141,6 +141,8 @@ fn the_first_experiment_in_small_makes_a_report() {
         0,
         &["100 ms", "poses and orders", "The machine", "The suite"],
     );
+    let compare = fs::read_to_string(out.join("compare.html")).unwrap();
+    assert!(compare.starts_with("<!DOCTYPE html>") && compare.len() < 1_500_000);
     let charts = fs::read_dir(out.join("figures"))
         .unwrap()
         .map(|entry| entry.unwrap().path());

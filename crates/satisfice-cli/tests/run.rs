@@ -206,11 +206,13 @@ fn files_are_written_and_verified() {
     for figure in ["hits.svg", "hits.png"] {
         let done = satisfice_in(
             folder.path(),
-            &format!("{TEAPOTS} --json report.json --plot {figure}"),
+            &format!("{TEAPOTS} --json report.json --plot {figure} --page page.html"),
         );
         assert_eq!((done.code, done.stderr.as_str()), (0, ""));
         assert!(fs::metadata(folder.path().join(figure)).unwrap().len() > 1000);
     }
+    let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
     let done = satisfice_in(folder.path(), "verify report.json");
     assert_eq!(done.code, 0);
     assert!(
@@ -225,7 +227,7 @@ fn files_are_written_and_verified() {
     left.sort();
     assert_eq!(
         left,
-        ["hits.png", "hits.svg", "report.json"],
+        ["hits.png", "hits.svg", "page.html", "report.json"],
         "nothing half-written stays"
     );
 }

@@ -71,11 +71,15 @@ impl ComparePage {
     /// effect.
     #[expect(clippy::cast_precision_loss, reason = "counts below 2^53")]
     pub fn run(&mut self, engine: &str, seed: u64, curve: impl IntoIterator<Item = (u64, f64, u64)>) {
-        let Some(group) = self.groups.last_mut() else { return };
+        let Some(group) = self.groups.last_mut() else {
+            return;
+        };
         let curve = curve.into_iter();
         let run = Run {
             seed,
-            curve: curve.map(|(evaluations, seconds, hits)| [evaluations as f64, seconds, hits as f64]).collect(),
+            curve: curve
+                .map(|(evaluations, seconds, hits)| [evaluations as f64, seconds, hits as f64])
+                .collect(),
         };
         match group.engines.iter_mut().find(|(name, _)| name == engine) {
             Some((_, runs)) => runs.push(run),
@@ -113,7 +117,13 @@ impl ComparePage {
         let header = json!({ "title": self.title, "groups": groups.collect::<Vec<_>>() });
         let data = pack.finish(header)?;
         let scripts = [include_str!("web/chart.js"), include_str!("web/compare.js")];
-        Ok(shell::page(&self.title, "compare", &self.markup(), &data, &scripts))
+        Ok(shell::page(
+            &self.title,
+            "compare",
+            &self.markup(),
+            &data,
+            &scripts,
+        ))
     }
 
     fn markup(&self) -> Markup {

@@ -22,7 +22,11 @@ pub(crate) struct Pack {
 impl Pack {
     /// Whole numbers.
     pub(crate) fn u32s(&mut self, name: &str, values: &[u32]) {
-        self.planes(name, "u32", &values.iter().map(|value| value.to_le_bytes()).collect::<Vec<_>>());
+        self.planes(
+            name,
+            "u32",
+            &values.iter().map(|value| value.to_le_bytes()).collect::<Vec<_>>(),
+        );
     }
 
     /// Floats to about eight significant digits, of any exponent: the three lowest bytes are zero and cost nothing.
@@ -33,7 +37,11 @@ impl Pack {
 
     /// Floats bit by bit.
     pub(crate) fn exact(&mut self, name: &str, values: &[f64]) {
-        self.planes(name, "f64", &values.iter().map(|value| value.to_le_bytes()).collect::<Vec<_>>());
+        self.planes(
+            name,
+            "f64",
+            &values.iter().map(|value| value.to_le_bytes()).collect::<Vec<_>>(),
+        );
     }
 
     fn planes<const N: usize>(&mut self, name: &str, kind: &str, values: &[[u8; N]]) {

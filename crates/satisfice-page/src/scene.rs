@@ -44,6 +44,8 @@ pub enum Up {
 pub struct Feature {
     /// The body, as [`ScenePage::body`] numbers them.
     pub body: usize,
+    /// What makes it up.
+    pub kind: FeatureKind,
     /// The feature in the body.
     pub number: u32,
 }
@@ -131,10 +133,10 @@ struct Frame {
 ///
 /// ```
 /// use satisfice_page::{Contact, Feature, FeatureKind, ScenePage};
-/// let mut page = ScenePage::new("Two triangles", [FeatureKind::Triangle; 2]);
+/// let mut page = ScenePage::new("Two triangles");
 /// let low = page.body("low", &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], &[]);
 /// let high = page.body("high", &[[0.0, 0.0, 0.1], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]], &[[0, 1, 2]], &[]);
-/// let features = [Feature { body: low, number: 0 }, Feature { body: high, number: 0 }];
+/// let features = [low, high].map(|body| Feature { body, kind: FeatureKind::Triangle, number: 0 });
 /// page.contact(Contact::new(features, [[0.0; 3], [0.0, 0.0, 0.1]]).distance(0.1));
 /// page.frame("lifted");
 /// page.move_body(high, &[[0.0, 0.0, 1.1], [1.0, 0.0, 1.5], [0.0, 1.0, 1.5]])?;
@@ -144,7 +146,6 @@ struct Frame {
 #[derive(Debug, Clone)]
 pub struct ScenePage {
     title: String,
-    kinds: [FeatureKind; 2],
     up: Up,
     threshold: Option<f64>,
     method: Option<String>,
@@ -155,12 +156,11 @@ pub struct ScenePage {
 }
 
 impl ScenePage {
-    /// A page without bodies, for contacts between features of these kinds.
+    /// A page without bodies.
     #[must_use]
-    pub fn new(title: impl Into<String>, kinds: [FeatureKind; 2]) -> Self {
+    pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
-            kinds,
             up: Up::default(),
             threshold: None,
             method: None,

@@ -94,9 +94,15 @@ impl SearchPage {
             pack.exact(&format!("axis {k}"), values);
         }
         for (k, name) in ["fitness", "evaluation", "seconds"].iter().enumerate() {
-            pack.exact(name, &self.hits.iter().map(|hit| hit.numbers[k]).collect::<Vec<_>>());
+            pack.exact(
+                name,
+                &self.hits.iter().map(|hit| hit.numbers[k]).collect::<Vec<_>>(),
+            );
         }
-        for (k, name) in ["trace evaluations", "trace seconds", "trace hits"].iter().enumerate() {
+        for (k, name) in ["trace evaluations", "trace seconds", "trace hits"]
+            .iter()
+            .enumerate()
+        {
             pack.exact(name, &self.trace.iter().map(|point| point[k]).collect::<Vec<_>>());
         }
         let is_vector = |hit: &Hit| {
@@ -115,7 +121,13 @@ impl SearchPage {
         });
         let data = pack.finish(header)?;
         let scripts = [include_str!("web/chart.js"), include_str!("web/search.js")];
-        Ok(shell::page(&self.title, "search", &markup(&self.title), &data, &scripts))
+        Ok(shell::page(
+            &self.title,
+            "search",
+            &markup(&self.title),
+            &data,
+            &scripts,
+        ))
     }
 
     /// The places that have a number in every solution, with the numbers.
@@ -125,7 +137,10 @@ impl SearchPage {
             let mut found = Vec::new();
             numbers(&hit.solution, "x", &mut found);
             if k == 0 {
-                all = found.into_iter().map(|(name, value)| (name, vec![value])).collect();
+                all = found
+                    .into_iter()
+                    .map(|(name, value)| (name, vec![value]))
+                    .collect();
             } else if found.len() == all.len() && found.iter().zip(&all).all(|(a, b)| a.0 == b.0) {
                 for ((_, values), (_, value)) in all.iter_mut().zip(found) {
                     values.push(value);
@@ -148,12 +163,27 @@ fn numbers(value: &Value, place: &str, found: &mut Vec<(String, f64)>) {
         Value::Bool(truth) => found.push((place.to_owned(), f64::from(u8::from(*truth)))),
         Value::Array(list) => {
             for (k, part) in list.iter().enumerate() {
-                numbers(part, &format!("{place}{}{k}", if place.ends_with(char::is_numeric) { "." } else { "" }), found);
+                numbers(
+                    part,
+                    &format!(
+                        "{place}{}{k}",
+                        if place.ends_with(char::is_numeric) {
+                            "."
+                        } else {
+                            ""
+                        }
+                    ),
+                    found,
+                );
             }
         }
         Value::Object(map) => {
             for (name, part) in map {
-                let place = if place == "x" { name.clone() } else { format!("{place}.{name}") };
+                let place = if place == "x" {
+                    name.clone()
+                } else {
+                    format!("{place}.{name}")
+                };
                 numbers(part, &place, found);
             }
         }

@@ -34,14 +34,20 @@ fn sheet(n: u32, height: f64) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
 /// Two sheets above each other; contacts join vertex k with vertex k. The upper one rises in the second frame.
 fn film(n: u32, contacts: u32) -> ScenePage {
     let ((low, triangles), (high, _)) = (sheet(n, 0.0), sheet(n, 0.02));
-    let mut page = ScenePage::new(format!("Sheets {HOSTILE}"), [FeatureKind::Vertex; 2]);
+    let mut page = ScenePage::new(format!("Sheets {HOSTILE}"));
     page.threshold(0.05);
     page.method(format!("engine {HOSTILE}"));
     page.fact("Completeness", HOSTILE);
     let a = page.body(HOSTILE, &low, &triangles, &[]);
     let b = page.body("upper", &high, &triangles, &[]);
     page.frame("closed");
-    let pair = |number: u32| [a, b].map(|body| Feature { body, number });
+    let pair = |number: u32| {
+        [a, b].map(|body| Feature {
+            body,
+            kind: FeatureKind::Vertex,
+            number,
+        })
+    };
     let ends = |k: u32| [low[k as usize], high[k as usize]];
     let every = (low.len() as u32 / contacts.max(1)).max(1);
     for k in 0..contacts {
@@ -248,18 +254,22 @@ fn pages_are_small_and_carry_nothing_from_outside() {
 
 #[test]
 fn what_does_not_exist_is_an_error() {
-    let mut page = ScenePage::new("", [FeatureKind::Vertex, FeatureKind::Triangle]);
+    let mut page = ScenePage::new("");
     let body = page.body("one", &[[0.0; 3]], &[], &[]);
     assert!(page.html().is_ok(), "a page without contacts");
-    let feature = |body, number| Feature { body, number };
+    let feature = |body, kind, number| Feature { body, kind, number };
+    let (vertex, triangle) = (FeatureKind::Vertex, FeatureKind::Triangle);
     for (features, text) in [
-        ([feature(0, 0), feature(1, 0)], "the page has no body 1: it has 1"),
         (
-            [feature(0, 0), feature(0, 0)],
+            [feature(0, vertex, 0), feature(1, vertex, 0)],
+            "the page has no body 1: it has 1",
+        ),
+        (
+            [feature(0, vertex, 0), feature(0, triangle, 0)],
             "the page has no triangle 0: it has 0",
         ),
         (
-            [feature(0, 1), feature(0, 0)],
+            [feature(0, vertex, 1), feature(0, vertex, 0)],
             "the page has no vertex 1: it has 1",
         ),
     ] {
@@ -272,7 +282,7 @@ fn what_does_not_exist_is_an_error() {
     assert!(matches!(page.html(), Err(Error::Vertices { .. }) | Ok(_)));
     page.body("two", &[[f64::NAN, 0.0, 0.0]], &[], &[]);
     assert!(page.html().is_err());
-    let mut page = ScenePage::new("", [FeatureKind::Vertex; 2]);
+    let mut page = ScenePage::new("");
     page.body("one", &[[0.0; 3]], &[[0, 0, 7]], &[]);
     assert_eq!(
         page.html().unwrap_err().to_string(),

@@ -5,15 +5,16 @@ use std::path::Path;
 use super::figures::figures;
 use super::plan::Plan;
 use super::row::Row;
-use super::summary::{Group, groups};
+use super::summary::{Group, groups, rows_of};
 use super::{files, ioh, report};
 use crate::error::Error;
 use crate::finding::Figure;
 use crate::finding::Finding;
 use satisfice_draw::plot::{Format, draw};
+use satisfice_page::ComparePage;
 
-/// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, and `report.html`, which contains all of
-/// it, the findings of studies and the `command` that made it; returns the groups of the summary.
+/// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, `compare.html`, where engines are switched
+/// on and off, and `report.html`, which contains the rest of it, the findings of studies and the `command` that made it; returns the groups of the summary.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::Draw`] where a figure cannot be encoded.
@@ -54,9 +55,32 @@ pub fn publish(
             files::write(&place.join(format!("{name}.png")), png)?;
         }
     }
+    if !groups.is_empty() {
+        files::write(
+            &folder.join(report::COMPARE),
+            compare(plan, &groups, rows)?.as_bytes(),
+        )?;
+    }
     let page = report::page(plan, &shown, &found, command, plan.len() - rows.len() as u64);
     files::write(&folder.join("report.html"), page.as_bytes())?;
     Ok(groups)
+}
+
+/// The page on which engines are switched on and off.
+fn compare(plan: &Plan, groups: &[Group], rows: &[Row]) -> Result<String, Error> {
+    let mut page = ComparePage::new(&plan.suite.title);
+    page.link("report.html", "the report");
+    for group in groups {
+        let title = format!("{}: {}, {}", group.part, group.problem, group.budget);
+        page.problem(title, group.reference_hits, group.timed);
+        for line in &group.lines {
+            for row in rows_of(rows, group, &line.engine) {
+                let curve = row.curve.iter().map(|moment| (moment.0, moment.1, moment.2));
+                page.run(&line.engine, row.report.spec.seed, curve);
+            }
+        }
+    }
+    Ok(page.html()?)
 }
 
 /// Draws a figure as SVG and PNG; returns it with its SVG.

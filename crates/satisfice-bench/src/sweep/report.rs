@@ -9,6 +9,8 @@ use super::plan::Plan;
 use super::summary::{Group, cells, heading, unique};
 use crate::finding::{Figure, Finding};
 
+/// The page on which engines are switched on and off, beside the report.
+pub(super) const COMPARE: &str = "compare.html";
 const STYLE: &str = include_str!("report.css");
 const HOW: &str = "Runs limited by evaluations ran side by side, and their times are not shown; runs limited by a time ran last, \
     one at a time, while the program did nothing else. Reference counts were made before, outside any clock. Numbers are medians \
@@ -40,6 +42,9 @@ pub(super) fn page(
         p { "Made by" }
         pre #command { (command) }
         p { (HOW) }
+        @if !groups.is_empty() {
+            p { a href=(COMPARE) { "Every run, to look into" } ": engines switched on and off, seed by seed, with figures." }
+        }
         @for part in &suite.parts {
             (of_part(&part.name, groups))
         }

@@ -208,7 +208,7 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
         bail!("--up says how a picture or a page is drawn: add --picture FILE.png or --page FILE.html");
     }
     picture::check(arguments.picture.as_deref())?;
-    page::check(arguments.page.as_deref())
+    crate::page::check(arguments.page.as_deref())
 }
 
 fn warn(world: &World) {

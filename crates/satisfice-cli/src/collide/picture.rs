@@ -8,6 +8,7 @@ use satisfice_collision::FeatureKind;
 use satisfice_picture::{Picture, Up, View};
 
 use super::arguments::Axis;
+use super::inputs::NamedBody;
 use super::scene::{Feature, Pair, World};
 
 const WIDTH: u32 = 1400;
@@ -37,8 +38,8 @@ fn usual_up(mesh: &Path) -> Axis {
 }
 
 /// The axis that points upwards in what is drawn of a scene.
-pub(super) fn up_of(world: &World, asked: Option<Axis>) -> Axis {
-    let first = world.bodies.first();
+pub(super) fn up_of(bodies: &[NamedBody], asked: Option<Axis>) -> Axis {
+    let first = bodies.first();
     asked
         .or(first.map(|body| usual_up(&body.file)))
         .unwrap_or(Axis::Z)
@@ -51,7 +52,7 @@ pub(super) fn draw(
     found: &[Pair],
     missed: &[Pair],
 ) -> anyhow::Result<Vec<u8>> {
-    let up = up_of(world, up);
+    let up = up_of(&world.bodies, up);
     let view = View {
         up: match up {
             Axis::X => Up::X,

@@ -6,6 +6,9 @@ use super::{Body, Contact, FeatureKind, Frame, ScenePage, Up};
 use crate::error::Error;
 use crate::pack::{Pack, differences, zigzag};
 
+/// Kinds by their number in the data.
+const KINDS: [FeatureKind; 3] = [FeatureKind::Vertex, FeatureKind::Edge, FeatureKind::Triangle];
+
 /// Coordinates as whole numbers of one cubic lattice.
 struct Lattice {
     low: [f64; 3],
@@ -80,7 +83,7 @@ pub(super) fn encode(page: &ScenePage) -> Result<String, Error> {
     let finite = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
     let header = json!({
         "title": page.title,
-        "kinds": page.kinds.map(FeatureKind::name),
+        "kinds": KINDS.map(FeatureKind::name),
         "up": match page.up { Up::X => "x", Up::Y => "y", Up::Z => "z" },
         "threshold": page.threshold.map(finite),
         "method": page.method,
@@ -151,6 +154,8 @@ fn pack_contacts(pack: &mut Pack, lattice: &Lattice, page: &ScenePage) {
             .map(|contact| contact.features[side].body as u32)
             .collect();
         let numbers: Vec<u32> = all.iter().map(|contact| contact.features[side].number).collect();
+        let kinds = all.iter().map(|contact| contact.features[side].kind as u32);
+        pack.u32s(&format!("kind {side}"), &kinds.collect::<Vec<_>>());
         pack.u32s(&format!("body {side}"), &differences(&bodies, 1));
         pack.u32s(&format!("feature {side}"), &differences(&numbers, 1));
     }
@@ -206,7 +211,8 @@ fn check_body(number: usize, body: &Body) -> Result<(), Error> {
 }
 
 fn check_contact(page: &ScenePage, contact: &Contact) -> Result<(), Error> {
-    for (feature, kind) in contact.features.iter().zip(page.kinds) {
+    for feature in &contact.features {
+        let kind = feature.kind;
         let unknown = |what, number, count| Err(Error::Unknown { what, number, count });
         let Some(body) = page.bodies.get(feature.body) else {
             return unknown("body", feature.body, page.bodies.len());

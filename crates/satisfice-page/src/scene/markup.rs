@@ -33,7 +33,7 @@ pub(super) fn markup(title: &str) -> Markup {
                     label { "Bodies " select #mode {
                         option value="edges" { "with edges" }
                         option value="shaded" { "shaded" }
-                        option value="lines" { "lines, hidden ones removed" }
+                        option value="lines" { "hidden lines removed" }
                         option value="clear" { "transparent" }
                     } }
                     label { "Colour " select #colour {} }

@@ -56,7 +56,7 @@ class Panel extends Scene {
 
   feature(side, k) {
     const { scene } = this, { body, feature } = scene.contacts, name = scene.bodies[body[side][k]].name;
-    return [name, `${scene.kinds[side]} ${feature[side][k]}`];
+    return [name, `${this.kind(side, k)} ${feature[side][k]}`];
   }
 
   showPicked() {
@@ -66,7 +66,7 @@ class Panel extends Scene {
     if (k < 0) return;
     const lines = [0, 1].map(side => {
       const [name, feature] = this.feature(side, k), corners = this.corners(side, k);
-      return [name, feature + (scene.kinds[side] === "edge" && corners.length ? ` (vertices ${corners.join(" and ")})` : "")];
+      return [name, feature + (this.kind(side, k) === "edge" && corners.length ? ` (vertices ${corners.join(" and ")})` : "")];
     });
     if (contacts.distance) lines.push(["Distance", digits(contacts.distance[k])]);
     if (contacts.impact) lines.push(["Time of impact", digits(contacts.impact[k])]);

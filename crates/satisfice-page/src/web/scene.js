@@ -56,7 +56,7 @@ function decode(header) {
     ends.set(from.subarray(3 * k, 3 * k + 3), 6 * k);
     ends.set(to.subarray(3 * k, 3 * k + 3), 6 * k + 3);
   }
-  const contacts = { ends, count: n, body: [0, 1].map(s => sums(arrays[`body ${s}`], 1)), feature: [0, 1].map(s => sums(arrays[`feature ${s}`], 1)) };
+  const contacts = { ends, count: n, body: [0, 1].map(s => sums(arrays[`body ${s}`], 1)), feature: [0, 1].map(s => sums(arrays[`feature ${s}`], 1)), kind: [0, 1].map(s => arrays[`kind ${s}`]) };
   for (const name of ["distance", "evaluation", "seconds", "impact"]) contacts[name] = arrays[name];
   let first = 0;
   for (const frame of frames) {
@@ -225,10 +225,12 @@ class Scene {
     draw([[...scene.contacts.ends.subarray(6 * k, 6 * k + 6)]], this.values[k], 6, 1.4);
   }
 
+  kind(side, k) { return this.scene.kinds[this.scene.contacts.kind[side][k]]; }
+
   /** The vertices of a feature of a contact. */
   corners(side, k) {
     const body = this.scene.bodies[this.scene.contacts.body[side][k]], feature = this.scene.contacts.feature[side][k];
-    const kind = this.scene.kinds[side];
+    const kind = this.kind(side, k);
     if (kind === "vertex") return [feature];
     return kind === "triangle" ? [...body.triangles.subarray(3 * feature, 3 * feature + 3)] : [...edgesOf(body).subarray(2 * feature, 2 * feature + 2)];
   }

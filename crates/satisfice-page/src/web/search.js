@@ -146,10 +146,10 @@ class SearchPage {
     const ratio = Math.min(window.devicePixelRatio || 1, 3), w = canvas.clientWidth, h = canvas.clientHeight, to = canvas.getContext("2d");
     [canvas.width, canvas.height] = [w * ratio, h * ratio];
     to.scale(ratio, ratio);
-    const [top, bottom] = [26, h - 22], gap = (w - 70) / (this.sides.length - 1);
+    const [top, bottom] = [34, h - 22], gap = (w - 70) / (this.sides.length - 1);
     this.lanes = this.sides.map((axis, k) => ({ axis, x: 35 + k * gap, range: axis.range ??= extent([axis.values]), top, bottom }));
     const y = (lane, v) => bottom - (v - lane.range[0]) / (lane.range[1] - lane.range[0]) * (bottom - top);
-    // Of more lines than this only every so manieth is drawn; all are filtered.
+    // More lines than this hide each other: some are drawn, all are filtered.
     const step = Math.ceil(this.data.n / 4000);
     for (const wanted of [0, 1]) {
       to.globalAlpha = wanted ? Math.max(0.08, Math.min(0.7, 60 / Math.max(1, this.listed.length / step))) : 0.05;
@@ -167,10 +167,10 @@ class SearchPage {
     for (const lane of this.lanes) {
       [to.strokeStyle, to.fillStyle, to.textAlign, to.lineWidth] = [style("--soft"), style("--ink"), "center", 1];
       to.strokeRect(lane.x, top, 0, bottom - top);
-      to.fillText(lane.axis.name, lane.x, 12, gap);
+      to.fillText(lane.axis.name, lane.x, 12, gap - 4);
       to.fillStyle = style("--soft");
-      to.fillText(tick(lane.range[1]), lane.x, 23, gap);
-      to.fillText(tick(lane.range[0]), lane.x, h - 8, gap);
+      to.fillText(tick(lane.range[1]), lane.x, 28, gap - 4);
+      to.fillText(tick(lane.range[0]), lane.x, h - 8, gap - 4);
       const range = this.brushes.get(lane.axis.name);
       if (!range) continue;
       const [from, until] = range.map(v => y(lane, Math.max(lane.range[0], Math.min(lane.range[1], v))));

@@ -1,6 +1,7 @@
 //! The bodies at both ends of a step.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use satisfice_catalogue::Settings;
@@ -32,6 +33,8 @@ pub(super) struct Frames {
     pub(super) request: Request,
     /// The bodies at the start.
     pub(super) bodies: Vec<NamedBody>,
+    /// The same bodies at the end.
+    pub(super) ends: Vec<Arc<Mesh>>,
     pub(super) step: Step,
     pub(super) kinds: Vec<PairKind>,
     pub(super) separation: Separation,
@@ -67,6 +70,7 @@ impl Frames {
         let frames = Self {
             request,
             bodies,
+            ends: ends.into_iter().map(|end| end.mesh).collect(),
             step,
             kinds,
             separation,

@@ -3,6 +3,7 @@
 mod answer;
 mod csv;
 mod frames;
+mod page;
 mod report;
 mod summary;
 mod verify;
@@ -26,6 +27,7 @@ const TOLERANCE: f64 = 1e-6;
 
 pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     check(arguments)?;
+    crate::page::check(arguments.page.as_deref())?;
     let inputs = |paths: &[_]| Inputs {
         paths: paths.to_vec(),
         format: arguments.format.clone(),
@@ -65,6 +67,9 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
     if let Some(file) = &mut files.json {
         file.write_by(&mut |out| json::write(&report, out))?;
     }
+    if let Some(file) = &mut files.page {
+        file.write(page::html(&report, arguments.up)?.as_bytes())?;
+    }
     if let Some(file) = &mut files.csv {
         file.write_by(&mut |out| csv::write(&report, out))?;
     }
@@ -85,8 +90,7 @@ fn check(arguments: &CollideArguments) -> anyhow::Result<()> {
         (arguments.weld.is_some(), "--weld"),
         (arguments.ring_width.is_some(), "--ring-width"),
         (arguments.picture.is_some(), "--picture"),
-        (arguments.page.is_some(), "--page"),
-        (arguments.up.is_some(), "--up"),
+        (arguments.up.is_some() && arguments.page.is_none(), "--up"),
     ];
     let given = useless
         .iter()

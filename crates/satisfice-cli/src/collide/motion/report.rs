@@ -112,7 +112,7 @@ impl<'a> Report<'a> {
     }
 
     /// The first of the pairs whose bounds of the time are known, in full; computed again, so that little is kept of each pair.
-    fn impact(&self, hit: &Hit) -> Option<Impact> {
+    pub(super) fn impact(&self, hit: &Hit) -> Option<Impact> {
         let Frames {
             step,
             kinds,

@@ -69,7 +69,7 @@ fn count(report: &Report<'_>) -> String {
     }
 }
 
-fn completeness(report: &Report<'_>) -> &'static str {
+pub(super) fn completeness(report: &Report<'_>) -> &'static str {
     let head = &report.head;
     match (head.completeness, head.reference_hits) {
         (Completeness::Proved, _) => "proved: these are all",
@@ -78,7 +78,7 @@ fn completeness(report: &Report<'_>) -> &'static str {
     }
 }
 
-fn first_impact(report: &Report<'_>) -> Option<String> {
+pub(super) fn first_impact(report: &Report<'_>) -> Option<String> {
     let first = report.first_impact?;
     let [low, high] = first.time;
     let found = !report.pairs.is_empty();
