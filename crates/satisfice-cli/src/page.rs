@@ -75,7 +75,14 @@ pub(crate) fn html(report: &RunReport) -> anyhow::Result<String> {
 fn completeness(report: &RunReport) -> String {
     match (report.completeness, report.unseen_estimate) {
         (Completeness::Proved, _) => "proved: these are all".to_owned(),
-        (Completeness::Unknown, Some(unseen)) => format!("unknown: about {unseen:.0} more hits"),
+        (Completeness::Unknown, Some(unseen)) => {
+            let interval = match report.unseen_interval {
+                Some((low, Some(high))) => format!(", {low:.0} to {high:.0}"),
+                Some((low, None)) => format!(", {low:.0} to no known bound"),
+                None => String::new(),
+            };
+            format!("unknown: about {unseen:.0} more hits{interval}")
+        }
         (Completeness::Unknown, None) => "unknown: there may be more".to_owned(),
     }
 }

@@ -25,8 +25,8 @@ fn vectors() -> SearchPage {
             u64::from(10 * k + 1),
             x * 1e-4,
         );
-        page.trace(u64::from(10 * k + 1), x * 1e-4, u64::from(k) + 1);
     }
+    page.trace(2000, 0.02, 200);
     page
 }
 
@@ -53,6 +53,12 @@ fn hits_are_brushed_sorted_and_copied() {
     assert_eq!(
         tab.run("document.querySelectorAll('#hits tr').length"),
         json!(101)
+    );
+
+    // The curve goes up at every hit, also where the trace is coarse.
+    assert_eq!(
+        tab.run("page.data.trace.map(list => list[150])"),
+        json!([1501, 0.015, 151])
     );
 
     // A drag across the plane selects what is within.

@@ -9,7 +9,19 @@ function decode(header) {
   const { arrays } = header;
   const axes = header.axes.map((name, k) => ({ name, values: arrays[`axis ${k}`] }));
   const own = [["F", "fitness"], ["evaluation", "evaluation"], ["seconds", "seconds"]].map(([name, key]) => ({ name, values: arrays[key], own: true }));
-  return { ...header, axes: [...axes, ...own], n: arrays.fitness.length, trace: ["evaluations", "seconds", "hits"].map(name => arrays[`trace ${name}`]), arrays: undefined };
+  const n = arrays.fitness.length;
+  return { ...header, axes: [...axes, ...own], n, trace: growth(arrays, n === header.total), arrays: undefined };
+}
+
+/** Evaluations, seconds and hits, in order: what the search noted now and then, and every hit if all are listed. */
+function growth(arrays, all) {
+  const points = Array.from(arrays["trace hits"], (hits, k) => [arrays["trace evaluations"][k], arrays["trace seconds"][k], hits]);
+  if (all) {
+    const order = Array.from(arrays.evaluation, (_, k) => k).sort((a, b) => arrays.evaluation[a] - arrays.evaluation[b]);
+    order.forEach((k, before) => points.push([arrays.evaluation[k], arrays.seconds[k], before + 1]));
+    points.sort((a, b) => a[0] - b[0] || a[2] - b[2]);
+  }
+  return [0, 1, 2].map(k => Float64Array.from(points, point => point[k]));
 }
 
 class SearchPage {
