@@ -1,5 +1,7 @@
 //! A browser of the Chromium family, driven by the DevTools protocol over a WebSocket of our own: nothing but the browser is needed.
 
+#![allow(dead_code, reason = "each test file makes use of a part")]
+
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -100,21 +102,21 @@ impl Browser {
     /// Opens a file and waits until its page is ready.
     pub(crate) fn open(&mut self, file: &Path) -> Tab<'_> {
         let target =
-            self.call("", "Target.createTarget", json!({ "url": "about:blank" }))["targetId"].clone();
+            self.call("", "Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
         let attached = self.call(
             "",
             "Target.attachToTarget",
-            json!({ "targetId": target, "flatten": true }),
+            &json!({ "targetId": target, "flatten": true }),
         );
         let session = attached["sessionId"].as_str().unwrap().to_owned();
         for domain in ["Runtime", "Log", "Network", "Page"] {
-            self.call(&session, &format!("{domain}.enable"), json!({}));
+            self.call(&session, &format!("{domain}.enable"), &json!({}));
         }
         self.events.clear();
         self.call(
             &session,
             "Page.navigate",
-            json!({ "url": format!("file://{}", file.display()) }),
+            &json!({ "url": format!("file://{}", file.display()) }),
         );
         let mut tab = Tab {
             browser: self,
@@ -125,7 +127,7 @@ impl Browser {
         tab
     }
 
-    fn call(&mut self, session: &str, method: &str, parameters: Value) -> Value {
+    fn call(&mut self, session: &str, method: &str, parameters: &Value) -> Value {
         self.calls += 1;
         let id = self.calls;
         let mut message = json!({ "id": id, "method": method, "params": parameters });
@@ -152,14 +154,14 @@ impl Drop for Browser {
 }
 
 impl Tab<'_> {
-    fn call(&mut self, method: &str, parameters: Value) -> Value {
+    fn call(&mut self, method: &str, parameters: &Value) -> Value {
         self.browser.call(&self.session, method, parameters)
     }
 
     /// The value of an expression, or of what it promises.
     pub(crate) fn run(&mut self, expression: &str) -> Value {
         let asked = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
-        let said = self.call("Runtime.evaluate", asked);
+        let said = self.call("Runtime.evaluate", &asked);
         assert!(said["exceptionDetails"].is_null(), "{expression}: {said}");
         said["result"]["value"].clone()
     }
@@ -168,14 +170,14 @@ impl Tab<'_> {
     pub(crate) fn click(&mut self, x: f64, y: f64) {
         for kind in ["mousePressed", "mouseReleased"] {
             let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "clickCount": 1 });
-            self.call("Input.dispatchMouseEvent", event);
+            self.call("Input.dispatchMouseEvent", &event);
         }
     }
 
     /// A key, such as `n`.
     pub(crate) fn press(&mut self, key: &str) {
         for kind in ["keyDown", "keyUp"] {
-            self.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": key }));
+            self.call("Input.dispatchKeyEvent", &json!({ "type": kind, "key": key }));
         }
     }
 
@@ -198,7 +200,7 @@ impl Drop for Tab<'_> {
     fn drop(&mut self) {
         if !std::thread::panicking() {
             let closed = json!({ "targetId": self.target });
-            self.browser.call("", "Target.closeTarget", closed);
+            self.browser.call("", "Target.closeTarget", &closed);
         }
     }
 }
