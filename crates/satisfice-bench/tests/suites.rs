@@ -47,7 +47,15 @@ const QUEENS: &str = r#"
 fn what_stands_beside_a_problem_is_said_with_its_figures_alone() {
     let plan = Plan::new(Suite::parse("mine", QUEENS).unwrap(), &Catalogue::bundled()).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let done = sweep::execute(&plan, folder.path(), 1, &satisfice::Cancel::new(), &mut |_| {}).unwrap();
+    let done = sweep::execute(
+        &plan,
+        folder.path(),
+        1,
+        None,
+        &satisfice::Cancel::new(),
+        &mut |_| {},
+    )
+    .unwrap();
     let groups = sweep::groups(&plan, &done.rows);
     let beside: Vec<Option<&str>> = groups.iter().map(|group| group.beside.as_deref()).collect();
     assert_eq!(beside, [None, Some("backtracking: both in a moment")]);

@@ -60,7 +60,7 @@ pub(crate) struct ListArguments {
     pub(crate) json: bool,
 }
 
-/// Search a problem of the catalogue for all solutions with F < delta.
+/// Search a problem of the catalogue, or the values of a program, for all solutions with F < delta.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -78,12 +78,21 @@ Examples:
   satisfice run arm --time 1h --checkpoint arm.json
   satisfice run arm --resume arm.json --checkpoint arm.json
       Run for an hour without losing hits to Ctrl-C or a power cut: a resumed run finds what an uninterrupted one finds.
+  satisfice run --program './simulate {x}' --space space.toml --threshold 0.1 --evaluations 500 --workers 4
+      Start ./simulate with the coordinates as arguments, four at a time; the last line that it writes is the value.
+  satisfice run --worker './simulator --serve' --space space.toml --threshold 0.1 --time 8h --workers 4 --timeout 10min
+      Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2]} and answers {\"ticket\": 7, \"value\": 0.3},
+      or {\"ticket\": 7, \"error\": \"why not\"}, line by line. space.toml has a table [[axis]] for each coordinate, with
+      lower and upper, integer = true, or categories = [\"a\", \"b\"], and a name; separation = 0.1 makes nearer hits one.
 
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
     /// Name of the problem; `satisfice list` shows them all.
-    #[arg(value_name = "PROBLEM")]
-    pub(crate) problem: String,
+    #[arg(value_name = "PROBLEM", required_unless_present_any = ["program", "worker"], conflicts_with_all = ["program", "worker"])]
+    pub(crate) problem: Option<String>,
+
+    #[command(flatten)]
+    pub(crate) program: ProgramArguments,
 
     /// Set a parameter of the problem; may be repeated.
     #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
@@ -123,6 +132,54 @@ pub(crate) struct RunArguments {
     /// Write a page to look into: hits over any axes, how they came in, a table; one file that works offline.
     #[arg(long, value_name = "FILE.html", value_hint = ValueHint::FilePath)]
     pub(crate) page: Option<PathBuf>,
+}
+
+/// A fitness that other processes compute.
+#[derive(Debug, Args)]
+pub(crate) struct ProgramArguments {
+    /// Start this program for each point: {x} stands for all coordinates, {NAME} for one. It writes the value as its last line. No
+    /// shell is involved.
+    #[arg(long, value_name = "COMMAND", conflicts_with = "worker")]
+    pub(crate) program: Option<String>,
+
+    /// Start this program once for each worker: it reads and writes lines of JSON.
+    #[arg(long, value_name = "COMMAND")]
+    pub(crate) worker: Option<String>,
+
+    /// The space of a program, as a TOML file.
+    #[arg(long, value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
+    pub(crate) space: Option<PathBuf>,
+
+    /// delta of a program: a hit is a point whose value is below it.
+    #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
+    pub(crate) threshold: Option<f64>,
+
+    /// Processes at a time.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) workers: u16,
+
+    /// Give up an evaluation after this time, and end its process.
+    #[arg(long, value_name = "TIME", value_parser = satisfice_catalogue::quantity::time)]
+    pub(crate) timeout: Option<Duration>,
+
+    /// Try an evaluation that failed again so often. If it fails then, its value counts as NaN.
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub(crate) retries: u32,
+
+    /// Let /bin/sh run the program.
+    #[arg(long)]
+    pub(crate) shell: bool,
+
+    /// Enter values in the order of the points: the same report for any number of workers. Workers may have to wait.
+    #[arg(long)]
+    pub(crate) ordered: bool,
+}
+
+impl ProgramArguments {
+    /// Whether the fitness is that of a program.
+    pub(crate) fn is_given(&self) -> bool {
+        self.program.is_some() || self.worker.is_some()
+    }
 }
 
 /// Options of every search.
@@ -262,11 +319,24 @@ A suite is a file such as this; all values of a list are run:
   against = \"random\"             # the engine that the others are compared with, seed by seed
 
 Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command continues an
-interrupted sweep: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.")]
+interrupted sweep: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.
+
+Several machines share a sweep, each with a folder of its own:
+  satisfice bench mine.toml --shard 1/4 --out part-1       and so on to 4/4, anywhere and in any order
+  satisfice bench merge part-1 part-2 part-3 part-4 --out results")]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct BenchArguments {
+    /// Put shards together.
+    #[command(subcommand)]
+    pub(crate) merge: Option<BenchSubcommands>,
+
     /// Name of a suite, or a TOML file; an unknown name prints a list of the suites.
-    #[arg(value_name = "SUITE|FILE.toml", value_hint = ValueHint::FilePath)]
-    pub(crate) suite: String,
+    #[arg(value_name = "SUITE|FILE.toml", value_hint = ValueHint::FilePath, required = true)]
+    pub(crate) suite: Option<String>,
+
+    /// Run this part of the runs only: 3/16 is the third of sixteen. `bench merge` puts the parts together.
+    #[arg(long, value_name = "NUMBER/COUNT")]
+    pub(crate) shard: Option<satisfice_bench::sweep::Shard>,
 
     /// Run only these engines, separated by commas.
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
@@ -283,6 +353,24 @@ pub(crate) struct BenchArguments {
     /// Number of runs limited by evaluations that run at a time; 0 for one per core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = quantity::threads, allow_hyphen_values = true)]
     pub(crate) jobs: usize,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BenchSubcommands {
+    Merge(MergeArguments),
+}
+
+/// Put the shards of a sweep together: the results are those of a sweep on one machine, but for times. A run that is missing or
+/// there twice is an error that names it.
+#[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// The folders that `bench --shard` wrote, one for each shard.
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath, required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+
+    /// Folder for the results [default: bench-SUITE].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Evaluate every solution of a report again, check its counts, and print what does not fit.

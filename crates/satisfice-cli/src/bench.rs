@@ -1,15 +1,16 @@
 //! `satisfice bench`: a sweep, from its suite to its report.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use satisfice::Cancel;
 use satisfice_bench::studies;
-use satisfice_bench::sweep::{self, Event, Plan, Suite};
+use satisfice_bench::sweep::{self, Event, Plan, Row, ShardOf, Suite};
 use satisfice_catalogue::Catalogue;
 use satisfice_catalogue::quantity::shown;
 
-use crate::arguments::BenchArguments;
+use crate::arguments::{BenchArguments, BenchSubcommands, MergeArguments};
 use crate::progress::{Counting, Runs};
 use crate::{interrupt, message, output};
 
@@ -18,24 +19,37 @@ pub(crate) fn bench(
     catalogue: &Catalogue,
     given: &[OsString],
 ) -> anyhow::Result<ExitCode> {
-    let mut suite = Suite::open(&arguments.suite)?;
+    if let Some(BenchSubcommands::Merge(arguments)) = &arguments.merge {
+        return merge(arguments, catalogue, given);
+    }
+    let mut suite = Suite::open(arguments.suite.as_deref().unwrap_or_default())?;
+    let part = arguments
+        .shard
+        .map(|shard| ShardOf::new(shard, &suite, arguments.seeds.clone(), &arguments.engines));
     if let Some(seeds) = &arguments.seeds {
         suite = suite.with_seeds(seeds);
     }
     if !arguments.engines.is_empty() {
         suite = suite.with_engines(&arguments.engines);
     }
-    let folder = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(format!("bench-{}", suite.name)));
+    let folder = arguments.out.clone().unwrap_or_else(|| {
+        let shard = arguments
+            .shard
+            .map(|shard| format!("-{}", shard.to_string().replace('/', "-of-")));
+        PathBuf::from(format!("bench-{}{}", suite.name, shard.unwrap_or_default()))
+    });
     let plan = Plan::new(suite, catalogue)?;
+    if let Some(part) = &part {
+        part.claim(&folder)?;
+    }
     let cancel = interrupt::listen()?;
 
     let mut runs = None;
     let mut watch = |event: &Event<'_>| match event {
         Event::Begun { runs: all, done } => {
-            let timed = plan.timed_seconds();
+            #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+            let share = arguments.shard.map_or(1.0, |shard| 1.0 / shard.count() as f64);
+            let timed = plan.timed_seconds() * share;
             let clock = if timed > 0.0 {
                 format!(", {} of them by the clock", shown::seconds(timed))
             } else {
@@ -56,29 +70,25 @@ pub(crate) fn bench(
             runs.iter_mut().for_each(|runs| runs.finished(&what));
         }
     };
-    let finished = sweep::execute(&plan, &folder, arguments.jobs, &cancel, &mut watch)?;
+    let finished = sweep::execute(
+        &plan,
+        &folder,
+        arguments.jobs,
+        arguments.shard,
+        &cancel,
+        &mut watch,
+    )?;
     drop(runs);
-    let mut findings = Vec::new();
-    for name in &plan.suite.studies {
-        if cancel.is_cancelled() {
-            break;
-        }
-        let seeds = plan
-            .suite
-            .parts
-            .iter()
-            .map(|part| part.seeds.end - part.seeds.start)
-            .max()
-            .unwrap_or(1);
-        let doing = Counting::new();
-        let mut tell = |what: &str| doing.say(format!("study {name}: {what}"));
-        findings.extend((studies::find(name)?.run)(seeds, &cancel, &mut tell)?);
+    if let Some(shard) = arguments.shard {
+        message::say(format_args!(
+            "shard {shard}: {} of {} runs are in {}; bench merge puts the shards together",
+            finished.rows.len(),
+            finished.runs,
+            folder.display()
+        ));
+        return Ok(ExitCode::SUCCESS);
     }
-    let groups = sweep::publish(&folder, &plan, &finished.rows, &findings, &command(given))?;
-    let mut text = sweep::table(&groups);
-    findings
-        .iter()
-        .for_each(|finding| text.push_str(&finding.table()));
+    let text = publish(&plan, &finished.rows, &folder, given, &cancel)?;
     output::print(text.as_bytes())?;
     if finished.foreign > 0 {
         message::say(format_args!(
@@ -93,13 +103,60 @@ pub(crate) fn bench(
             finished.runs
         ));
     }
+    message::say(format_args!("look at {}", folder.join("report.html").display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Puts shards together.
+fn merge(arguments: &MergeArguments, catalogue: &Catalogue, given: &[OsString]) -> anyhow::Result<ExitCode> {
+    let (plan, rows) = sweep::merge(&arguments.folders, catalogue)?;
+    let folder = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("bench-{}", plan.suite.name)));
+    let cancel = interrupt::listen()?;
+    sweep::write_all(&folder, &rows)?;
+    let text = publish(&plan, &rows, &folder, given, &cancel)?;
+    output::print(text.as_bytes())?;
+    message::say(format_args!("look at {}", folder.join("report.html").display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Runs the studies of a suite and writes its report; returns its tables.
+fn publish(
+    plan: &Plan,
+    rows: &[Row],
+    folder: &Path,
+    given: &[OsString],
+    cancel: &Cancel,
+) -> anyhow::Result<String> {
+    let mut findings = Vec::new();
+    for name in &plan.suite.studies {
+        if cancel.is_cancelled() {
+            break;
+        }
+        let seeds = plan
+            .suite
+            .parts
+            .iter()
+            .map(|part| part.seeds.end - part.seeds.start)
+            .max()
+            .unwrap_or(1);
+        let doing = Counting::new();
+        let mut tell = |what: &str| doing.say(format!("study {name}: {what}"));
+        findings.extend((studies::find(name)?.run)(seeds, cancel, &mut tell)?);
+    }
+    let groups = sweep::publish(folder, plan, rows, &findings, &command(given))?;
+    let mut text = sweep::table(&groups);
+    findings
+        .iter()
+        .for_each(|finding| text.push_str(&finding.table()));
     if findings.len() < plan.suite.studies.len() {
         message::say(format_args!(
             "interrupted: a study is missing; the same command runs it"
         ));
     }
-    message::say(format_args!("look at {}", folder.join("report.html").display()));
-    Ok(ExitCode::SUCCESS)
+    Ok(text)
 }
 
 /// The command line, to be given again.

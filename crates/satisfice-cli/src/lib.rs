@@ -54,6 +54,7 @@ mod message;
 mod output;
 mod page;
 mod plot;
+mod program;
 mod progress;
 mod quantity;
 mod reference;

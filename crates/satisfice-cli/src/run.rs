@@ -13,9 +13,16 @@ use crate::checkpoint::{self, Keeper};
 use crate::output::{self, Output};
 use crate::plot::chart;
 use crate::progress::Bar;
-use crate::{interrupt, page, reference, summary};
+use crate::{interrupt, page, program, reference, summary};
 
 pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
+    let Some(name) = arguments
+        .problem
+        .as_deref()
+        .filter(|_| !arguments.program.is_given())
+    else {
+        return program::run(arguments);
+    };
     output::check_distinct(
         &[],
         &[
@@ -26,11 +33,9 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
         ],
     )?;
     page::check(arguments.page.as_deref())?;
-    let known = catalogue.find(&arguments.problem)?;
+    let known = catalogue.find(name)?;
     let resume = arguments.resume.as_deref();
-    let resumed = resume
-        .map(|path| checkpoint::read(path, &arguments.problem))
-        .transpose()?;
+    let resumed = resume.map(|path| checkpoint::read(path, name)).transpose()?;
     let set = match &resumed {
         Some((_, saved)) if arguments.set.is_empty() => saved.problem_parameters.texts(),
         _ => arguments.set.clone(),
@@ -114,7 +119,7 @@ fn spec(arguments: &RunArguments, saved: Option<&RunSpec>) -> anyhow::Result<Run
 }
 
 /// The summary, unless stdout has the report itself.
-fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
+pub(crate) fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
     if !to_stdout {
         output::print(summary::summary(report).as_bytes())?;
     }

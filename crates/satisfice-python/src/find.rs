@@ -2,9 +2,11 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use satisfice::engine::ConfiguredEngine;
 use satisfice::{Axis, Cancel, Search, Space, Stepper};
 use satisfice_catalogue::black_box::{BlackBox, Point, Separation};
 use satisfice_catalogue::{RunReport, RunSpec, Settings};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::arguments::{Run, budget};
@@ -14,10 +16,10 @@ use crate::report::Report;
 use crate::watch::Watcher;
 
 /// A function is called by Python, never by the search.
-type Function = BlackBox<fn(&[f64]) -> f64>;
+pub(crate) type Function = BlackBox<fn(&[f64]) -> f64>;
 
 /// The space and what a hit is, as a dict.
-#[derive(FromPyObject)]
+#[derive(Clone, FromPyObject, Serialize, Deserialize)]
 #[pyo3(from_item_all)]
 pub(crate) struct Question {
     /// Lower and upper end of each axis, and whether it is one of integers.
@@ -30,7 +32,11 @@ pub(crate) struct Question {
 }
 
 impl Question {
-    fn problem(&self) -> PyResult<Function> {
+    pub(crate) fn dimension(&self) -> usize {
+        self.axes.len()
+    }
+
+    pub(crate) fn problem(&self) -> PyResult<Function> {
         let axes = self.axes.iter().map(|&(lower, upper, integer)| {
             #[expect(
                 clippy::cast_possible_truncation,
@@ -52,7 +58,7 @@ impl Question {
     }
 
     /// Enters the problem in a specification.
-    fn enter(&self, spec: &mut RunSpec) -> PyResult<()> {
+    pub(crate) fn enter(&self, spec: &mut RunSpec) -> PyResult<()> {
         spec.problem.clone_from(&self.name);
         let parameters: Value = serde_json::from_str(&self.parameters).map_err(refused)?;
         let mut settings = Settings::default();
@@ -85,7 +91,7 @@ pub(crate) fn find<'py>(
     let mut caller = Caller::new(function, vectorized, catch);
     let budget = budget(&spec, &cancel);
     let stepper = search.start(&problem, &budget).map_err(refused)?;
-    let (report, raised) = drive(py, stepper, &mut caller, &mut watcher, question.axes.len())?;
+    let (report, raised) = drive(py, stepper, &mut caller, &mut watcher, question.dimension())?;
 
     let spec = RunSpec { threads: 1, ..spec };
     let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value).map_err(refused)?;
@@ -99,16 +105,20 @@ pub(crate) fn find<'py>(
 }
 
 /// A search by the engine of a complete specification.
-fn search(spec: &RunSpec) -> PyResult<Search<Function>> {
-    let mut search = Search::named(&spec.engine).map_err(refused)?;
-    for (name, text) in spec.engine_parameters.texts() {
-        search = search.set(&name, &text).map_err(refused)?;
-    }
-    search = search.seed(spec.seed).islands(spec.islands);
+pub(crate) fn search(spec: &RunSpec) -> PyResult<Search<Function>> {
+    let mut search = Search::with(engine(spec)?).seed(spec.seed).islands(spec.islands);
     if let Some(share) = spec.probes {
         search = search.probes(share);
     }
     Ok(search)
+}
+
+/// The engine of a complete specification.
+pub(crate) fn engine(spec: &RunSpec) -> PyResult<ConfiguredEngine<f64>> {
+    let texts = spec.engine_parameters.texts();
+    ConfiguredEngine::named(&spec.engine)
+        .and_then(|engine| engine.set_all(texts.iter().map(|(name, text)| (name.as_str(), text.as_str()))))
+        .map_err(refused)
 }
 
 /// Runs a slice to its end, or to an exception. Engines work without the interpreter's lock.

@@ -7,6 +7,7 @@ mod find;
 mod listing;
 mod problem;
 mod report;
+mod search;
 mod watch;
 
 use pyo3::prelude::*;
@@ -24,6 +25,8 @@ mod _satisfice {
     use crate::problem::Problem;
     #[pymodule_export]
     use crate::report::{Best, Report};
+    #[pymodule_export]
+    use crate::search::Search;
 }
 
 /// A refusal of the framework, as Python sees it.

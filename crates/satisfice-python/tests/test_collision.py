@@ -193,7 +193,7 @@ def test_a_limit_and_a_time_end_a_query_early():
     assert not some.complete and len(some) == 1000 and (some.distance < 0.02).all()
     begun = time.monotonic()
     some = collision.close_pairs(fine, above, threshold=0.2, pairs="vertex-vertex", time=0.05)
-    assert not some.complete and time.monotonic() - begun < 1.0
+    assert not some.complete and time.monotonic() - begun < 5.0
 
 
 @pytest.mark.parametrize("threads", [1, 2])

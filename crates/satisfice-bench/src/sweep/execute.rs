@@ -13,6 +13,7 @@ use satisfice_catalogue::RunControl;
 use super::plan::{Cell, Plan, Planned};
 use super::results::Results;
 use super::row::Row;
+use super::shard::Shard;
 use crate::error::Error;
 
 /// How often a long count checks whether it is still wanted.
@@ -55,7 +56,7 @@ impl Finished {
 
 /// Runs every run of `plan` that `folder/results.jsonl` lacks, on `jobs` threads (0: one per core) where no clock limits a
 /// run; then those that a clock limits, one at a time while nothing else of the program runs. Reference counts come first.
-/// Once `cancel` is cancelled, runs that have not ended are dropped; those that have are kept.
+/// Once `cancel` is cancelled, runs that have not ended are dropped; those that have are kept. With a shard, only its runs count.
 ///
 /// Memory: O(finished runs).
 ///
@@ -66,29 +67,33 @@ pub fn execute(
     plan: &Plan,
     folder: &Path,
     jobs: usize,
+    shard: Option<Shard>,
     cancel: &Cancel,
     watch: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Finished, Error> {
+    let is_wanted = |run: &Planned<'_>| shard.is_none_or(|shard| shard.has(run));
+    let runs = plan.runs().filter(is_wanted).count() as u64;
     let (results, old) = Results::open(folder)?;
     let mut known: BTreeMap<u64, Row> = BTreeMap::new();
     let mut foreign = 0;
     for row in old {
-        match plan.find(&row).map(|run| run.number()) {
+        match plan.find(&row).filter(is_wanted).map(|run| run.number()) {
             Some(number) => drop(known.insert(number, row)),
             None => foreign += 1,
         }
     }
     watch(&Event::Begun {
-        runs: plan.len(),
+        runs,
         done: known.len() as u64,
     });
-    let references = count(plan, &known, cancel, watch)?;
+    let references = count(plan, &known, shard, cancel, watch)?;
     let jobs = match jobs {
         0 => thread::available_parallelism().map_or(1, usize::from),
         jobs => jobs,
     };
     let mut sweep = Sweep {
         plan,
+        shard,
         references,
         cancel,
         results,
@@ -100,7 +105,7 @@ pub fn execute(
     let rows = plan.runs().filter_map(|run| known.remove(&run.number()));
     Ok(Finished {
         rows: rows.collect(),
-        runs: plan.len(),
+        runs,
         foreign,
     })
 }
@@ -109,13 +114,14 @@ pub fn execute(
 fn count(
     plan: &Plan,
     known: &BTreeMap<u64, Row>,
+    shard: Option<Shard>,
     cancel: &Cancel,
     watch: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Vec<Option<u64>>, Error> {
     let mut references = vec![None; plan.instances.len()];
     let is_missing = |cell: &Cell| {
         let mut runs = cell.seeds.clone().map(|seed| Planned { cell, seed });
-        runs.any(|run| !known.contains_key(&run.number()))
+        runs.any(|run| shard.is_none_or(|shard| shard.has(&run)) && !known.contains_key(&run.number()))
     };
     for (place, instance) in plan.instances.iter().enumerate() {
         let mut cells = plan.cells.iter().filter(|cell| cell.instance == place);
@@ -148,6 +154,7 @@ fn count(
 
 struct Sweep<'a> {
     plan: &'a Plan,
+    shard: Option<Shard>,
     references: Vec<Option<u64>>,
     cancel: &'a Cancel,
     results: Results,
@@ -159,6 +166,7 @@ impl Sweep<'_> {
     fn run_all(&mut self, timed: bool, jobs: usize, watch: &mut dyn FnMut(&Event<'_>)) -> Result<(), Error> {
         let Self {
             plan,
+            shard,
             references,
             cancel,
             results,
@@ -167,6 +175,7 @@ impl Sweep<'_> {
         let done: &BTreeMap<u64, Row> = known;
         let missing = plan
             .runs()
+            .filter(|run| shard.is_none_or(|shard| shard.has(run)))
             .filter(|run| run.cell.is_timed() == timed && !done.contains_key(&run.number()));
         let missing = Mutex::new(missing.fuse());
         let failed: Mutex<Option<Error>> = Mutex::new(None);

@@ -14,7 +14,7 @@
 //! let plan = Plan::new(suite, &Catalogue::bundled())?; // here names and values are checked, all of them
 //! # let folder = tempfile::tempdir()?;
 //! # let folder = folder.path();
-//! let done = execute(&plan, folder, 2, &Cancel::new(), &mut |_| {})?; // a line in results.jsonl as each run ends
+//! let done = execute(&plan, folder, 2, None, &Cancel::new(), &mut |_| {})?; // a line in results.jsonl as each run ends
 //! println!("{}", table(&groups(&plan, &done.rows)));
 //! # assert_eq!(done.rows.len(), 8);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -35,13 +35,15 @@ mod publish;
 mod report;
 mod results;
 mod row;
+mod shard;
 mod suite;
 mod summary;
 
 pub use execute::{Event, Finished, execute};
 pub use plan::{Cell, Plan, Planned};
 pub use publish::publish;
-pub use results::Results;
+pub use results::{Results, write_all};
 pub use row::Row;
+pub use shard::{Shard, ShardOf, merge};
 pub use suite::{Choice, Part, Suite, names, seeds};
 pub use summary::{Group, Line, Reached, cells, groups, heading, rows_of, table};

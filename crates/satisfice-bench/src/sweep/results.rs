@@ -89,6 +89,21 @@ impl Results {
     }
 }
 
+/// Writes these rows as the only ones of a folder.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be written, or has rows already.
+pub fn write_all(folder: &Path, rows: &[Row]) -> Result<(), Error> {
+    let (mut results, old) = Results::open(folder)?;
+    if !old.is_empty() {
+        return Err(Error::File {
+            path: results.path,
+            what: "it has runs already: choose a new folder".to_owned(),
+        });
+    }
+    rows.iter().try_for_each(|row| results.append(row))
+}
+
 /// A line from the JSON of a row.
 fn write(row: &str) -> String {
     format!("{CHECKSUM}{:016x}\",{}\n", checksum(row.as_bytes()), &row[1..])

@@ -14,10 +14,12 @@ from . import collision
 from ._find import Progress, find
 from ._names import Engine, Parameter, ProblemInfo, engines, problem, problems
 from ._satisfice import Best, Problem, Report, version
+from ._search import Batch, Search
 
 __version__ = version()
 
 __all__ = [
+    "Batch",
     "Best",
     "Engine",
     "Parameter",
@@ -25,6 +27,7 @@ __all__ = [
     "ProblemInfo",
     "Progress",
     "Report",
+    "Search",
     "collision",
     "engines",
     "find",

@@ -52,6 +52,8 @@ def find(
     integrality: Any = None,
     categories: Mapping[int, Sequence[Any]] | None = None,
     vectorized: bool = False,
+    workers: Any = 1,
+    ordered: bool = False,
     callback: Callable[[Progress], Any] | None = None,
     catch: type[BaseException] | tuple[type[BaseException], ...] = (),
     reference: bool = False,
@@ -101,6 +103,11 @@ def find(
         Labels of axes that are categories: ``{2: ["steel", "brass"]}``. `f` gets the index of the label.
     vectorized : bool, default False
         Whether `f` takes all points of a batch at once.
+    workers : int, map-like, or Executor, default 1
+        Where `f` is evaluated: so many processes, a function such as ``pool.map``, or a `concurrent.futures.Executor` (Dask's,
+        mpi4py's, ...). See `Search.run`. A `callback` is not called then.
+    ordered : bool, default False
+        With several workers: whether the report does not depend on the order of their values. See `Search`.
     callback : callable, optional
         Called with a `Progress` at most about a hundred times a second; the search ends when it returns true.
     catch : exception type or tuple of them, default ()
@@ -135,23 +142,10 @@ def find(
     >>> sorted(np.round(report.x[:, 0]).astype(int).tolist())
     [-4, -3, 3, 4]
     """
-    if time is None and evaluations is None:
-        raise ValueError("nothing limits the search: give time= in seconds or evaluations=")
     if callback is not None and not callable(callback):
         raise TypeError("callback must be callable")
     told = None if callback is None else _told(callback)
-    run = {
-        "engine": engine,
-        "options": texts(options or {}),
-        "seed": secrets.randbits(32) if seed is None else _whole("seed", seed, least=0),
-        "time": None if time is None else _real("time", time),
-        "evaluations": None if evaluations is None else _whole("evaluations", evaluations),
-        "hits": None if hits is None else _whole("hits", hits),
-        "slices": _whole("slices", slices),
-        "probes": None if probes is None else _real("probes", probes),
-        "islands": _whole("islands", islands),
-        "threads": _whole("threads", threads, least=0),
-    }
+    run = run_arguments(engine, options, seed, time, evaluations, hits, slices, probes, islands, threads)
     if isinstance(f, _satisfice.Problem):
         given = {
             "bounds": bounds is not None,
@@ -161,6 +155,7 @@ def find(
             "categories": categories is not None,
             "vectorized": vectorized,
             "catch": catch != (),
+            "workers": not _is_one(workers),
         }
         for name, is_given in given.items():
             if is_given:
@@ -171,9 +166,34 @@ def find(
     for name, value, default in [("threads", threads, 1), ("slices", slices, 1), ("reference", reference, False)]:
         if value != default:
             raise ValueError(f"{name} applies to problems of the catalogue only; a function is called on the calling thread")
+    if not _is_one(workers):
+        if vectorized or callback is not None:
+            raise ValueError("vectorized and callback apply to calls on this thread: leave workers out, or them")
+        from ._search import Search
+
+        search = Search(
+            bounds,
+            delta=delta,  # type: ignore[arg-type]
+            separation=separation,
+            time=time,
+            evaluations=evaluations,
+            hits=hits,
+            engine=engine,
+            options=options,
+            seed=run["seed"],
+            probes=probes,
+            islands=islands,
+            integrality=integrality,
+            categories=categories,
+            ordered=ordered,
+            name=_name(f),
+        )
+        if hasattr(workers, "submit"):
+            return search.run(f, executor=workers, catch=catch)
+        return search.run(f, workers=workers, catch=catch)
     return _satisfice.find(
         f,
-        question(f, bounds, delta, separation, integrality, categories),
+        question(_name(f), bounds, delta, separation, integrality, categories),
         run,
         bool(vectorized),
         told,
@@ -185,8 +205,41 @@ def _told(callback: Callable[[Progress], Any]) -> Callable[[int, int, float, flo
     return lambda evaluations, hits, time, share: bool(callback(Progress(evaluations, hits, time, share)))
 
 
+def _is_one(workers: Any) -> bool:
+    return isinstance(workers, int) and workers == 1
+
+
+def run_arguments(
+    engine: str,
+    options: Mapping[str, Any] | None,
+    seed: int | None,
+    time: float | None,
+    evaluations: int | None,
+    hits: int | None,
+    slices: int,
+    probes: float | None,
+    islands: int,
+    threads: int,
+) -> dict[str, Any]:
+    """Engine, seed and budget, as the native part takes them."""
+    if time is None and evaluations is None:
+        raise ValueError("nothing limits the search: give time= in seconds or evaluations=")
+    return {
+        "engine": engine,
+        "options": texts(options or {}),
+        "seed": secrets.randbits(32) if seed is None else _whole("seed", seed, least=0),
+        "time": None if time is None else _real("time", time),
+        "evaluations": None if evaluations is None else _whole("evaluations", evaluations),
+        "hits": None if hits is None else _whole("hits", hits),
+        "slices": _whole("slices", slices),
+        "probes": None if probes is None else _real("probes", probes),
+        "islands": _whole("islands", islands),
+        "threads": _whole("threads", threads, least=0),
+    }
+
+
 def question(
-    f: Any,
+    name: str,
     bounds: Any,
     delta: float | None,
     separation: float | Sequence[float] | None,
@@ -208,7 +261,7 @@ def question(
         widths = [0.0 if axis in labels else float(separation) for axis in range(len(axes))]
     else:
         widths = [float(width) for width in separation]
-    parameters: dict[str, Any] = {"function": _name(f), "bounds": [list(axis[:2]) for axis in axes]}
+    parameters: dict[str, Any] = {"function": name, "bounds": [list(axis[:2]) for axis in axes]}
     if any(axis[2] for axis in axes):
         parameters["integrality"] = [axis[2] for axis in axes]
     if labels:

@@ -1,0 +1,263 @@
+//! `satisfice run --program` and `--worker`: the fitness is computed by other processes.
+//!
+//! Each of them has a thread that gives it one point at a time. The search gives out points under tickets and takes the values
+//! in any order.
+
+mod evaluator;
+mod process;
+mod space;
+mod template;
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, anyhow, bail};
+use satisfice::{Budget, Cancel, RunReport, Search, Ticket, Tickets};
+use satisfice_catalogue::black_box::{BlackBox, Point, Separation};
+use satisfice_catalogue::{RunSpec, json};
+
+use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
+use crate::output;
+use crate::run::show;
+use crate::{interrupt, message};
+
+use evaluator::{Evaluator, Failure, Task, Way};
+use space::{SpaceFile, Widths};
+use template::{Template, split};
+
+/// How often the search looks for Ctrl-C and for its time while it waits for values.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+/// So many failures are told one by one; the report counts all of them.
+const TOLD: u64 = 3;
+/// If so many evaluations fail and none succeeds, the program is at fault, not the points.
+const HOPELESS: u64 = 8;
+
+/// A problem whose values come from elsewhere.
+type Problem = BlackBox<fn(&[f64]) -> f64>;
+
+/// A point to evaluate.
+struct Job {
+    ticket: Ticket,
+    point: Vec<f64>,
+}
+
+pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
+    let given = &arguments.program;
+    check(arguments)?;
+    let space = SpaceFile::read(
+        given
+            .space
+            .as_deref()
+            .context("--space is missing: name a TOML file")?,
+    )?;
+    let threshold = given
+        .threshold
+        .context("--threshold is missing: a hit is a point whose value is below it")?;
+    let problem = problem(&space, threshold)?;
+    let engine = arguments.engine.as_deref().unwrap_or(DEFAULT_ENGINE);
+    let mut spec = arguments.search.spec(engine)?;
+    arguments.slices.enter(&mut spec);
+    let search = search(&spec)?;
+    let way = enter(&mut spec, given, &space)?;
+    let task = Arc::new(Task {
+        way,
+        space,
+        timeout: given.timeout,
+        retries: given.retries,
+        unwanted: false.into(),
+    });
+    let cancel = interrupt::listen()?;
+    let mut json_file = output::open(arguments.json.as_ref())?;
+
+    let budget = Budget {
+        time: spec.budget.time,
+        evaluations: spec.budget.evaluations,
+        hits: spec.budget.hits,
+        ..Budget::until(&cancel)
+    };
+    let order = if given.ordered {
+        Tickets::ordered
+    } else {
+        Tickets::eager
+    };
+    let tickets = order(search, problem, &budget)?;
+    let workers = usize::from(given.workers);
+    let deadline = spec.budget.time.and_then(|time| process::now().checked_add(time));
+    let (report, failed) = with_workers(&task, workers, |jobs, values| {
+        drive(tickets, workers, jobs, values, &cancel, deadline)
+    })?;
+    let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value)?;
+    report.slices.clear();
+    report.failed = failed;
+    if let Some(file) = &mut json_file {
+        file.write(&json::to_vec(&report)?)?;
+    }
+    show(&report, arguments.json.as_deref() == Some(Path::new("-")))
+}
+
+/// Refuses options that belong to problems of the catalogue.
+fn check(arguments: &RunArguments) -> anyhow::Result<()> {
+    for (option, is_given) in [
+        ("--set", !arguments.set.is_empty()),
+        ("--checkpoint", arguments.checkpoint.is_some()),
+        ("--resume", arguments.resume.is_some()),
+        ("--plot", arguments.plot.is_some()),
+        ("--page", arguments.page.is_some()),
+        ("--reference", arguments.reference),
+        ("--threads", arguments.search.threads() != 1),
+    ] {
+        if is_given {
+            bail!("{option} does not apply to a program: leave it out");
+        }
+    }
+    Ok(())
+}
+
+fn problem(space: &SpaceFile, threshold: f64) -> anyhow::Result<Problem> {
+    let separation = match &space.separation {
+        None => Separation::Exact,
+        Some(Widths::Same(radius)) => Separation::Radius(*radius),
+        Some(Widths::PerAxis(radii)) => Separation::PerAxis(radii.clone()),
+    };
+    let elsewhere: fn(&[f64]) -> f64 = |_| f64::NAN;
+    Ok(BlackBox::new(space.space()?, threshold, &separation, elsewhere)?.named("program"))
+}
+
+/// A search by the engine of a complete specification.
+fn search(spec: &RunSpec) -> anyhow::Result<Search<Problem>> {
+    let mut search = Search::named(&spec.engine)?;
+    for (name, text) in spec.engine_parameters.texts() {
+        search = search.set(&name, &text)?;
+    }
+    search = search.seed(spec.seed).islands(spec.islands);
+    Ok(match spec.probes {
+        Some(share) => search.probes(share),
+        None => search,
+    })
+}
+
+/// Enters the problem in the specification, for the report.
+fn enter(spec: &mut RunSpec, given: &ProgramArguments, space: &SpaceFile) -> anyhow::Result<Way> {
+    if spec.budget.slices != 1 {
+        bail!("--slices does not apply to a program: leave it out");
+    }
+    "program".clone_into(&mut spec.problem);
+    let (way, name, text) = match (&given.program, &given.worker) {
+        (Some(text), _) => (
+            Way::Program(Template::new(text, given.shell, space)?),
+            "program",
+            text,
+        ),
+        (None, Some(text)) => {
+            let words = if given.shell {
+                vec!["/bin/sh".to_owned(), "-c".to_owned(), text.clone()]
+            } else {
+                split(text)?
+            };
+            if words.is_empty() {
+                bail!("no worker is named: give a program that reads and writes lines of JSON");
+            }
+            (Way::Worker(words), "worker", text)
+        }
+        (None, None) => bail!("give --program or --worker"),
+    };
+    spec.problem_parameters.set(name, text.as_str());
+    spec.problem_parameters
+        .set("space", serde_json::to_string(space)?);
+    Ok(way)
+}
+
+/// Lets `search` give out jobs to so many threads, and ends them.
+fn with_workers<T>(
+    task: &Arc<Task>,
+    workers: usize,
+    search: impl FnOnce(&Sender<Job>, &Receiver<(Ticket, Result<f64, Failure>)>) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    let (jobs, queue) = channel::<Job>();
+    let (answers, values) = channel();
+    let queue = Mutex::new(queue);
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            let (task, queue, answers) = (Arc::clone(task), &queue, answers.clone());
+            scope.spawn(move || {
+                let mut evaluator = Evaluator::new(task);
+                loop {
+                    let next = queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
+                    let Ok(Job { ticket, point }) = next else { return };
+                    let value = evaluator.evaluate(ticket.number(), &point);
+                    if answers.send((ticket, value)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        let found = search(&jobs, &values);
+        task.unwanted.store(true, Ordering::Relaxed);
+        drop(jobs);
+        found
+    })
+}
+
+/// Runs the search to its end; returns its report and how many evaluations failed.
+fn drive(
+    mut tickets: Tickets<Problem>,
+    workers: usize,
+    jobs: &Sender<Job>,
+    values: &Receiver<(Ticket, Result<f64, Failure>)>,
+    cancel: &Cancel,
+    deadline: Option<Instant>,
+) -> anyhow::Result<(satisfice::Report<Point>, u64)> {
+    let (mut failed, mut succeeded) = (0, 0_u64);
+    loop {
+        let free = workers.saturating_sub(tickets.open());
+        for job in tickets.ask(free) {
+            let job = Job {
+                ticket: job.ticket,
+                point: job.solution.coordinates,
+            };
+            jobs.send(job)
+                .map_err(|_| anyhow!("the threads of the workers have ended"))?;
+        }
+        if tickets.open() == 0 {
+            break;
+        }
+        let is_late = deadline.is_some_and(|deadline| process::now() >= deadline);
+        if is_late || cancel.is_cancelled() {
+            break;
+        }
+        let (ticket, value) = match values.recv_timeout(LOOK_EVERY) {
+            Ok(answer) => answer,
+            Err(RecvTimeoutError::Timeout) => continue,
+            Err(RecvTimeoutError::Disconnected) => bail!("the threads of the workers have ended"),
+        };
+        let value = match value {
+            Ok(value) => {
+                succeeded += 1;
+                value
+            }
+            Err(Failure::Unwanted) => continue,
+            Err(Failure::Fatal(says)) => bail!("{says}"),
+            Err(Failure::Evaluation(says)) => {
+                failed += 1;
+                if failed <= TOLD {
+                    message::say(format_args!("evaluation {} failed: {says}", ticket.number() + 1));
+                }
+                if succeeded == 0 && failed >= HOPELESS {
+                    bail!("the first {failed} evaluations all failed, the last one because {says}");
+                }
+                f64::NAN
+            }
+        };
+        tickets.tell(ticket, value)?;
+    }
+    if failed > TOLD {
+        message::say(format_args!(
+            "{failed} evaluations failed in all; they count as NaN"
+        ));
+    }
+    Ok((tickets.finish(), failed))
+}

@@ -1,0 +1,182 @@
+//! The command line of a program, with places for coordinates.
+
+use anyhow::bail;
+
+use super::space::SpaceFile;
+
+/// Words with places for coordinates, or one text for a shell.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Template {
+    words: Vec<String>,
+    is_shell: bool,
+}
+
+/// The place for all coordinates.
+const ALL: &str = "{x}";
+
+impl Template {
+    /// Reads a template: words as a shell would split them, unless `shell` is to do that.
+    pub(crate) fn new(text: &str, shell: bool, space: &SpaceFile) -> anyhow::Result<Self> {
+        let words = if shell {
+            vec![text.to_owned()]
+        } else {
+            split(text)?
+        };
+        if words.first().is_none_or(|program| program.trim().is_empty()) {
+            bail!("no program is named: give one, such as './simulate {{x}}'");
+        }
+        let template = Self {
+            words,
+            is_shell: shell,
+        };
+        template.check(space)?;
+        Ok(template)
+    }
+
+    /// Checks that some coordinate is asked for, and none that there is not.
+    fn check(&self, space: &SpaceFile) -> anyhow::Result<()> {
+        let known: Vec<String> = (0..space.axes.len())
+            .map(|axis| format!("{{{}}}", space.name(axis)))
+            .collect();
+        let mut any = false;
+        for word in &self.words {
+            any |= word.contains(ALL) || known.iter().any(|place| word.contains(place));
+            let mut rest = word.as_str();
+            while let Some(start) = rest.find('{') {
+                let Some(length) = rest[start..].find('}') else {
+                    break;
+                };
+                let place = &rest[start..=start + length];
+                let is_name = place[1..length]
+                    .chars()
+                    .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+                    && length > 1;
+                if is_name && place != ALL && !known.iter().any(|name| name == place) {
+                    bail!(
+                        "{place} names no axis: use {{x}} for all coordinates, or {}",
+                        known.join(", ")
+                    );
+                }
+                rest = &rest[start + length + 1..];
+            }
+        }
+        if !any {
+            bail!(
+                "the program is given no coordinate: write {{x}} where they belong, or {}",
+                known.join(", ")
+            );
+        }
+        Ok(())
+    }
+
+    /// The program and its arguments for one point.
+    pub(crate) fn words(&self, point: &[f64], space: &SpaceFile) -> Vec<String> {
+        let texts: Vec<String> = point
+            .iter()
+            .enumerate()
+            .map(|(axis, &value)| space.text(axis, value))
+            .collect();
+        if self.is_shell {
+            let line = fill(&self.words[0], &texts, " ", space);
+            return vec!["/bin/sh".to_owned(), "-c".to_owned(), line];
+        }
+        let mut words = Vec::new();
+        for word in &self.words {
+            if word == ALL {
+                words.extend(texts.iter().cloned()); // an argument each
+            } else {
+                words.push(fill(word, &texts, ",", space));
+            }
+        }
+        words
+    }
+}
+
+/// A word with its places filled.
+fn fill(word: &str, texts: &[String], between: &str, space: &SpaceFile) -> String {
+    let mut filled = word.replace(ALL, &texts.join(between));
+    for (axis, text) in texts.iter().enumerate() {
+        filled = filled.replace(&format!("{{{}}}", space.name(axis)), text);
+    }
+    filled
+}
+
+/// Splits a text at blanks; quotes and backslashes keep blanks, as in a shell. Nothing is expanded.
+pub(crate) fn split(text: &str) -> anyhow::Result<Vec<String>> {
+    let (mut words, mut word) = (Vec::new(), None::<String>);
+    let mut characters = text.chars();
+    while let Some(c) = characters.next() {
+        match c {
+            ' ' | '\t' | '\n' => words.extend(word.take()),
+            '\'' | '"' => {
+                let inside = word.get_or_insert_default();
+                loop {
+                    match characters.next() {
+                        Some(end) if end == c => break,
+                        Some('\\') if c == '"' => inside.extend(characters.next()),
+                        Some(other) => inside.push(other),
+                        None => bail!("a quote in `{text}` is not closed"),
+                    }
+                }
+            }
+            '\\' => word.get_or_insert_default().extend(characters.next()),
+            other => word.get_or_insert_default().push(other),
+        }
+    }
+    words.extend(word);
+    Ok(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn space() -> SpaceFile {
+        let axis = |name: &str| {
+            let line = format!("[[axis]]\nname = \"{name}\"\nlower = 0\nupper = 9\n");
+            toml::from_str::<SpaceFile>(&line).unwrap().axes.remove(0)
+        };
+        SpaceFile {
+            separation: None,
+            axes: vec![axis("a"), axis("b")],
+        }
+    }
+
+    #[test]
+    fn places_are_filled() {
+        for (text, words) in [
+            ("./run {x}", vec!["./run", "1.5", "2"]),
+            ("./run --x={x}", vec!["./run", "--x=1.5,2"]),
+            ("./run -b {b} 'a is {a}'", vec!["./run", "-b", "2", "a is 1.5"]),
+            (
+                r#""my program" a\ b "{a}\"" {b}"#,
+                vec!["my program", "a b", "1.5\"", "2"],
+            ),
+        ] {
+            let template = Template::new(text, false, &space()).unwrap();
+            assert_eq!(template.words(&[1.5, 2.0], &space()), words, "{text}");
+        }
+        let shell = Template::new("echo {x} | bc", true, &space()).unwrap();
+        assert_eq!(
+            shell.words(&[1.0, 2.0], &space()),
+            ["/bin/sh", "-c", "echo 1 2 | bc"]
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        for (text, says) in [
+            ("", "no program"),
+            ("./run", "no coordinate"),
+            ("./run {c}", "{c} names no axis"),
+            ("./run '{x}", "not closed"),
+        ] {
+            let error = Template::new(text, false, &space()).unwrap_err().to_string();
+            assert!(error.contains(says), "{text}: {error}");
+        }
+        assert!(
+            Template::new("awk '{print $1}' {x}", false, &space()).is_ok(),
+            "braces of other languages"
+        );
+    }
+}

@@ -1,0 +1,228 @@
+//! `run --program` and `--worker`, with programs of a shell and of awk.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, missing_docs)]
+#![allow(clippy::disallowed_methods, reason = "what hangs is ended in time")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use common::{Done, without_times};
+use serde_json::Value;
+
+/// Two axes of integers and what is near (3, 1): five points.
+const SPACE: &str = "[[axis]]\nname = \"a\"\ninteger = true\nlower = 0\nupper = 9\n\
+                     [[axis]]\nname = \"b\"\ninteger = true\nlower = 0\nupper = 9\n";
+const NEAR: &str = "awk -v a={a} -v b={b} 'BEGIN { print (a-3)^2 + (b-1)^2 }'";
+
+/// A worker: what it does with `$ticket`, `$a` and `$b` before it answers.
+fn worker(before: &str) -> String {
+    format!(
+        "#!/bin/sh\nwhile read -r line; do\n\
+         set -- $(echo \"$line\" | sed 's/[^0-9.]\\{{1,\\}}/ /g')\nticket=$1 a=${{2%.*}} b=${{3%.*}}\n{before}\n\
+         echo \"{{\\\"ticket\\\": $ticket, \\\"value\\\": $(( (a-3)*(a-3) + (b-1)*(b-1) ))}}\"\ndone\n"
+    )
+}
+
+fn folder(before: &str) -> tempfile::TempDir {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("space.toml"), SPACE).unwrap();
+    fs::write(place.path().join("worker"), worker(before)).unwrap();
+    place
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Done {
+    let mut command = common::command(
+        folder,
+        "run --space space.toml --threshold 2 --evaluations 150 --seed 1 --json -",
+    );
+    command.args(arguments).output().unwrap().into()
+}
+
+fn report(done: &Done) -> Value {
+    serde_json::from_str(&done.stdout).unwrap_or_else(|error| panic!("{error}: {done:?}"))
+}
+
+/// The hits of a report, sorted.
+fn hits(report: &Value) -> Vec<String> {
+    let solutions = report["solutions"].as_array().unwrap().iter();
+    let mut hits: Vec<String> = solutions
+        .map(|hit| hit["solution"]["coordinates"].to_string())
+        .collect();
+    hits.sort();
+    hits
+}
+
+const FIVE: [&str; 5] = ["[2.0,1.0]", "[3.0,0.0]", "[3.0,1.0]", "[3.0,2.0]", "[4.0,1.0]"];
+
+#[test]
+fn a_program_is_started_for_each_point() {
+    let place = folder("");
+    let done = run(place.path(), &["--program", NEAR, "--workers", "2"]);
+    assert_eq!((done.code, done.stderr.as_str()), (0, ""));
+    let report = report(&done);
+    assert_eq!(hits(&report), FIVE);
+    assert_eq!(report["problem_parameters"]["program"], NEAR);
+    assert!(report.get("failed").is_none(), "nothing failed");
+}
+
+#[test]
+fn workers_answer_line_by_line_and_ordered_reports_do_not_depend_on_their_number() {
+    let place = folder("");
+    let reports = ["1", "3"].map(|workers| {
+        let done = run(
+            place.path(),
+            &["--worker", "sh worker", "--workers", workers, "--ordered"],
+        );
+        assert_eq!((done.code, done.stderr.as_str()), (0, ""));
+        without_times(report(&done))
+    });
+    assert_eq!(hits(&reports[0]), FIVE);
+    assert_eq!(reports[0], reports[1]);
+    let eager = run(place.path(), &["--worker", "sh worker", "--workers", "3"]);
+    assert_eq!(hits(&report(&eager)), FIVE);
+}
+
+#[test]
+fn a_worker_that_dies_is_replaced_and_nothing_is_lost() {
+    let place = folder("[ $ticket = 20 ] && [ ! -e died ] && { touch died; kill -9 $$; }");
+    let done = run(
+        place.path(),
+        &["--worker", "sh worker", "--workers", "2", "--ordered"],
+    );
+    assert!(place.path().join("died").exists());
+    let whole = run(folder("").path(), &["--worker", "sh worker", "--ordered"]);
+    assert_eq!(done.stderr, "");
+    assert_eq!(without_times(report(&done)), without_times(report(&whole)));
+}
+
+#[test]
+fn a_worker_that_dies_of_a_point_costs_that_point_only() {
+    let place = folder("[ $a$b = 32 ] && kill -9 $$");
+    let done = run(
+        place.path(),
+        &["--worker", "sh worker", "--workers", "2", "--retries", "1"],
+    );
+    let report = report(&done);
+    assert_eq!(
+        (report["failed"].as_u64(), report["hits"].as_u64()),
+        (Some(1), Some(4)),
+        "{done:?}"
+    );
+    assert!(
+        done.stderr
+            .contains("the worker ended before it answered (signal: 9"),
+        "{}",
+        done.stderr
+    );
+}
+
+#[test]
+fn lines_that_are_no_answers_are_shown() {
+    let place = folder("[ $a$b = 32 ] && echo loading the model");
+    let done = run(place.path(), &["--worker", "sh worker", "--retries", "0"]);
+    assert!(done.stderr.contains("`loading the model`"), "{}", done.stderr);
+    assert_eq!(report(&done)["failed"], 1);
+    let printed = "awk -v a={a} -v b={b} 'BEGIN { print a == 3 && b == 1 ? \"oops\" : 1 }'";
+    let done = run(place.path(), &["--program", printed, "--retries", "0"]);
+    assert!(
+        done.stderr
+            .contains("neither a number nor {\"value\": number}: `oops`"),
+        "{}",
+        done.stderr
+    );
+    assert_eq!(
+        (report(&done)["failed"].as_u64(), report(&done)["hits"].as_u64()),
+        (Some(1), Some(99))
+    );
+}
+
+#[test]
+fn an_evaluation_that_hangs_is_given_up() {
+    let place = folder("[ $a$b = 32 ] && sleep 60");
+    for way in [
+        ["--worker", "sh worker"],
+        ["--program", "sh -c 'test {a}{b} != 32 || sleep 60; echo 1'"],
+    ] {
+        let begun = Instant::now();
+        let done = run(
+            place.path(),
+            &[way[0], way[1], "--timeout", "300ms", "--retries", "0"],
+        );
+        assert!(begun.elapsed().as_secs() < 30, "what it started is ended as well");
+        assert!(done.stderr.contains("no answer within 300ms"), "{}", done.stderr);
+        assert_eq!(report(&done)["failed"], 1);
+    }
+}
+
+#[test]
+fn the_time_ends_a_search_whatever_hangs() {
+    let place = folder("sleep 60");
+    let begun = Instant::now();
+    let mut command = common::command(
+        place.path(),
+        "run --space space.toml --threshold 2 --time 300ms --json -",
+    );
+    let done: Done = command
+        .args(["--worker", "sh worker", "--workers", "2"])
+        .output()
+        .unwrap()
+        .into();
+    assert!(begun.elapsed().as_secs() < 30);
+    assert_eq!(
+        (done.code, report(&done)["stop_reason"].as_str()),
+        (1, Some("Time"))
+    );
+}
+
+#[test]
+fn failures_are_tried_again() {
+    let place = folder("");
+    let fails_once = "sh -c 'test -e {a}-{b} && echo {a} || { touch {a}-{b}; exit 3; }'";
+    let done = run(place.path(), &["--program", fails_once, "--retries", "1"]);
+    assert_eq!(done.stderr, "");
+    assert_eq!(report(&done)["hits"], 20);
+    let shell = run(place.path(), &["--program", "echo {a} | cat", "--shell"]);
+    assert_eq!(report(&shell)["hits"], 20);
+}
+
+#[test]
+fn mistakes_are_errors() {
+    let place = folder("");
+    for (arguments, says) in [
+        (&["--program", "./nothing {x}"][..], "cannot start `./nothing`"),
+        (&["--program", "false {x}"], "the first 8 evaluations all failed"),
+        (&["--worker", "true"], "3 times in a row"),
+        (&["--program", "echo 1"], "no coordinate"),
+        (&["--program", "echo {c}"], "{c} names no axis"),
+        (
+            &["--program", "echo {x}", "--worker", "cat"],
+            "cannot be used with",
+        ),
+        (&["queens", "--program", "echo {x}"], "cannot be used with"),
+        (&["--program", "echo {x}", "--set", "n=1"], "--set"),
+        (
+            &["--program", "echo {x}", "--checkpoint", "c.json"],
+            "--checkpoint",
+        ),
+        (&["--program", "echo {x}", "--workers", "0"], "--workers"),
+    ] {
+        let done = run(place.path(), arguments);
+        assert_eq!(
+            (done.code, done.stdout.as_str()),
+            (2, ""),
+            "{arguments:?}: {done:?}"
+        );
+        assert!(done.stderr.contains(says), "{arguments:?}: {}", done.stderr);
+    }
+    let error = common::error_in(place.path(), "run --program ./x --threshold 1");
+    assert!(error.contains("--space"), "{error}");
+    let error = common::error_in(
+        place.path(),
+        "run --program ./x{x} --space nowhere.toml --threshold 1",
+    );
+    assert!(error.contains("nowhere.toml"), "{error}");
+}

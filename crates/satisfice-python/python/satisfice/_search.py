@@ -1,0 +1,458 @@
+"""`Search`: ask and tell, on as many workers as there are."""
+
+from __future__ import annotations
+
+import collections
+import concurrent.futures as futures
+import contextlib
+import math
+import os
+import pickle
+import queue
+import signal
+import time as clock
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _satisfice
+
+#: How often a search that waits for values looks for its time and for Ctrl-C, in seconds.
+_LOOK_EVERY = 0.05
+#: An evaluation that was lost with its worker so often is given up.
+_MOST_LOSSES = 3
+#: Points out at a time where nothing says how many workers there are.
+_IN_FLIGHT = 64
+
+
+class ExecutorLike(Protocol):
+    """What `Search.run` needs of an executor: `concurrent.futures.Executor`, Dask's, mpi4py's and others have it."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Any:
+        """Start a call; the future returned has ``result`` and ``add_done_callback``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Points to evaluate, and the tickets under which their values are told.
+
+    Attributes
+    ----------
+    x : ndarray of float64, shape (n, d)
+        The points.
+    tickets : ndarray of uint64, shape (n,)
+        Their tickets.
+    """
+
+    x: NDArray[np.float64]
+    tickets: NDArray[np.uint64]
+
+    def __len__(self) -> int:
+        return len(self.tickets)
+
+
+class Search:
+    """A search that gives out points under tickets and takes their values in any order.
+
+    Parameters
+    ----------
+    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, integrality, categories
+        As for `find`.
+    time : float, optional
+        Wall time in seconds from now on.
+    ordered : bool, default False
+        Whether values reach the engine in the order in which points were asked. Then the report under a budget of
+        evaluations is that of `find` with the same seed, whatever the order of the values; but while values of a batch of
+        the engine are awaited, nothing more can be asked. Otherwise there is always more to ask, and the report depends on
+        the order of the values.
+
+    Examples
+    --------
+    >>> import satisfice
+    >>> search = satisfice.Search([(-5, 5)] * 2, delta=1.0, separation=0.5, evaluations=2000, seed=1)
+    >>> while len(batch := search.ask(16)):
+    ...     search.tell(batch.tickets, (batch.x**2).sum(axis=1))
+    >>> search.report().hits > 5
+    True
+    """
+
+    def __init__(
+        self,
+        bounds: Any,
+        *,
+        delta: float,
+        separation: float | Sequence[float] | None = None,
+        time: float | None = None,
+        evaluations: int | None = None,
+        hits: int | None = None,
+        engine: str = "portfolio",
+        options: Any = None,
+        seed: int | None = None,
+        probes: float | None = None,
+        islands: int = 1,
+        integrality: Any = None,
+        categories: Any = None,
+        ordered: bool = False,
+        name: str = "function",
+    ) -> None:
+        from ._find import question, run_arguments
+
+        self._search = _satisfice.Search(
+            question(name, bounds, delta, separation, integrality, categories),
+            run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1),
+            bool(ordered),
+        )
+        self._deadline = math.inf if time is None else clock.monotonic() + float(time)
+
+    def ask(self, n: int = 1) -> Batch:
+        """At most `n` points to evaluate.
+
+        Fewer if others have to be answered first or if the budget is given out; none while nothing is `pending` means that
+        the search is over. After `load`, points that were pending come first, under their tickets.
+        """
+        tickets, x = self._search.ask(n)
+        return Batch(x, tickets)
+
+    def tell(self, tickets: ArrayLike, values: ArrayLike) -> None:
+        """Tell values, shape (m,), of tickets, shape (m,): any part of those asked, in any order.
+
+        NaN and infinite values are counted and never hits. A second value for a ticket, and one for a forgotten ticket, are
+        counted and dropped.
+
+        Raises
+        ------
+        ValueError
+            For a ticket that was never given out.
+        """
+        self._search.tell(_tickets(tickets), np.ascontiguousarray(np.atleast_1d(values), dtype=np.float64))
+
+    def forget(self, tickets: ArrayLike) -> None:
+        """Give up points whose evaluations were lost. They use up no budget."""
+        self._search.forget(_tickets(tickets))
+
+    def inform(self, x: ArrayLike, values: ArrayLike) -> None:
+        """Enter values, shape (m,), at points, shape (m, d), that are known from elsewhere. They use up no budget."""
+        self._search.inform(
+            np.ascontiguousarray(np.atleast_2d(x), dtype=np.float64),
+            np.ascontiguousarray(np.atleast_1d(values), dtype=np.float64),
+        )
+
+    @property
+    def pending(self) -> Batch:
+        """Points that were asked and neither told nor forgotten."""
+        tickets, x = self._search.pending()
+        return Batch(x, tickets)
+
+    @property
+    def hits(self) -> int:
+        """The number of distinct hits so far."""
+        return self._search.hits()
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Tickets: ``asked``, ``taken``, ``again`` (a second value), ``late`` (after `forget`), ``over`` (after the end) and
+        ``forgotten``."""
+        return self._search.ticket_counts()
+
+    def report(self) -> _satisfice.Report:
+        """The report as it is now; the search can go on."""
+        return self._search.report()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the search to a file, from which `load` continues it. It replaces the file when all is written."""
+        partial = f"{os.fspath(path)}.{os.getpid()}.partial"
+        with open(partial, "wb") as file:
+            file.write(self._search.save())
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Search:
+        """Read a search that `save` wrote. Points that were pending are asked again, under their tickets."""
+        with open(path, "rb") as file:
+            return cls._from_bytes(file.read())
+
+    @classmethod
+    def _from_bytes(cls, state: bytes) -> Search:
+        search = cls.__new__(cls)
+        search._search = _satisfice.Search.load(state)
+        report = search.report()
+        limit = report.to_dict()["budget"]["time_seconds"]
+        search._deadline = math.inf if limit is None else clock.monotonic() + limit - report.elapsed
+        return search
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        return Search._from_bytes, (self._search.save(),)
+
+    def run(
+        self,
+        f: Callable[[Any], Any],
+        *,
+        executor: ExecutorLike | None = None,
+        workers: int | Callable[..., Iterable[Any]] = 1,
+        in_flight: int | None = None,
+        time: float | None = None,
+        catch: type[BaseException] | tuple[type[BaseException], ...] = (),
+    ) -> _satisfice.Report:
+        """Evaluate `f` on workers until the search is over. Points that are pending come first.
+
+        Parameters
+        ----------
+        f : callable
+            ``f(x) -> float`` with `x` of shape (d,). It is sent to the workers as these do it: processes need a function at
+            the top level of a module.
+        executor : Executor, optional
+            A `concurrent.futures.Executor` or anything with ``submit``: ``dask_client.get_executor()``,
+            `mpi4py.futures.MPIPoolExecutor`, ...
+        workers : int or map-like, default 1
+            Without `executor`: the number of processes, 1 for none but this one; one that dies is replaced, and what it had is evaluated again. Or a
+            function such as ``pool.map``, which is given one batch after the other.
+        in_flight : int, optional
+            The number of points out at a time; by default the number of processes, and 64 otherwise.
+        time : float, optional
+            Stop after so many seconds; what is out then stays pending.
+        catch : exception type or tuple of them
+            Exceptions of `f` that count as a value of NaN.
+
+        Returns
+        -------
+        Report
+
+        Raises
+        ------
+        KeyboardInterrupt, or an exception of `f` or of the executor
+            What was found until then is its attribute ``report``. The search can go on: what was out is pending.
+        """
+        catch = catch if isinstance(catch, tuple) else (catch,)
+        deadline = math.inf if time is None else clock.monotonic() + float(time)
+        deadline = min(deadline, self._deadline)
+        try:
+            if executor is None and workers == 1:
+                self._map(f, map, 1, deadline, catch)
+            elif executor is None and callable(workers):
+                self._map(f, workers, in_flight or _IN_FLIGHT, deadline, catch)
+            elif executor is not None:
+                _Drive(self, f, _Given(executor), in_flight or _IN_FLIGHT, deadline, catch).run()
+            else:
+                _check_pickle(f)
+                with _Own(workers) as pool:
+                    _Drive(self, f, pool, in_flight or workers, deadline, catch).run()
+            if clock.monotonic() >= self._deadline:
+                self._end()
+        except BaseException as error:
+            with contextlib.suppress(AttributeError):
+                error.report = self.report()  # type: ignore[attr-defined]
+                error.add_note("satisfice: what was found until then is in the attribute `report` of this exception")
+            raise
+        return self.report()
+
+    def _end(self) -> None:
+        """Note that the time is up: what comes now is late."""
+        self.forget(self.pending.tickets)
+        self.forget(self.ask(1).tickets)
+
+    def _map(
+        self,
+        f: Callable[[Any], Any],
+        map_: Callable[..., Iterable[Any]],
+        size: int,
+        deadline: float,
+        catch: tuple[type[BaseException], ...],
+    ) -> None:
+        """Evaluate one batch after the other."""
+        guarded = _Guarded(f, catch)
+        batch = self.pending
+        while True:
+            if len(batch) == 0:
+                batch = self.ask(size)
+            if len(batch) == 0 or clock.monotonic() >= deadline:
+                return
+            values = list(map_(guarded, [x.copy() for x in batch.x]))
+            if len(values) != len(batch):
+                raise ValueError(f"the map gave {len(values)} values for {len(batch)} points")
+            for ticket, value in zip(batch.tickets.tolist(), values, strict=True):
+                self._take(ticket, value)
+            batch = self.ask(0)
+
+    def _take(self, ticket: int, value: Any) -> None:
+        """Tell a value of `_Guarded`."""
+        if value is None:
+            self._search.fail(ticket)
+        else:
+            self.tell([ticket], [value])
+
+
+class _Guarded:
+    """The user's function where it is called: a caught exception becomes None."""
+
+    def __init__(self, f: Callable[[Any], Any], catch: tuple[type[BaseException], ...]) -> None:
+        self.f, self.catch = f, catch
+
+    def __call__(self, x: NDArray[np.float64]) -> float | None:
+        try:
+            value = self.f(x)
+        except self.catch:
+            return None
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            kind = type(value).__name__
+            raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
+
+
+def _check_pickle(f: Callable[[Any], Any]) -> None:
+    try:
+        pickle.dumps(f)
+    except Exception as error:
+        raise TypeError(
+            f"{f!r} cannot be sent to another process: define it at the top level of a module, or pass an executor that "
+            "sends functions by value, such as Dask's"
+        ) from error
+
+
+class _Given:
+    """An executor of the user. When it breaks, the search ends; it can go on with another one."""
+
+    generation = 0
+
+    def __init__(self, executor: ExecutorLike) -> None:
+        self.submit = executor.submit
+
+    def replace(self, error: BaseException) -> None:
+        raise error
+
+
+class _Own:
+    """Processes of our own, which are replaced when one dies."""
+
+    def __init__(self, workers: int) -> None:
+        if workers < 1:
+            raise ValueError(f"workers = {workers} is not allowed: at least 1")
+        self.workers, self.generation = workers, 0
+        self.pool = self._start()
+
+    def _start(self) -> futures.ProcessPoolExecutor:
+        # Ctrl-C is for the process that searches.
+        return futures.ProcessPoolExecutor(
+            self.workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
+        )
+
+    def __enter__(self) -> _Own:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+
+    def _end(self) -> None:
+        processes = list((getattr(self.pool, "_processes", None) or {}).values())
+        self.pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()
+
+    def submit(self, f: Callable[..., Any], /, *args: Any) -> Any:
+        return self.pool.submit(f, *args)
+
+    def replace(self, error: BaseException) -> None:
+        self._end()
+        self.pool = self._start()
+        self.generation += 1
+
+
+class _Drive:
+    """Keeps an executor busy."""
+
+    def __init__(
+        self,
+        search: Search,
+        f: Callable[[Any], Any],
+        pool: _Given | _Own,
+        in_flight: int,
+        deadline: float,
+        catch: tuple[type[BaseException], ...],
+    ) -> None:
+        self.search, self.pool, self.in_flight, self.deadline = search, pool, in_flight, deadline
+        self.f = _Guarded(f, catch)
+        self.done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        #: Ticket, point and generation of the pool by future.
+        self.out: dict[Any, tuple[int, NDArray[np.float64], int]] = {}
+        pending = search.pending
+        self.waiting = list(zip(pending.tickets.tolist(), pending.x, strict=True))
+        self.known = set(pending.tickets.tolist())
+        #: Points that were out when a worker died. One at a time, so that it is seen which one kills its worker.
+        self.suspects: list[tuple[int, NDArray[np.float64]]] = []
+        self.losses: collections.Counter[int] = collections.Counter()
+
+    def run(self) -> None:
+        try:
+            while self._fill() and clock.monotonic() < self.deadline:
+                try:
+                    future = self.done.get(timeout=_LOOK_EVERY)
+                except queue.Empty:
+                    continue
+                if future in self.out:
+                    self._take(future)
+        finally:
+            for future in self.out:
+                future.cancel()
+
+    def _fill(self) -> bool:
+        """Give out as much as there is room for; whether anything is out."""
+        if self.suspects:
+            if not self.out:
+                self._submit(*self.suspects.pop())
+            return True
+        while self.waiting and len(self.out) < self.in_flight:
+            self._submit(*self.waiting.pop(0))
+        room = self.in_flight - len(self.out)
+        if room > 0:
+            batch = self.search.ask(room)
+            for ticket, x in zip(batch.tickets.tolist(), batch.x, strict=True):
+                if ticket not in self.known:  # what was pending when the search was loaded is asked again
+                    self._submit(ticket, x)
+        return bool(self.out)
+
+    def _submit(self, ticket: int, x: NDArray[np.float64]) -> None:
+        try:
+            future = self.pool.submit(self.f, x.copy())
+        except futures.BrokenExecutor as error:
+            self.pool.replace(error)
+            future = self.pool.submit(self.f, x.copy())
+        self.out[future] = (ticket, x, self.pool.generation)
+        future.add_done_callback(self.done.put)
+
+    def _take(self, future: Any) -> None:
+        alone = len(self.out) == 1
+        ticket, x, generation = self.out.pop(future)
+        try:
+            value = future.result()
+        except (futures.BrokenExecutor, futures.CancelledError) as error:
+            if generation == self.pool.generation:
+                self.pool.replace(error)
+            self._lost(ticket, x, alone)
+        except Exception as error:
+            if type(error).__name__ != "KilledWorker":  # of Dask, which has tried it on several workers
+                raise
+            self._lost(ticket, x, alone)
+        else:
+            self.search._take(ticket, value)
+
+    def _lost(self, ticket: int, x: NDArray[np.float64], alone: bool) -> None:
+        """Evaluate a point again that was lost with its worker, unless it has killed several."""
+        self.losses[ticket] += alone
+        if self.losses[ticket] >= _MOST_LOSSES:
+            self.search._take(ticket, None)
+        else:
+            self.suspects.append((ticket, x))
+
+
+def _tickets(value: ArrayLike) -> NDArray[np.uint64]:
+    array = np.atleast_1d(value)
+    if array.size and array.dtype.kind not in "iu":
+        raise TypeError(f"tickets are of type {array.dtype}: they are whole numbers, as `ask` gave them")
+    if array.size and array.dtype.kind == "i" and array.min() < 0:
+        raise ValueError(f"ticket {array.min()} was never given out")
+    return np.ascontiguousarray(array, dtype=np.uint64)

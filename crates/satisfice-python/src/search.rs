@@ -1,0 +1,271 @@
+//! A search that is asked for points and told their values: `satisfice.Search` is written around it.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+use satisfice::{Cancel, Checkpoint, Order, Ticket, Tickets, TracePoint};
+use satisfice_catalogue::black_box::Point;
+use satisfice_catalogue::{RunReport, RunSpec};
+use serde::{Deserialize, Serialize};
+
+use crate::arguments::{Run, budget};
+use crate::find::{Function, Question, engine, search};
+use crate::refused;
+use crate::report::Report;
+
+/// What is asked and told, and what it takes to write a report.
+struct Inner {
+    tickets: Tickets<Function>,
+    /// Values lost to exceptions and to workers.
+    failed: u64,
+}
+
+/// A search by tickets.
+#[pyclass(frozen, module = "satisfice")]
+pub(crate) struct Search {
+    inner: Mutex<Inner>,
+    question: Question,
+    spec: RunSpec,
+}
+
+/// A saved search.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    question: Question,
+    spec: RunSpec,
+    failed: u64,
+    checkpoint: Checkpoint<Point>,
+}
+
+impl Search {
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn flat(&self, points: &[Vec<f64>], py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        let dimension = self.question.dimension();
+        let flat: Vec<f64> = points.concat();
+        Ok(flat.into_pyarray(py).reshape([points.len(), dimension])?.unbind())
+    }
+}
+
+/// Tickets and points as arrays.
+type Asked = (Py<PyArray1<u64>>, Py<PyArray2<f64>>);
+
+#[pymethods]
+impl Search {
+    #[new]
+    fn new(py: Python<'_>, question: Question, run: Run, ordered: bool) -> PyResult<Self> {
+        let mut spec = run.spec()?;
+        let problem = question.problem()?;
+        let search = search(&spec)?;
+        question.enter(&mut spec)?;
+        let order = if ordered { Order::Ordered } else { Order::Eager };
+        let budget = budget(&spec, &Cancel::new());
+        let tickets = py
+            .detach(|| Tickets::begin(search, problem, &budget, order))
+            .map_err(refused)?;
+        let inner = Mutex::new(Inner { tickets, failed: 0 });
+        Ok(Self {
+            inner,
+            question,
+            spec,
+        })
+    }
+
+    fn ask(&self, py: Python<'_>, count: usize) -> PyResult<Asked> {
+        let asked = py.detach(|| self.lock().tickets.ask(count));
+        let numbers: Vec<u64> = asked.iter().map(|asked| asked.ticket.number()).collect();
+        let points: Vec<Vec<f64>> = asked
+            .into_iter()
+            .map(|asked| asked.solution.coordinates)
+            .collect();
+        Ok((numbers.into_pyarray(py).unbind(), self.flat(&points, py)?))
+    }
+
+    fn tell(
+        &self,
+        py: Python<'_>,
+        tickets: PyReadonlyArray1<'_, u64>,
+        values: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let (tickets, values) = (tickets.as_slice()?.to_vec(), values.as_slice()?.to_vec());
+        if tickets.len() != values.len() {
+            let what = format!(
+                "{} values for {} tickets: give one for each",
+                values.len(),
+                tickets.len()
+            );
+            return Err(PyValueError::new_err(what));
+        }
+        py.detach(|| {
+            let mut inner = self.lock();
+            tickets
+                .iter()
+                .zip(values)
+                .try_for_each(|(&ticket, value)| inner.tickets.tell(Ticket::from(ticket), value).map(drop))
+        })
+        .map_err(refused)
+    }
+
+    /// Tells that an evaluation gave no value.
+    fn fail(&self, py: Python<'_>, ticket: u64) -> PyResult<()> {
+        py.detach(|| {
+            let mut inner = self.lock();
+            inner.failed += 1;
+            inner.tickets.tell(Ticket::from(ticket), f64::NAN).map(drop)
+        })
+        .map_err(refused)
+    }
+
+    fn forget(&self, py: Python<'_>, tickets: PyReadonlyArray1<'_, u64>) -> PyResult<()> {
+        let tickets = tickets.as_slice()?.to_vec();
+        py.detach(|| {
+            let mut inner = self.lock();
+            tickets
+                .iter()
+                .try_for_each(|&ticket| inner.tickets.forget(Ticket::from(ticket)).map(drop))
+        })
+        .map_err(refused)
+    }
+
+    fn inform(
+        &self,
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        values: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let dimension = self.question.dimension();
+        let (points, values) = (points.as_slice()?.to_vec(), values.as_slice()?.to_vec());
+        if points.len() != values.len() * dimension {
+            return Err(PyValueError::new_err(format!(
+                "{} coordinates for {} values: give a point of {dimension} coordinates for each",
+                points.len(),
+                values.len()
+            )));
+        }
+        py.detach(|| {
+            let mut inner = self.lock();
+            for (point, &value) in points.chunks_exact(dimension).zip(&values) {
+                let solution = satisfice::SatisficingProblem::decode(inner.tickets.problem(), point);
+                inner.tickets.inform(&solution, value)?;
+            }
+            Ok(())
+        })
+        .map_err(|error: satisfice::Error| refused(error))
+    }
+
+    fn open(&self, py: Python<'_>) -> usize {
+        py.detach(|| self.lock().tickets.open())
+    }
+
+    fn pending(&self, py: Python<'_>) -> PyResult<Asked> {
+        let pending = py.detach(|| {
+            let inner = self.lock();
+            let tickets = inner.tickets.pending().into_iter();
+            tickets
+                .filter_map(|ticket| {
+                    Some((
+                        ticket.number(),
+                        inner.tickets.solution(ticket)?.coordinates.clone(),
+                    ))
+                })
+                .collect::<Vec<_>>()
+        });
+        let (numbers, points): (Vec<u64>, Vec<Vec<f64>>) = pending.into_iter().unzip();
+        Ok((numbers.into_pyarray(py).unbind(), self.flat(&points, py)?))
+    }
+
+    fn hits(&self, py: Python<'_>) -> usize {
+        py.detach(|| self.lock().tickets.hits().len())
+    }
+
+    fn evaluations(&self, py: Python<'_>) -> u64 {
+        py.detach(|| self.lock().tickets.counts().evaluations)
+    }
+
+    fn ticket_counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let counts = py.detach(|| self.lock().tickets.ticket_counts());
+        let dict = PyDict::new(py);
+        for (name, count) in [
+            ("asked", counts.asked),
+            ("taken", counts.taken),
+            ("again", counts.again),
+            ("late", counts.late),
+            ("over", counts.over),
+            ("forgotten", counts.forgotten),
+        ] {
+            dict.set_item(name, count)?;
+        }
+        Ok(dict)
+    }
+
+    fn report(&self, py: Python<'_>) -> PyResult<Report> {
+        py.detach(|| {
+            let inner = self.lock();
+            let spec = RunSpec {
+                threads: 1,
+                ..self.spec.clone()
+            };
+            let mut report = RunReport::of_slices(spec, &[inner.tickets.report()], serde_json::to_value)?;
+            report.slices.clear();
+            report.failed = inner.failed;
+            // As at the end of a slice, whether or not this is it.
+            let evaluations = report.counts.evaluations;
+            if report
+                .trace
+                .last()
+                .is_none_or(|last| last.evaluations < evaluations)
+            {
+                report.trace.push(TracePoint {
+                    evaluations,
+                    elapsed_seconds: report.elapsed_seconds,
+                    hits: report.hits,
+                });
+            }
+            Ok(Report::new(report))
+        })
+        .map_err(|error: serde_json::Error| refused(error))
+    }
+
+    fn dimension(&self) -> usize {
+        self.question.dimension()
+    }
+
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| {
+            let inner = self.lock();
+            serde_json::to_vec(&Saved {
+                question: self.question.clone(),
+                spec: self.spec.clone(),
+                failed: inner.failed,
+                checkpoint: inner.tickets.checkpoint(),
+            })
+        });
+        Ok(PyBytes::new(py, &bytes.map_err(refused)?))
+    }
+
+    #[classmethod]
+    fn load(_: &Bound<'_, PyType>, py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let wrong = |error: &dyn std::fmt::Display| {
+            PyValueError::new_err(format!("this is not a saved search: {error}"))
+        };
+        py.detach(|| {
+            let saved: Saved = serde_json::from_slice(bytes).map_err(|error| wrong(&error))?;
+            let problem = saved.question.problem()?;
+            let tickets = Tickets::resume(saved.checkpoint, engine(&saved.spec)?, problem)
+                .map_err(|error| wrong(&error))?;
+            Ok(Self {
+                inner: Mutex::new(Inner {
+                    tickets,
+                    failed: saved.failed,
+                }),
+                question: saved.question,
+                spec: saved.spec,
+            })
+        })
+    }
+}

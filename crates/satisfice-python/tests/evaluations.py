@@ -1,0 +1,41 @@
+"""Functions that tests send to other processes."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+
+def ring(x):
+    return abs((x[0] ** 2 + x[1] ** 2) ** 0.5 - 1.0)
+
+
+def slow(x):
+    time.sleep(0.01)
+    return ring(x)
+
+
+def fails(x):
+    if x[0] > 0.5:
+        raise ArithmeticError("diverged")
+    return ring(x)
+
+
+def kills_once(x):
+    """The 30th call, over all processes, kills its process."""
+    place = Path(os.environ["SATISFICE_TEST_PLACE"])
+    with open(place / "calls", "ab") as file:
+        file.write(b".")
+        calls = file.tell()
+    if calls >= 30 and not (place / "killed").exists():
+        (place / "killed").touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    time.sleep(0.002)
+    return ring(x)
+
+
+def kills(x):
+    """A region that no process survives."""
+    if x[0] > 1.9:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return ring(x)
