@@ -246,7 +246,7 @@ def test_a_time_budget_ends_between_two_calls():
         return x.sum()
 
     report = satisfice.find(slow, SQUARE, delta=0, time=0.3, seed=1)
-    assert report.stop_reason == "Time" and 0.3 <= report.elapsed < 0.4
+    assert report.stop_reason == "Time" and 0.3 <= report.elapsed < 0.6
     assert 5 < report.nfev <= 16 and report.hits > 0
 
 

@@ -172,7 +172,7 @@ def test_a_time_ends_a_search_that_waits():
     with ThreadPoolExecutor(2) as pool:
         begun = time.monotonic()
         report = satisfice.find(never, SQUARE, delta=1, time=0.3, workers=pool)
-        assert time.monotonic() - begun < 1.0
+        assert time.monotonic() - begun < 1.4
     assert report.stop_reason == "Time" and report.nfev == 0
     with ThreadPoolExecutor(2) as pool:
         search = satisfice.Search(SQUARE, **RING)
