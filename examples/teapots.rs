@@ -286,6 +286,7 @@ fn page(
     for (name, reports) in runs {
         let report = median(reports);
         page.frame(*name);
+        page.frame_fact("Engine", *name);
         page.frame_fact("Evaluations", report.counts.evaluations.to_string());
         page.counts(None, Some(truth.len() as u64));
         for hit in report.hits() {

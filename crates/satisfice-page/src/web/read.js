@@ -33,7 +33,8 @@ const share = x => `${(100 * x).toFixed(1)} %`;
 
 /** Fills a list of names and values. */
 function facts(list, lines) {
-  list.replaceChildren(...lines.flatMap(([name, value]) => [make("dt", name), make("dd", value)]));
+  // Long values have a line of their own where there are columns.
+  list.replaceChildren(...lines.flatMap(([name, value]) => ["dt", "dd"].map((tag, k) => make(tag, [name, value][k], value.length > 48 ? "long" : ""))));
 }
 
 /** A colour of the style, which differs between light and dark. */

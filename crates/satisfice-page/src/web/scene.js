@@ -139,8 +139,8 @@ class Scene {
       body.buffer = stage.buffer(body.places[0]);
       body.drawn = body.places[0];
     }
-    // Lines cost more than surfaces; above this they would hide them anyway.
-    if (this.triangles > 200000) this.mode = "shaded";
+    // The lines of more triangles would cover the surfaces.
+    if (this.triangles > 12000) this.mode = "shaded";
     this.buffers = { ends: stage.pairBuffer(contacts.ends, 6), values: stage.pairBuffer(this.values, 1) };
     gl.canvas.addEventListener("webglcontextlost", () => this.say("The graphics card has dropped this page. Load it again to see the scene."));
   }
@@ -297,7 +297,12 @@ class Scene {
   reset() {
     if (!this.stage) return;
     const { width, height } = this.stage.size();
-    this.camera.fit([...this.scene.bodies.map(body => body.places[this.frame]), this.scene.contacts.ends], width, height);
+    const { bodies, contacts, frames } = this.scene, vertices = bodies.reduce((sum, body) => sum + body.places[0].length, 0);
+    // Everything of every frame, so that nothing leaves the window; of long films some frames.
+    const step = Math.ceil(frames.length * vertices / 6e6), all = new Set();
+    for (let f = 0; f < frames.length; f += step) for (const body of bodies) all.add(body.places[f]);
+    for (const body of bodies) all.add(body.places[this.frame]);
+    this.camera.fit([...all, contacts.ends], width, height);
     this.later();
   }
 
