@@ -2,58 +2,16 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use std::ops::Range;
-
 use satisfice::engine::{Ask, BoundedSwarms, Descent, EngineConfig, NichingPsoDbscan, Origin, Pso, Spso2011};
-use satisfice::space::Region;
+use satisfice::testing::BareContext;
 use satisfice::{Axis, Batch, Boundary, Context, Engine, Outcome, SearchRng, Space};
-
-/// A run without hits, bounds, neighbours or schedules.
-struct Plain(Space<f64>);
-
-impl Context<f64> for Plain {
-    fn space(&self) -> &Space<f64> {
-        &self.0
-    }
-    fn threshold(&self) -> f64 {
-        -1.0
-    }
-    fn elapsed_share(&self) -> f64 {
-        0.0
-    }
-    fn evaluations(&self) -> u64 {
-        0
-    }
-    fn hits(&self) -> usize {
-        0
-    }
-    fn is_deleted(&self, _: &[f64]) -> bool {
-        false
-    }
-    fn neighbour_count(&self, of: &[f64]) -> usize {
-        2 * of.len() // all of them empty
-    }
-    fn neighbours(&self, _: &[f64], _: Range<usize>, _: &mut dyn FnMut(usize, &[f64])) {}
-    fn offers_neighbours(&self) -> bool {
-        false
-    }
-    fn lower_bound(&self, _: &Region<f64>) -> Option<f64> {
-        None
-    }
-    fn previous_hits(&self) -> usize {
-        0
-    }
-    fn previous_hit(&self, _: usize, _: &mut [f64]) -> bool {
-        false
-    }
-}
 
 const LOWER: [f64; 3] = [-5.0, 0.0, 10.0];
 const WIDTHS: [f64; 3] = [10.0, 1.0, 4.0];
 
-fn plain() -> Plain {
+fn context() -> BareContext<f64> {
     let axes = [0, 1, 2].map(|j| Axis::continuous(LOWER[j], LOWER[j] + WIDTHS[j]));
-    Plain(Space::new(axes).unwrap())
+    BareContext::new(Space::new(axes).unwrap())
 }
 
 /// Least in a corner of the space, so that particles leave it.
@@ -66,13 +24,13 @@ fn fitness(x: &[f64]) -> f64 {
 /// An engine that is run by hand.
 struct Driven {
     engine: Box<dyn Engine<f64>>,
-    context: Plain,
+    context: BareContext<f64>,
     rng: SearchRng,
 }
 
 impl Driven {
     fn new(settings: &impl EngineConfig) -> (Self, SearchRng) {
-        let (context, rng) = (plain(), SearchRng::new(5));
+        let (context, rng) = (context(), SearchRng::new(5));
         let mut engine = settings.build::<f64>();
         engine.begin(&context);
         let twin = rng.clone();
@@ -87,7 +45,7 @@ impl Driven {
             assert_eq!(said, Ask::More);
         }
         for i in 0..batch.len() {
-            self.context.0.keep_inside(batch.point_mut(i));
+            self.context.space().keep_inside(batch.point_mut(i));
         }
         let outcomes: Vec<_> = batch.points().map(|x| Outcome::Miss(fitness(x))).collect();
         self.engine.tell(&self.context, &batch, &outcomes, Origin::Engine);
@@ -215,7 +173,7 @@ fn constricted(v: f64, to_best: f64, to_leader: f64, (r1, r2): (f64, f64), limit
 fn moves_with_constriction(settings: &impl EngineConfig, leader: impl Fn(&Particles, usize) -> usize) {
     const N: usize = 6;
     let (mut driven, mut twin) = Driven::new(settings);
-    assert_eq!(driven.context.0.boundary(), Boundary::Reflect);
+    assert_eq!(driven.context.space().boundary(), Boundary::Reflect);
     let x = driven.next();
     for _ in 0..3 * N {
         let _ = twin.uniform(); // the positions

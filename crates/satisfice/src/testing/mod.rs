@@ -5,8 +5,11 @@ use core::fmt::Debug;
 use crate::report::Report;
 
 mod case;
+mod context;
 pub mod engine;
 pub mod problem;
+
+pub use context::BareContext;
 
 /// A law that was broken.
 #[derive(Debug, Clone, PartialEq, Eq)]

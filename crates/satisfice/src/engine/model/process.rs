@@ -210,4 +210,70 @@ mod tests {
         two.update(&mut b);
         assert_eq!(one.predictions(&a), two.predictions(&b));
     }
+
+    /// Solves `A x = b` by Gaussian elimination with pivots.
+    fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
+        let n = b.len();
+        for k in 0..n {
+            let pivot = (k..n)
+                .max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))
+                .unwrap();
+            a.swap(k, pivot);
+            b.swap(k, pivot);
+            for i in k + 1..n {
+                let factor = a[i][k] / a[k][k];
+                for j in k..n {
+                    a[i][j] -= factor * a[k][j];
+                }
+                b[i] -= factor * b[k];
+            }
+        }
+        for k in (0..n).rev() {
+            b[k] = (b[k] - (k + 1..n).map(|j| a[k][j] * b[j]).sum::<f64>()) / a[k][k];
+        }
+        b
+    }
+
+    /// Rasmussen, Williams 2006, Eqs. 2.25 and 2.26 with the likeliest constant mean `1' K^-1 y / 1' K^-1 1` and variance
+    /// `(y - m)' K^-1 (y - m) / n`, by elimination and without a factor.
+    #[test]
+    fn predictions_are_the_published_ones() {
+        let mut scales = Scales::new(2);
+        scales.logs = vec![-1.0, -0.2, -6.0];
+        let known: Vec<_> = (0..23).map(point).collect();
+        let y: Vec<f64> = known.iter().map(|x| value(x)).collect();
+        let inputs: Vec<&[f64]> = known.iter().map(|x| &x[..]).collect();
+        let process = Process::new(scales, &inputs, &y);
+        let mut block = block(300);
+        process.update(&mut block);
+        let (means, variances) = process.predictions(&block);
+
+        let covariance = |p: &[f64; 2], q: &[f64; 2]| {
+            let (dx, dy) = ((p[0] - q[0]) / (-1.0_f64).exp(), (p[1] - q[1]) / (-0.2_f64).exp());
+            let s = (5.0 * (dx * dx + dy * dy)).sqrt();
+            (1.0 + s + s * s / 3.0) * (-s).exp()
+        };
+        let noise = |i: usize, j: usize| if i == j { (-6.0_f64).exp() } else { 0.0 };
+        let matrix: Vec<Vec<f64>> = (0..23)
+            .map(|i| {
+                (0..23)
+                    .map(|j| covariance(&known[i], &known[j]) + noise(i, j))
+                    .collect()
+            })
+            .collect();
+        let sum = |values: &[f64]| values.iter().sum::<f64>();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let ones = solve(matrix.clone(), vec![1.0; 23]);
+        let mean = dot(&ones, &y) / sum(&ones);
+        let centred: Vec<f64> = y.iter().map(|y| y - mean).collect();
+        let weights = solve(matrix.clone(), centred.clone());
+        let variance = dot(&centred, &weights) / 23.0;
+        for lane in 0..LANES {
+            let k: Vec<f64> = known.iter().map(|x| covariance(x, &point(300 + lane))).collect();
+            let expected = mean + dot(&k, &weights);
+            approx::assert_relative_eq!(means[lane], expected, max_relative = 1e-9);
+            let expected = variance * (1.0 - dot(&k, &solve(matrix.clone(), k.clone())));
+            approx::assert_relative_eq!(variances[lane], expected, max_relative = 1e-7);
+        }
+    }
 }

@@ -306,6 +306,8 @@ impl<S: Real> Population<S> {
 }
 
 #[cfg(test)]
+mod generation;
+#[cfg(test)]
 mod tests {
     use super::*;
 
