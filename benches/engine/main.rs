@@ -49,8 +49,7 @@ where
         b.iter(|| random_loop(black_box(problem), evaluations, 7));
     });
     // The two that have a loop first, beside them.
-    // All but the one that models F, which is for evaluations a thousand times as expensive.
-    let engines = engine::all().iter().filter(|entry| entry.name != "surrogate");
+    let engines = engine::all().iter().filter(|entry| !entry.expensive_proposals);
     let mut names: Vec<_> = engines.map(|entry| entry.name).collect();
     names.sort_by_key(|name| !["latest-hit-qpso", "random"].contains(name));
     for engine in names {

@@ -6,9 +6,9 @@ use satisfice::catalogue::{Catalogued, Parameter, Params};
 use satisfice_cloth::Cloth;
 use satisfice_collision::problem::{Pleats, Teapots};
 use satisfice_problems::{
-    Arm, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Himmelblau, Islands, Langford,
-    LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat, SevenJoints, Shell,
-    System, Transmission,
+    Arm, Branin, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Hartmann6, Himmelblau,
+    Islands, Langford, LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat,
+    SevenJoints, Shell, System, Transmission,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -188,5 +188,7 @@ static BUNDLED: &[ProblemSpec] = &[
     ProblemSpec::of::<Roots>(),
     ProblemSpec::of::<Himmelblau>(),
     ProblemSpec::of::<System>(),
+    ProblemSpec::of::<Branin>(),
+    ProblemSpec::of::<Hartmann6>(),
     ProblemSpec::of::<Cec2013>(),
 ];

@@ -16,8 +16,10 @@
 //! ```
 
 mod problem;
+mod settings;
 mod simulation;
 mod springs;
 
 pub use problem::{Cloth, FallenCloth};
-pub use simulation::{Contacts, Crossings, Response, Settings, Simulation};
+pub use settings::{Response, Settings};
+pub use simulation::{Contacts, Crossings, Simulation};

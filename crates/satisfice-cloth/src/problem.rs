@@ -4,7 +4,8 @@ use satisfice::catalogue::{Parameter, Params};
 use satisfice_collision::problem::{Prepared, Recipe};
 use satisfice_collision::{Error, VertexOrder, VertexPairs};
 
-use crate::simulation::{Settings, Simulation};
+use crate::settings::Settings;
+use crate::simulation::Simulation;
 
 /// Which particles of a falling cloth are closer than delta to each other, or to vertices of the sphere?
 ///

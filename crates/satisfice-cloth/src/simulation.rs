@@ -4,6 +4,7 @@ use satisfice_collision::distance::{PairKind, Point, Threshold};
 use satisfice_collision::scene::{Body, BodyId, World};
 use satisfice_collision::{Error, Mesh, generate};
 
+use crate::settings::{Response, Settings};
 use crate::springs::{Spring, relax, springs};
 
 /// Steps in which springs are relaxed between two detections.
@@ -14,111 +15,6 @@ const FRAMES: f64 = 60.0;
 const GRAVITY: f64 = 9.81;
 /// Two particles, and a particle and the sphere, are kept this far apart, in spacings.
 const THICKNESS: f64 = 0.85;
-
-/// Which contacts push back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Response {
-    /// Those with the sphere and those of the cloth with itself.
-    #[default]
-    All,
-    /// Those with the sphere alone: the cloth passes through itself.
-    Sphere,
-}
-
-/// What is simulated. Lengths in metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Particles on each side of the square cloth, 4 to 1024.
-    pub columns: u32,
-    /// Side of the cloth.
-    pub width: f64,
-    /// Radius of the sphere, whose centre is the origin.
-    pub radius: f64,
-    /// How far the middle of the cloth is beside the centre of the sphere at first, along x.
-    pub beside: f64,
-    /// How far the cloth is above the sphere at first.
-    pub drop: f64,
-    /// Drag of the air, 1/s: speeds fall by exp(-drag t).
-    pub drag: f64,
-    /// Coulomb's coefficient of friction, of all contacts.
-    pub friction: f64,
-    /// Pairs of particles closer than this are detected, in spacings. A little below 1 leaves out most of those that an edge
-    /// joins anyway; above 0.71 nothing slips through the middle of a cell undetected.
-    pub reach: f64,
-    /// Which contacts push back.
-    pub response: Response,
-}
-
-impl Default for Settings {
-    /// 128 x 128 particles, 2 m wide, on a sphere of 0.5 m.
-    fn default() -> Self {
-        Self {
-            columns: 128,
-            width: 2.0,
-            radius: 0.5,
-            beside: 0.05,
-            drop: 0.03,
-            drag: 1.0,
-            friction: 0.3,
-            reach: 0.95,
-            response: Response::All,
-        }
-    }
-}
-
-impl Settings {
-    /// Distance of two particles at rest.
-    #[must_use]
-    pub fn spacing(&self) -> f64 {
-        self.width / (f64::from(self.columns) - 1.0)
-    }
-
-    /// Distance below which a pair is a contact that is detected.
-    #[must_use]
-    pub fn delta(&self) -> f64 {
-        self.reach * self.spacing()
-    }
-
-    /// Height of the cloth at first.
-    #[must_use]
-    pub fn start_height(&self) -> f64 {
-        self.radius + self.drop + self.spacing()
-    }
-
-    /// Steps with a detection each in a frame: a particle then moves by less than half a spacing at 3 m/s.
-    fn steps(&self) -> u32 {
-        self.columns.div_ceil(16).max(2)
-    }
-
-    fn check(&self) -> Result<(), Error> {
-        if !(4..=1024).contains(&self.columns) {
-            return Err(refused("columns", self.columns, "4 to 1024 particles on a side"));
-        }
-        for (name, value) in [
-            ("width", self.width),
-            ("radius", self.radius),
-            ("reach", self.reach),
-        ] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(refused(name, value, "a finite length above 0"));
-            }
-        }
-        for (name, value) in [
-            ("drop", self.drop),
-            ("drag", self.drag),
-            ("friction", self.friction),
-        ] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(refused(name, value, "a finite number of at least 0"));
-            }
-        }
-        if self.beside.is_finite() {
-            Ok(())
-        } else {
-            Err(refused("beside", self.beside, "a finite length"))
-        }
-    }
-}
 
 /// A cloth on its way.
 pub struct Simulation {
@@ -365,14 +261,6 @@ impl Simulation {
     }
 }
 
-fn refused(parameter: &'static str, value: impl std::fmt::Display, allowed: &'static str) -> Error {
-    Error::Parameter {
-        parameter,
-        value: value.to_string(),
-        allowed,
-    }
-}
-
 /// What friction takes back of a motion: its part along the surface, at most `most` long.
 fn slip(moved: Point, normal: Point, most: f64) -> Point {
     let along: f64 = (0..3).map(|k| moved[k] * normal[k]).sum();
@@ -491,32 +379,5 @@ mod tests {
             cloth.points
         };
         assert_eq!(run(), run());
-    }
-
-    #[test]
-    fn settings_out_of_range_are_refused() {
-        let good = Settings::default();
-        for bad in [
-            Settings { columns: 3, ..good },
-            Settings {
-                columns: 1025,
-                ..good
-            },
-            Settings { width: 0.0, ..good },
-            Settings {
-                radius: f64::NAN,
-                ..good
-            },
-            Settings {
-                friction: -1.0,
-                ..good
-            },
-            Settings {
-                beside: f64::INFINITY,
-                ..good
-            },
-        ] {
-            assert!(Simulation::new(&bad).is_err(), "{bad:?}");
-        }
     }
 }

@@ -3,12 +3,12 @@
 //! `cargo run --release -p satisfice-draw --example expensive`; writes to `out/expensive`, or to the folder `SATISFICE_OUT`.
 
 use std::error::Error;
-use std::f64::consts::PI;
 use std::sync::Mutex;
 
 use satisfice::engine::{self, GaussianProcess};
 use satisfice::{Budget, Search, SearchRng, Space, from_fn};
 use satisfice_draw::plot::{Colour, Layer, Map, Maps, Marker, Shape, draw_maps};
+use satisfice_problems::{Branin, Hartmann6};
 
 mod gallery;
 
@@ -34,47 +34,15 @@ const FUNCTIONS: [Function; 2] = [
         name: "Branin, 2 axes",
         axes: 2,
         separation: 0.01,
-        f: branin,
+        f: Branin::value,
     },
     Function {
         name: "Hartmann, 6 axes",
         axes: 6,
         separation: 0.05,
-        f: hartmann,
+        f: Hartmann6::value,
     },
 ];
-
-/// Branin's function of `x` in -5..10 and `y` in 0..15, scaled to the unit square: three basins.
-fn branin(u: &[f64]) -> f64 {
-    let (x, y) = (15.0 * u[0] - 5.0, 15.0 * u[1]);
-    let valley = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
-    valley * valley + 10.0 * (1.0 - 1.0 / (8.0 * PI)) * x.cos() + 10.0
-}
-
-/// Hartmann's function of six variables: four Gaussian wells.
-fn hartmann(u: &[f64]) -> f64 {
-    const DEPTHS: [f64; 4] = [1.0, 1.2, 3.0, 3.2];
-    const WIDTHS: [[f64; 6]; 4] = [
-        [10.0, 3.0, 17.0, 3.5, 1.7, 8.0],
-        [0.05, 10.0, 17.0, 0.1, 8.0, 14.0],
-        [3.0, 3.5, 1.7, 10.0, 17.0, 8.0],
-        [17.0, 8.0, 0.05, 10.0, 0.1, 14.0],
-    ];
-    const CENTRES: [[f64; 6]; 4] = [
-        [0.1312, 0.1696, 0.5569, 0.0124, 0.8283, 0.5886],
-        [0.2329, 0.4135, 0.8307, 0.3736, 0.1004, 0.9991],
-        [0.2348, 0.1451, 0.3522, 0.2883, 0.3047, 0.6650],
-        [0.4047, 0.8828, 0.8732, 0.5743, 0.1091, 0.0381],
-    ];
-    let well = |k: usize| {
-        let squares = u.iter().zip(&WIDTHS[k]).zip(&CENTRES[k]);
-        let sum: f64 = squares
-            .map(|((x, width), centre)| width * (x - centre).powi(2))
-            .sum();
-        DEPTHS[k] * (-sum).exp()
-    };
-    -(0..4).map(well).sum::<f64>()
-}
 
 fn main() -> Result<(), Box<dyn Error>> {
     for function in &FUNCTIONS {

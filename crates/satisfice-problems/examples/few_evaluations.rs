@@ -5,11 +5,10 @@
 #![allow(missing_docs, reason = "an example")]
 
 use std::error::Error;
-use std::f64::consts::PI;
 
 use satisfice::catalogue::{Catalogued, Params};
 use satisfice::{Budget, SatisficingProblem, Search, SearchRng, Space, engine, from_fn};
-use satisfice_problems::{Arm, Falsification, SallenKey, Shell};
+use satisfice_problems::{Arm, Branin, Falsification, Hartmann6, SallenKey, Shell};
 
 /// Share of the space that is a hit of the functions with a name.
 const FEASIBLE: f64 = 0.01;
@@ -41,10 +40,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     settings.catalogued::<Shell>()?;
     settings.catalogued::<Arm>()?;
     settings.catalogued::<SallenKey>()?;
-    settings.function("branin", 2, 0.01, branin)?;
+    settings.function("branin", 2, 0.01, Branin::value)?;
     settings.function("himmelblau, log1p", 2, 0.01, himmelblau)?;
     settings.function("rosenbrock, log1p", 4, 0.03, rosenbrock)?;
-    settings.function("hartmann", 6, 0.05, hartmann)?;
+    settings.function("hartmann", 6, 0.05, Hartmann6::value)?;
     settings.regions("balls", |x, c| {
         x.iter().zip(c).map(|(x, c)| (x - c).powi(2)).sum::<f64>().sqrt()
     })?;
@@ -161,12 +160,6 @@ fn centres(seed: u64) -> Vec<Vec<f64>> {
     centres
 }
 
-fn branin(u: &[f64]) -> f64 {
-    let (x, y) = (15.0 * u[0] - 5.0, 15.0 * u[1]);
-    let valley = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
-    valley * valley + 10.0 * (1.0 - 1.0 / (8.0 * PI)) * x.cos() + 10.0
-}
-
 fn himmelblau(u: &[f64]) -> f64 {
     let (x, y) = (10.0 * u[0] - 5.0, 10.0 * u[1] - 5.0);
     ((x * x + y - 11.0).powi(2) + (x + y * y - 7.0).powi(2)).ln_1p()
@@ -178,28 +171,4 @@ fn rosenbrock(u: &[f64]) -> f64 {
         .windows(2)
         .map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2));
     terms.sum::<f64>().ln_1p()
-}
-
-fn hartmann(u: &[f64]) -> f64 {
-    const DEPTHS: [f64; 4] = [1.0, 1.2, 3.0, 3.2];
-    const WIDTHS: [[f64; 6]; 4] = [
-        [10.0, 3.0, 17.0, 3.5, 1.7, 8.0],
-        [0.05, 10.0, 17.0, 0.1, 8.0, 14.0],
-        [3.0, 3.5, 1.7, 10.0, 17.0, 8.0],
-        [17.0, 8.0, 0.05, 10.0, 0.1, 14.0],
-    ];
-    const CENTRES: [[f64; 6]; 4] = [
-        [0.1312, 0.1696, 0.5569, 0.0124, 0.8283, 0.5886],
-        [0.2329, 0.4135, 0.8307, 0.3736, 0.1004, 0.9991],
-        [0.2348, 0.1451, 0.3522, 0.2883, 0.3047, 0.6650],
-        [0.4047, 0.8828, 0.8732, 0.5743, 0.1091, 0.0381],
-    ];
-    let well = |k: usize| {
-        let squares = u.iter().zip(&WIDTHS[k]).zip(&CENTRES[k]);
-        let sum: f64 = squares
-            .map(|((x, width), centre)| width * (x - centre).powi(2))
-            .sum();
-        DEPTHS[k] * (-sum).exp()
-    };
-    -(0..4).map(well).sum::<f64>()
 }

@@ -8,6 +8,7 @@
 //! | falsification | [`Falsification`], [`Transmission`], specifications in signal temporal logic: [`Specification`] |
 //! | constraint satisfaction | [`Queens`], [`GraphColouring`], [`Costas`], [`MagicSquare`], [`LatinSquare`], [`Langford`], [`Sat`] |
 //! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name) |
+//! | smooth functions of few variables | [`Branin`], [`Hartmann6`] |
 //! | niching | [`Cec2013`] (20 functions) |
 //!
 //! What counts as distinct: a cell on a lattice, a root where the space is continuous (hits are polished by Newton's
@@ -26,6 +27,7 @@ mod lattice;
 mod level_sets;
 pub mod number;
 mod roots;
+mod surfaces;
 
 pub use cec2013::{Cec2013, Score, SuiteData, peak_ratio};
 pub use constraints::{
@@ -38,3 +40,4 @@ pub use kinematics::{Arm, Puma, SevenJoints};
 pub use lattice::{ENUMERABLE, count_hits};
 pub use level_sets::{Cec2006, DiscPacking, Islands, Needles, Rastrigin, Shell};
 pub use roots::{Himmelblau, Roots, System};
+pub use surfaces::{Branin, Hartmann6};

@@ -56,6 +56,8 @@ fn constraints() {
 fn continuous() {
     keeps_the_laws::<Roots>(&[]);
     keeps_the_laws::<Himmelblau>(&[]);
+    keeps_the_laws::<Branin>(&[]);
+    keeps_the_laws::<Hartmann6>(&[]);
     keeps_the_laws::<Cec2013>(&[]);
     keeps_the_laws::<System>(&[]);
     keeps_the_laws::<Puma>(&[]);

@@ -333,8 +333,8 @@ fn probes_do_not_disturb_the_engine() {
         if engine::build::<f64>(entry.name).unwrap().is_scheduled() {
             continue; // a schedule follows the whole budget, probes included
         }
-        if entry.name == "surrogate" {
-            continue; // thousands of its proposals take minutes
+        if entry.expensive_proposals {
+            continue;
         }
         let engine = entry.name;
         let probed = run(&problem, engine, 5_000, 0.3, 5);

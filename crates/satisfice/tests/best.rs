@@ -77,8 +77,7 @@ fn is_true(report: &Report<Located<f64>>, valley: &Valley, name: &str) {
 #[test]
 fn with_and_without_hits() {
     for entry in engine::all() {
-        // A proposal of the engine that models F takes about a millisecond.
-        let evaluations = if entry.name == "surrogate" { 150 } else { 1_500 };
+        let evaluations = if entry.expensive_proposals { 150 } else { 1_500 };
         for threshold in [0.6, 0.5] {
             let valley = Valley::new(threshold);
             let mut search = Search::with(entry.configure([]).unwrap()).seed(5).probes(0.1);

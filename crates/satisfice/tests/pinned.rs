@@ -24,8 +24,8 @@ use satisfice::{
 const SHOWN: usize = 8;
 /// Evaluations of a run.
 const RUN: u64 = 3000;
-/// Evaluations of a run of an engine that thinks for milliseconds.
-const SHORT_RUN: &[(&str, u64)] = &[("surrogate", 120)];
+/// Evaluations of a run of an engine whose proposals are expensive.
+const SHORT_RUN: u64 = 120;
 
 /// The settings under which an engine is pinned beside its defaults.
 const SETTINGS: &[(&str, &[(&str, &str)])] = &[
@@ -157,8 +157,8 @@ fn run<S: Real>(name: &str, settings: &[(&str, &str)], problem: &Bowls<S>, out: 
         .unwrap()
         .configure(settings.iter().copied())
         .unwrap();
-    let short = SHORT_RUN.iter().find(|(engine, _)| *engine == name);
-    let evaluations = short.map_or(RUN, |&(_, evaluations)| evaluations);
+    let expensive = engine::find(name).unwrap().expensive_proposals;
+    let evaluations = if expensive { SHORT_RUN } else { RUN };
     let report = Search::with(engine)
         .seed(42)
         .run(problem, &Budget::evaluations(evaluations))

@@ -5,7 +5,7 @@ use std::fs;
 use satisfice::SearchRng;
 
 use crate::extent::{cases, figure};
-use crate::process::{command, run};
+use crate::process::{command, run, without_times};
 
 #[test]
 fn a_flipped_bit_in_a_checkpoint_is_refused_or_changes_nothing() {
@@ -50,7 +50,7 @@ fn a_flipped_bit_in_a_checkpoint_is_refused_or_changes_nothing() {
             wrong.push(format!("case {case}, byte {at}: {fault}"));
         } else if outcome.code == Some(2) {
             refused += 1;
-        } else if without_times(&outcome.stdout) != without_times(&expected.stdout) {
+        } else if result(&outcome.stdout) != result(&expected.stdout) {
             let around = String::from_utf8_lossy(&bytes[at.saturating_sub(40)..(at + 40).min(bytes.len())])
                 .into_owned();
             wrong.push(format!(
@@ -70,22 +70,9 @@ fn a_flipped_bit_in_a_checkpoint_is_refused_or_changes_nothing() {
     );
 }
 
-fn without_times(stdout: &[u8]) -> String {
-    let text = String::from_utf8_lossy(stdout);
-    let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
-    strip(&mut value);
-    value.to_string()
-}
-
-fn strip(value: &mut serde_json::Value) {
-    match value {
-        serde_json::Value::Object(map) => {
-            map.retain(|key, _| !key.ends_with("seconds"));
-            map.values_mut().for_each(strip);
-        }
-        serde_json::Value::Array(list) => list.iter_mut().for_each(strip),
-        _ => {}
-    }
+/// What a report says, times aside.
+fn result(stdout: &[u8]) -> serde_json::Value {
+    without_times(serde_json::from_slice(stdout).unwrap())
 }
 
 #[test]

@@ -1,9 +1,7 @@
 //! Reports are equal to the byte on any number of threads, for every engine; of islands too.
 
-use serde_json::Value;
-
 use crate::extent::{figure, is_full};
-use crate::process::command;
+use crate::process::{command, without_times};
 
 fn report(arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
@@ -13,20 +11,7 @@ fn report(arguments: &[&str]) -> String {
         done.status.code().is_some_and(|code| code < 2),
         "{arguments:?}: {said}"
     );
-    let mut value: Value = serde_json::from_slice(&done.stdout).unwrap();
-    strip(&mut value);
-    value.to_string()
-}
-
-fn strip(value: &mut Value) {
-    match value {
-        Value::Object(map) => {
-            map.retain(|key, _| !key.ends_with("seconds"));
-            map.values_mut().for_each(strip);
-        }
-        Value::Array(list) => list.iter_mut().for_each(strip),
-        _ => {}
-    }
+    without_times(serde_json::from_slice(&done.stdout).unwrap()).to_string()
 }
 
 #[test]
@@ -45,15 +30,11 @@ fn threads_change_no_report() {
         &["sallen-key"]
     };
     let mut runs = 0;
-    let names: Vec<&str> = satisfice::engine::all()
-        .iter()
-        .map(|engine| engine.name)
-        .collect();
     for problem in problems {
-        for engine in &names {
+        for entry in satisfice::engine::all() {
+            let engine = entry.name;
             for islands in ["1", "4"] {
-                // A proposal of the engine that models F takes about a millisecond.
-                let evaluations = if *engine == "surrogate" { "100" } else { "3000" };
+                let evaluations = if entry.expensive_proposals { "100" } else { "3000" };
                 let run = |threads| {
                     report(&[
                         "run",

@@ -6,6 +6,8 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use serde_json::Value;
+
 /// Longest time that a process may take on a damaged file; an interrupt comes at half of it.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Limit of the address space, in kB. Threads reserve some of it without using it.
@@ -134,4 +136,20 @@ impl Outcome {
             Some(code) => Some(format!("exit code {code}: {}", shown())),
         }
     }
+}
+
+/// A report without its times.
+pub(crate) fn without_times(mut report: Value) -> Value {
+    fn visit(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.retain(|key, _| !key.ends_with("seconds"));
+                map.values_mut().for_each(visit);
+            }
+            Value::Array(list) => list.iter_mut().for_each(visit),
+            _ => {}
+        }
+    }
+    visit(&mut report);
+    report
 }

@@ -10,7 +10,7 @@ use satisfice::SearchRng;
 use serde_json::Value;
 
 use crate::extent::{cases, figure};
-use crate::process::{command, ends_within, signal};
+use crate::process::{command, ends_within, signal, without_times};
 
 /// Time in which an interrupted process has to end.
 const END: Duration = Duration::from_secs(5);
@@ -103,21 +103,6 @@ fn a_second_signal_within_a_second_is_the_same_wish() {
         "SIGTERM twice within 20 ms, as `timeout` sends it",
         &["TERM", "TERM"],
     );
-}
-
-fn without_times(mut report: Value) -> Value {
-    fn visit(value: &mut Value) {
-        match value {
-            Value::Object(map) => {
-                map.retain(|key, _| !key.ends_with("seconds"));
-                map.values_mut().for_each(visit);
-            }
-            Value::Array(list) => list.iter_mut().for_each(visit),
-            _ => {}
-        }
-    }
-    visit(&mut report);
-    report
 }
 
 #[test]

@@ -24,6 +24,9 @@ pub struct EngineSpec {
     pub summary: &'static str,
     /// The publication.
     pub citation: &'static str,
+    /// Whether a proposal costs milliseconds, and more with every evaluation: the engine is for hundreds of evaluations of an
+    /// expensive F.
+    pub expensive_proposals: bool,
     parameters: fn() -> &'static [Parameter],
 }
 
@@ -34,6 +37,7 @@ impl EngineSpec {
             aliases: E::ALIASES,
             summary: E::SUMMARY,
             citation: E::CITATION,
+            expensive_proposals: E::EXPENSIVE_PROPOSALS,
             parameters: E::parameters,
         }
     }

@@ -36,6 +36,9 @@ pub trait EngineConfig: Settings + Clone + Debug + Default + Send + Sync + 'stat
     const SUMMARY: &'static str;
     /// The publication.
     const CITATION: &'static str;
+    /// Whether a proposal costs milliseconds, and more with every evaluation: the engine is for hundreds of evaluations of an
+    /// expensive F. Tests and benches with thousands of evaluations leave it out.
+    const EXPENSIVE_PROPOSALS: bool = false;
 
     /// The engine. Every setting is within its range.
     fn build<S: Real>(&self) -> Box<dyn Engine<S>>;

@@ -212,6 +212,7 @@ mod tests {
     }
 
     /// Solves `A x = b` by Gaussian elimination with pivots.
+    #[expect(clippy::needless_range_loop, reason = "indices, as in the textbook")]
     fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
         let n = b.len();
         for k in 0..n {

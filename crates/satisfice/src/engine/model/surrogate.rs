@@ -49,6 +49,7 @@ impl EngineConfig for Surrogate {
     const SUMMARY: &'static str =
         "Gaussian process that proposes where a hit is most probable, for 20 to 500 expensive evaluations";
     const CITATION: &'static str = "after Bryan et al. 2005, NIPS 18, and Gotovos et al. 2013, IJCAI 23; Matérn kernels: Rasmussen, Williams 2006, ISBN 026218253X";
+    const EXPENSIVE_PROPOSALS: bool = true;
 
     fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(ModelledSearch {

@@ -77,8 +77,7 @@ fn run(problem: &Shell, engine: &str, pruned: bool, evaluations: u64) -> Report<
 
 #[test]
 fn dead_regions_are_hardly_sampled_and_hits_are_not_lost() {
-    // Thousands of the surrogate's proposals take minutes; its laws are tested beside those of the others.
-    for entry in all().iter().filter(|entry| entry.name != "surrogate") {
+    for entry in all().iter().filter(|entry| !entry.expensive_proposals) {
         let (plain, sparing) = (Shell::new(3, 100, 12.0), Shell::new(3, 100, 12.0));
         let before = run(&plain, entry.name, false, 20_000);
         let after = run(&sparing, entry.name, true, 20_000);

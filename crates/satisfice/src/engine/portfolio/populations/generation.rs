@@ -1,5 +1,7 @@
 //! A generation of MA-ES against the published equations (Beyer, Sendhoff 2017, Fig. 3 and Eqs. 21 to 24), written out once more.
 
+#![expect(clippy::needless_range_loop, reason = "indices, as in the equations")]
+
 use crate::testing::BareContext;
 use crate::{Axis, SearchRng, Space};
 

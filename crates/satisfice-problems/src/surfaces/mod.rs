@@ -1,0 +1,8 @@
+//! Smooth functions of few variables, the usual test of searches with few evaluations.
+
+mod branin;
+mod hartmann;
+mod surface;
+
+pub use branin::Branin;
+pub use hartmann::Hartmann6;
