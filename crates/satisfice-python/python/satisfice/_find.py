@@ -258,9 +258,10 @@ def question(
         widths = None
     elif _is_number(separation):
         # A radius says nothing about categories: different ones are different hits.
-        widths = [0.0 if axis in labels else float(separation) for axis in range(len(axes))]
+        radius = _real("separation", separation)
+        widths = [0.0 if axis in labels else radius for axis in range(len(axes))]
     else:
-        widths = [float(width) for width in separation]
+        widths = [float(width) for width in _list(separation)]
     parameters: dict[str, Any] = {"function": name, "bounds": [list(axis[:2]) for axis in axes]}
     if any(axis[2] for axis in axes):
         parameters["integrality"] = [axis[2] for axis in axes]
@@ -307,12 +308,12 @@ def _axes(
     axes = []
     for axis, (pair, is_whole) in enumerate(zip(pairs, whole, strict=True)):
         try:
-            lower, upper = (float(end) for end in pair)
+            low, high = (float(end) for end in pair)
         except (TypeError, ValueError):
             raise ValueError(f"bounds of axis {axis} are {pair!r}: give (lower, upper)") from None
-        if is_whole and not (_is_whole(lower) and _is_whole(upper)):
+        if is_whole and not (_is_whole(low) and _is_whole(high)):
             raise ValueError(f"bounds of axis {axis} are {pair!r}: an integer axis has whole ends below 2**53")
-        axes.append((lower, upper, is_whole))
+        axes.append((low, high, is_whole))
     return axes, labels
 
 

@@ -7,6 +7,22 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "Best",
+    "Body",
+    "Mesh",
+    "Problem",
+    "Report",
+    "Search",
+    "Step",
+    "World",
+    "close_pairs",
+    "command",
+    "find",
+    "listing",
+    "version",
+]
+
 def version() -> str:
     """The version of the framework."""
 

@@ -233,11 +233,11 @@ class Search:
         try:
             if executor is None and workers == 1:
                 self._map(f, map, 1, deadline, catch)
-            elif executor is None and callable(workers):
+            elif executor is None and not isinstance(workers, int):
                 self._map(f, workers, in_flight or _IN_FLIGHT, deadline, catch)
             elif executor is not None:
                 _Drive(self, f, _Given(executor), in_flight or _IN_FLIGHT, deadline, catch).run()
-            else:
+            elif isinstance(workers, int):
                 _check_pickle(f)
                 with _Own(workers) as pool:
                     _Drive(self, f, pool, in_flight or workers, deadline, catch).run()

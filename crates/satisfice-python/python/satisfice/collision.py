@@ -167,7 +167,7 @@ class Pairs:
 
     def to_coo(self, shape: tuple[int, int]) -> Any:
         """The distances as a sparse matrix (`scipy.sparse.coo_array`) of this shape. A distance of 0 is stored, too."""
-        from scipy.sparse import coo_array
+        from scipy.sparse import coo_array  # type: ignore[import-untyped, unused-ignore]
 
         return coo_array((self.distance, (self.i, self.j)), shape=shape)
 
@@ -643,10 +643,10 @@ class Step:
         threads : int, default 1
             Threads, 0 for one per core. They do not change the impacts.
         """
-        numbers, times, (point_a, point_b, normal), complete = self._step.impacts(
+        (body_a, body_b, a, b), times, (point_a, point_b, normal), complete = self._step.impacts(
             pairs, float(threshold), float(tolerance), time, threads
         )
-        return Impacts(*numbers, np.column_stack(times), point_a, point_b, normal, complete)
+        return Impacts(body_a, body_b, a, b, np.column_stack(times), point_a, point_b, normal, complete)
 
     def free_step(self, *, threshold: float = 0.0) -> float:
         """A time up to which the step is proved free of impacts; 1 if the whole step is."""
@@ -657,7 +657,10 @@ class Step:
     ) -> tuple[tuple[float, float], tuple[str, tuple[int, int, int, int]] | None, bool]:
         """The first impact: bounds of its time, the kind and the pair (body_a, body_b, a, b), whether that is proved."""
         (lower, upper), first, proved = self._step.earliest(float(threshold), float(tolerance), time)
-        return (lower, upper), None if first is None else (first[0], tuple(first[1])), proved
+        if first is None:
+            return (lower, upper), None, proved
+        kind, (body_a, body_b, a, b) = first
+        return (lower, upper), (kind, (body_a, body_b, a, b)), proved
 
 
 def impacts(
