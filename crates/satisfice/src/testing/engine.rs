@@ -57,8 +57,9 @@ pub enum Law {
 /// A law that an engine breaks.
 pub type Violation = super::Violation<Law>;
 
-/// Evaluations of an ordinary run.
+/// Evaluations of an ordinary run, and of one by an engine whose proposals are expensive.
 const RUN: u64 = 600;
+const EXPENSIVE_RUN: u64 = 150;
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;
 
@@ -68,10 +69,21 @@ const LONG_RUN: u64 = 20_000;
 /// # Errors
 /// As [`EngineSpec::configure`].
 pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Violation>, Error> {
+    let run = if spec.expensive_proposals {
+        EXPENSIVE_RUN
+    } else {
+        RUN
+    };
     let mut violations = Vec::new();
     for (scalar, found) in [
-        ("f32", check::<f32>(&spec.configure(settings.iter().copied())?)?),
-        ("f64", check::<f64>(&spec.configure(settings.iter().copied())?)?),
+        (
+            "f32",
+            check_in::<f32>(&spec.configure(settings.iter().copied())?, run)?,
+        ),
+        (
+            "f64",
+            check_in::<f64>(&spec.configure(settings.iter().copied())?, run)?,
+        ),
     ] {
         violations.extend(found.into_iter().map(|mut violation| {
             violation.case = format!("{} in {scalar}, {}", spec.name, violation.case);
@@ -86,9 +98,15 @@ pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Vi
 /// # Errors
 /// As [`ConfiguredEngine::build`]; errors of starting threads.
 pub fn check<S: Real>(engine: &ConfiguredEngine<S>) -> Result<Vec<Violation>, Error> {
+    check_in(engine, RUN)
+}
+
+/// The suite, with ordinary runs of so many evaluations.
+fn check_in<S: Real>(engine: &ConfiguredEngine<S>, run: u64) -> Result<Vec<Violation>, Error> {
     engine.check()?;
     let mut suite = Suite {
         engine,
+        run,
         violations: Vec::new(),
     };
     for case in spaces()? {
@@ -109,6 +127,8 @@ pub fn check<S: Real>(engine: &ConfiguredEngine<S>) -> Result<Vec<Violation>, Er
 
 struct Suite<'a, S> {
     engine: &'a ConfiguredEngine<S>,
+    /// Evaluations of an ordinary run.
+    run: u64,
     violations: Vec<Violation>,
 }
 

@@ -1,7 +1,7 @@
 //! What is run for each law.
 
 use super::probe::{Probe, Restored};
-use super::{LONG_RUN, Law, RUN, Suite};
+use super::{LONG_RUN, Law, Suite};
 use crate::budget::{Budget, StopReason};
 use crate::engine::WarmStart;
 use crate::error::Error;
@@ -16,7 +16,7 @@ use crate::testing::{difference, difference_in_hits};
 impl<S: Real> Suite<'_, S> {
     /// A run twice, and once with its proposals looked at.
     pub(super) fn ordinary(&mut self, case: &Case<S>) -> Result<(), Error> {
-        let budget = Budget::evaluations(RUN);
+        let budget = Budget::evaluations(self.run);
         let report = self.run(case, &budget)?;
         let again = self.search()?.run(case, &budget)?;
         self.say_if(Law::SameSeed, &case.name, difference(&report, &again));
@@ -28,7 +28,7 @@ impl<S: Real> Suite<'_, S> {
         self.say_if(
             Law::SameSeed,
             &case.name,
-            difference_in_hits(&report, &probed, RUN),
+            difference_in_hits(&report, &probed, self.run),
         );
         Ok(())
     }
@@ -47,18 +47,22 @@ impl<S: Real> Suite<'_, S> {
             let budget = |evaluations| {
                 let budget = Budget::evaluations(evaluations);
                 if self.engine.is_scheduled() {
-                    budget.with_horizon(4 * RUN)
+                    budget.with_horizon(4 * self.run)
                 } else {
                     budget
                 }
             };
-            let (short, long) = (budget(RUN), budget(4 * RUN));
+            let (short, long) = (budget(self.run), budget(4 * self.run));
             let short = self.run(&case, &short)?;
             let long = self.run(&twin, &long)?;
-            self.say_if(Law::Prefix, &case.name, difference_in_hits(&short, &long, RUN));
+            self.say_if(
+                Law::Prefix,
+                &case.name,
+                difference_in_hits(&short, &long, self.run),
+            );
             let common = |report: &Report<Located<S>>| -> Vec<_> {
                 let trace = report.trace.iter().map(|point| (point.evaluations, point.hits));
-                trace.filter(|&(evaluations, _)| evaluations < RUN).collect()
+                trace.filter(|&(evaluations, _)| evaluations < self.run).collect()
             };
             let (short, long) = (common(&short), common(&long));
             if !long.starts_with(&short) {
@@ -72,7 +76,7 @@ impl<S: Real> Suite<'_, S> {
         for mut case in spaces()? {
             // Slow enough to be worth several threads.
             case.work = 1000;
-            let budget = Budget::evaluations(RUN / 2);
+            let budget = Budget::evaluations(self.run / 2);
             let one = self.run(&case, &budget)?;
             for threads in [2, 3, 8] {
                 let many = self.search()?.threads(threads).run(&case, &budget)?;
@@ -90,12 +94,12 @@ impl<S: Real> Suite<'_, S> {
             for index in 0..spaces::<S>()?.len() {
                 let mut reports = Vec::new();
                 let healthy = spaces()?.swap_remove(index);
-                let healthy = self.run(&healthy, &Budget::evaluations(RUN))?;
+                let healthy = self.run(&healthy, &Budget::evaluations(self.run))?;
                 for value in values {
                     let case = spaces()?.swap_remove(index).poisoned(poison(value));
                     let (probe, findings) = Probe::around(self.engine);
                     let mut search = Search::with(probe).seed(42);
-                    let report = self.run_by(&mut search, &case, &Budget::evaluations(RUN))?;
+                    let report = self.run_by(&mut search, &case, &Budget::evaluations(self.run))?;
                     self.say_if(Law::Proposals, &case.name, findings.first());
                     // Who has covered the space, which the audit has looked at, has not given up.
                     let covered = report.stop_reason == StopReason::Covered;
@@ -133,7 +137,7 @@ impl<S: Real> Suite<'_, S> {
 
     pub(super) fn restoring(&mut self) -> Result<(), Error> {
         for case in spaces()? {
-            let budget = Budget::evaluations(RUN);
+            let budget = Budget::evaluations(self.run);
             let straight = self.search()?.run(&case, &budget)?;
             for every in [1, 7] {
                 let (restored, findings) = Restored::around(self.engine, every);
@@ -142,7 +146,7 @@ impl<S: Real> Suite<'_, S> {
                 self.say_if(
                     Law::Restore,
                     &case.name,
-                    difference_in_hits(&straight, &report, RUN),
+                    difference_in_hits(&straight, &report, self.run),
                 );
                 if straight.counts != report.counts {
                     self.say(
@@ -169,7 +173,7 @@ impl<S: Real> Suite<'_, S> {
                 };
                 let (first, moved, again) = (pick()?, pick()?.moved(0.02), pick()?.moved(0.02));
                 let mut twins = [self.search()?.warm_start(rule), self.search()?.warm_start(rule)];
-                let budget = Budget::evaluations(RUN);
+                let budget = Budget::evaluations(self.run);
                 let before = self.run_by(&mut twins[0], &first, &budget)?;
                 let after = self.run_by(&mut twins[0], &moved, &budget)?;
                 twins[1].run(&first, &budget)?;
@@ -181,7 +185,7 @@ impl<S: Real> Suite<'_, S> {
                 } else {
                     0
                 };
-                if after.counts.verified != wanted.min(RUN) {
+                if after.counts.verified != wanted.min(self.run) {
                     self.say(
                         Law::Slices,
                         &name,
