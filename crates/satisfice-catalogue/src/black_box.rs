@@ -106,7 +106,7 @@ impl Point {
         match &self.separation {
             None => scaled.extend_from_slice(coordinates),
             Some(half_axes) => {
-                self.scaled.separation = 1.0;
+                self.scaled.separation = satisfice::Separation::Radius(1.0);
                 scaled.extend(coordinates.iter().zip(&**half_axes).map(|(x, width)| x / width));
             }
         }

@@ -44,6 +44,8 @@ pub struct RunControl<'a> {
     pub save: Option<&'a mut Save<'a>>,
     /// The time between checkpoints.
     pub every: Duration,
+    /// Is told, once a run, what it could not make use of.
+    pub remark: Option<&'a mut dyn FnMut(&str)>,
 }
 
 impl RunControl<'_> {

@@ -66,6 +66,7 @@ where
     let cancel = control.cancel.clone();
     let budget = spec.slice_budget(&cancel);
     let mut failed = None;
+    let (mut calls, mut shared) = (0, 0);
     while unfinished || goes_on(&reports, spec) {
         let every = control.every;
         let mut save = control.save.take();
@@ -95,10 +96,28 @@ where
             }
         };
         control.save = save;
-        reports.push(report?);
+        let report = report?;
+        calls += report.counts.fitness_calls;
+        shared += search.shared_calls();
+        reports.push(report);
         unfinished = false;
     }
+    if let (Some(remark), Some(text)) = (&mut control.remark, idle_threads(spec, calls, shared)) {
+        remark(&text);
+    }
     failed.map_or(Ok(reports), |error| Err(error.into()))
+}
+
+/// What to say where several threads had little to share.
+fn idle_threads(spec: &RunSpec, calls: u64, shared: u64) -> Option<String> {
+    let idle = spec.threads != 1 && spec.islands == 1 && calls > 0 && shared < calls / 2;
+    idle.then(|| {
+        format!(
+            "threads shared {shared} of {calls} calls of the fitness: the batches of {} are too small for them, or the fitness \
+             is too cheap; islands run several engines side by side",
+            spec.engine
+        )
+    })
 }
 
 /// Whether there is another slice to run.

@@ -108,9 +108,14 @@ pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) slices: Options<false>,
 
-    /// Keep a checkpoint of the run in this file: at the beginning, every few seconds, at Ctrl-C and at the end.
+    /// Keep a checkpoint of the run in this file: at the beginning, after a second, then every `--checkpoint-every`, at Ctrl-C
+    /// and at the end.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
+
+    /// Time between two checkpoints; more where a checkpoint takes more than a tenth of it.
+    #[arg(long, value_name = "TIME", default_value = "5s", value_parser = quantity::time, requires = "checkpoint")]
+    pub(crate) checkpoint_every: Duration,
 
     /// Continue the run of this checkpoint. Arguments that are not given are taken from it; others must agree with it.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -1,16 +1,12 @@
 //! `--checkpoint` and `--resume`.
 
 use std::path::Path;
-use std::time::Duration;
 
 use anyhow::{Context, bail};
 use satisfice_catalogue::{RunSpec, checkpoint};
 
 use crate::message;
 use crate::output::Output;
-
-/// How often a checkpoint is written.
-pub(crate) const EVERY: Duration = Duration::from_secs(5);
 
 /// Reads a checkpoint and the specification of its run, which must be of `problem`.
 pub(crate) fn read(path: &Path, problem: &str) -> anyhow::Result<(Vec<u8>, RunSpec)> {

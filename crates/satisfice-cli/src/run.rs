@@ -13,7 +13,7 @@ use crate::checkpoint::{self, Keeper};
 use crate::output::{self, Output};
 use crate::plot::chart;
 use crate::progress::Bar;
-use crate::{interrupt, page, program, reference, summary};
+use crate::{interrupt, message, page, program, reference, summary};
 
 pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     let Some(name) = arguments
@@ -56,12 +56,14 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     let bar = Bar::new();
     let mut watch = |progress: &Progress| bar.show(progress, progress.slice, spec.budget.slices);
     let mut save = keeper.as_mut().map(|keeper| |bytes: &[u8]| keeper.save(bytes));
+    let mut remark = |text: &str| message::say(format_args!("note: {text}"));
     let control = RunControl {
         cancel: cancel.clone(),
         watch: Some(&mut watch),
         resume: resumed.as_ref().map(|(bytes, _)| bytes.as_slice()),
         save: save.as_mut().map(|save| save as &mut dyn FnMut(&[u8])),
-        every: checkpoint::EVERY,
+        every: arguments.checkpoint_every,
+        remark: Some(&mut remark),
     };
     let mut report = problem.run(&spec, control)?;
     drop(bar);

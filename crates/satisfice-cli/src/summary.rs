@@ -51,10 +51,7 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> 
         match report.completeness {
             Completeness::Proved => "proved: these are all".to_owned(),
             Completeness::Unknown => match (report.unseen_estimate, report.unseen_interval) {
-                (Some(unseen), Some((low, high))) => {
-                    let high = high.map_or_else(|| "no known bound".to_owned(), |high| format!("{high:.0}"));
-                    format!("unknown: {unseen:.0} hits not seen by estimate, {low:.0} to {high}")
-                }
+                (Some(estimate), Some(interval)) => format!("unknown: {}", unseen(estimate, interval)),
                 _ => "unknown: there may be more".to_owned(),
             },
         },
@@ -124,6 +121,35 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> 
     text
 }
 
+/// How many hits are not seen. An estimate that no probe supports is not shown: then the interval is all there is.
+fn unseen(estimate: f64, (low, high): (f64, Option<f64>)) -> String {
+    let supported = estimate >= 0.5 || high.is_some_and(|high| high < 1.0);
+    match (supported, high) {
+        (true, Some(high)) => format!(
+            "{} hits not seen by estimate, {} to {}",
+            whole(estimate),
+            whole(low),
+            whole(high)
+        ),
+        (true, None) => format!(
+            "{} hits not seen by estimate, at least {}",
+            whole(estimate),
+            whole(low)
+        ),
+        (false, Some(high)) => format!("{} to {} hits not seen", whole(low), whole(high)),
+        (false, None) => "how many hits are not seen has no known bound".to_owned(),
+    }
+}
+
+/// A whole number, a large one by its exponent.
+fn whole(x: f64) -> String {
+    if x < 1e9 {
+        format!("{x:.0}")
+    } else {
+        format!("{x:.1e}")
+    }
+}
+
 /// 0 with a hit, 1 without.
 pub(crate) fn exit_code(report: &RunReport) -> ExitCode {
     ExitCode::from(u8::from(report.hits == 0))
@@ -131,7 +157,8 @@ pub(crate) fn exit_code(report: &RunReport) -> ExitCode {
 
 /// Six digits of a number, small ones by their exponent.
 fn digits(x: f64) -> String {
-    if x != 0.0 && x.abs() < 1e-3 {
+    let x = x + 0.0; // no minus before a zero
+    if x != 0.0 && (x.abs() < 1e-3 || x.abs() >= 1e15) {
         format!("{x:.5e}")
     } else {
         format!("{x:.6}")
@@ -175,5 +202,39 @@ mod tests {
         assert!(long.starts_with(cut.strip_suffix(", ... (whole in --json FILE)").unwrap()));
         assert!(cut.len() < LONGEST + 40 && cut.contains("1234, ..."));
         assert!(shortened(&"ü".repeat(400)).starts_with("üüü"));
+    }
+
+    #[test]
+    fn an_estimate_is_shown_where_it_says_something() {
+        let shown = [
+            (unseen(0.0, (0.0, Some(343_064.0))), "0 to 343064 hits not seen"),
+            (
+                unseen(0.0, (0.0, Some(0.0))),
+                "0 hits not seen by estimate, 0 to 0",
+            ),
+            (
+                unseen(12.4, (3.0, Some(40.0))),
+                "12 hits not seen by estimate, 3 to 40",
+            ),
+            (
+                unseen(12.4, (3.0, None)),
+                "12 hits not seen by estimate, at least 3",
+            ),
+            (
+                unseen(0.0, (0.0, None)),
+                "how many hits are not seen has no known bound",
+            ),
+            (unseen(0.0, (0.0, Some(1e92))), "0 to 1.0e92 hits not seen"),
+        ];
+        for (text, wanted) in shown {
+            assert_eq!(text, wanted);
+        }
+    }
+
+    #[test]
+    fn a_zero_has_no_sign_and_a_large_number_few_digits() {
+        assert_eq!(digits(-0.0), "0.000000");
+        assert_eq!(digits(-1e-9), "-1.00000e-9");
+        assert_eq!(digits(1.5e92), "1.50000e92");
     }
 }

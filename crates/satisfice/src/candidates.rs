@@ -221,7 +221,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
 /// Brings a point inside and returns its values, in `memory` if they are not the point itself.
 #[inline(always)]
 fn inside<'a, S: Real>(space: &Space<S>, point: &'a mut [S], memory: &'a mut Vec<S>) -> &'a [S] {
-    if space.has_integers() {
+    if space.maps() {
         if memory.len() != point.len() {
             memory.resize(point.len(), S::zero());
         }

@@ -66,6 +66,14 @@ pub enum Error {
     /// A ticket that was never given out.
     #[error("ticket {0} was never given out: tell the tickets that `ask` gave")]
     Ticket(u64),
+    /// A start point that is not in the space.
+    #[error("start point {index}: {reason}")]
+    StartPoint {
+        /// Which one, from 0.
+        index: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A solution from elsewhere that is not in the space.
     #[error("the solution is not in the space: {0}")]
     Solution(String),

@@ -1,11 +1,15 @@
 //! When two solutions are the same answer.
 
+mod separation;
+
 use core::hash::{BuildHasher, Hash, Hasher};
 
 use foldhash::fast::FixedState;
 
-use crate::scalar::{Real, floor};
+use crate::scalar::{Real, copy_row, floor};
 use crate::space::Region;
+
+pub use separation::{AxisSeparation, Separation};
 
 /// The seed of every key; fixed, so that a run is the same on every machine.
 const KEYS: FixedState = FixedState::with_seed(0x5a71_5f1c_e000_2012);
@@ -48,35 +52,57 @@ impl<T: Eq + Hash> Identity for T {
     }
 }
 
-/// A point of a continuous space that counts once per separation radius: two are the same if their Euclidean distance is
-/// at most the radius, which a problem gives all its solutions alike.
+/// A point that counts once per separation, which a problem gives all its solutions alike.
+///
+/// Two are the same if they are near enough by [`Separation`]: by their Euclidean distance, or axis by axis.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(bound(serialize = "S: Real", deserialize = "S: Real"))]
 pub struct Located<S> {
     /// Coordinates, in the units of the space.
     pub coordinates: Vec<S>,
-    /// Radius within which two count as one, >= 0; 0 means equal coordinates only.
-    pub separation: S,
+    /// How near another one counts as the same.
+    pub separation: Separation<S>,
 }
 
-/// At most this many coordinates are hashed; the true distance decides, so more would only cost more look-ups.
+/// At most this many coordinates with a radius are hashed, by cells; the true distance decides, so more would only cost more
+/// look-ups. Exact coordinates are all hashed.
 const HASHED: usize = 3;
 
 impl<S: Real> Located<S> {
-    /// A solution at these coordinates.
+    /// A solution at these coordinates; a number is a separation radius, >= 0.
     #[must_use]
-    pub fn new(coordinates: &[S], separation: S) -> Self {
+    pub fn new(coordinates: &[S], separation: impl Into<Separation<S>>) -> Self {
         Self {
             coordinates: coordinates.to_vec(),
-            separation,
+            separation: separation.into(),
         }
     }
 
-    /// Whether all points of `region` are the same as this one: whether its farthest corner is.
+    /// Becomes the solution at other coordinates, in the same memory.
+    #[inline]
+    pub fn set(&mut self, coordinates: &[S], separation: &Separation<S>) {
+        if self.coordinates.len() == coordinates.len() {
+            copy_row(&mut self.coordinates, coordinates);
+        } else {
+            self.coordinates.clear();
+            self.coordinates.extend_from_slice(coordinates);
+        }
+        self.separation.set(separation);
+    }
+
+    /// Whether all points of `region` are the same as this one: whether its farthest corner is. On axes that are periodic or
+    /// logarithmic that is said of equal ends only.
     ///
     /// That decides for all of them, rounding included: differences, quotients, squares and sums are monotone in every
     /// coordinate on either side of this point, and rounding keeps the order.
     #[must_use]
     pub fn covers(&self, region: &Region<S>) -> bool {
+        if let Separation::Axes(axes) = &self.separation {
+            let mut ends = region.lower.iter().zip(&region.upper).zip(axes.iter());
+            if ends.any(|((lower, upper), axis)| lower != upper && !axis.is_plain()) {
+                return false;
+            }
+        }
         let ends = region.lower.iter().zip(&region.upper);
         let farthest = self.coordinates.iter().zip(ends).map(|(&x, (&lower, &upper))| {
             if (x - lower).abs() > (x - upper).abs() {
@@ -91,72 +117,136 @@ impl<S: Real> Located<S> {
     #[inline]
     fn is_within(&self, other: impl Iterator<Item = S>) -> bool {
         let mut pairs = self.coordinates.iter().zip(other);
-        if self.separation == S::zero() {
-            return pairs.all(|(&a, b)| a == b);
-        }
-        // Divided before it is squared: the square of a small or of a large radius is no number of use.
-        let square = pairs.fold(S::zero(), |sum, (&a, b)| {
-            let d = (a - b) / self.separation;
-            sum + d * d
-        });
+        let square = match &self.separation {
+            Separation::Radius(radius) if *radius == S::zero() => return pairs.all(|(&a, b)| a == b),
+            // Divided before it is squared: the square of a small or of a large radius is no number of use.
+            Separation::Radius(radius) => pairs.fold(S::zero(), |sum, (&a, b)| {
+                let d = (a - b) / *radius;
+                sum + d * d
+            }),
+            Separation::Axes(axes) => pairs
+                .zip(axes.iter())
+                .fold(S::zero(), |sum, ((&a, b), axis)| sum + axis.square(a, b)),
+        };
         square <= S::one()
     }
 
-    /// The cell of `x` on one axis. Monotone in `x`, roundings included.
-    fn cell(&self, x: S) -> S {
-        let edge = self.separation * S::of(EDGE);
-        let cell = if self.separation == S::zero() {
-            x
-        } else if edge.is_finite() {
-            floor(x / edge)
-        } else {
-            S::zero()
-        };
-        cell + S::zero() // -0.0 and 0.0 are one cell
+    /// Whether every coordinate is exact.
+    #[inline]
+    fn is_exact(&self) -> bool {
+        matches!(&self.separation, Separation::Radius(radius) if *radius == S::zero())
     }
 
-    fn own_cells(&self) -> [S; HASHED] {
-        let mut cells = [S::zero(); HASHED];
-        for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
-            *cell = self.cell(x);
+    /// A hash of the exact coordinates; 0 where there are none.
+    #[inline]
+    fn exact_key(&self) -> u64 {
+        let mut hasher = KEYS.build_hasher();
+        match &self.separation {
+            Separation::Radius(radius) if *radius == S::zero() => {
+                for &x in &self.coordinates {
+                    hasher.write_u64((x + S::zero()).to_word()); // -0.0 and 0.0 are one
+                }
+            }
+            Separation::Radius(_) => return 0,
+            Separation::Axes(axes) => {
+                for (&x, axis) in self.coordinates.iter().zip(axes.iter()) {
+                    if axis.is_hashed_exactly() {
+                        hasher.write_u64((x + S::zero()).to_word());
+                    }
+                }
+            }
+        }
+        hasher.finish()
+    }
+
+    /// The cells of the first coordinates with a radius: for each its own, and the first and the last one that a solution
+    /// within the radius may be in.
+    #[inline]
+    fn cells_near(&self) -> [[S; 3]; HASHED] {
+        let mut cells = [[S::zero(); 3]; HASHED];
+        match &self.separation {
+            Separation::Radius(radius) => {
+                for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
+                    *cell = cells_near(x, *radius);
+                }
+            }
+            Separation::Axes(axes) => {
+                let blurred = self.coordinates.iter().zip(axes.iter());
+                let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
+                for (cell, (&x, axis)) in cells.iter_mut().zip(blurred) {
+                    *cell = cells_near(axis.measured(x), axis.radius());
+                }
+            }
         }
         cells
     }
 
-    /// The cell of `x` on one axis, and the first and the last one that a solution within the radius may be in.
-    ///
-    /// The usual way costs one division: where `x` is in its cell, in [0, 1), says which neighbours are within the radius, a
-    /// quarter, and a hundredth more for what `x / edge` is rounded by, as long as that is small.
-    #[inline]
-    fn cells_near(&self, x: S) -> [S; 3] {
-        let scaled = x / (self.separation * S::of(EDGE));
-        if scaled.abs() < S::of(COARSE) / S::epsilon() {
-            let cell = floor(scaled) + S::zero();
-            let place = scaled - cell;
-            let reach = S::of(1.01 / EDGE);
-            let first = if place < reach { cell - S::one() } else { cell };
-            let last = if place > S::one() - reach {
-                cell + S::one()
-            } else {
-                cell
-            };
-            return [cell, first, last];
+    fn own_cells(&self) -> [S; HASHED] {
+        let mut cells = [S::zero(); HASHED];
+        match &self.separation {
+            Separation::Radius(radius) => {
+                for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
+                    *cell = own_cell(x, *radius);
+                }
+            }
+            Separation::Axes(axes) => {
+                let blurred = self.coordinates.iter().zip(axes.iter());
+                let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
+                for (cell, (&x, axis)) in cells.iter_mut().zip(blurred) {
+                    *cell = own_cell(axis.measured(x), axis.radius());
+                }
+            }
         }
-        self.cells_near_by_ends(x)
+        cells
     }
+}
 
-    /// The same for all other `x`: radius 0, and coordinates so large that they are as coarse as the cells, or infinite.
-    #[cold]
-    fn cells_near_by_ends(&self, x: S) -> [S; 3] {
-        // A little more than the radius, so that rounding in `same` loses nothing.
-        let reach = self.separation * S::of(1.0 + 1e-6);
-        let within = |x: S| x.max(S::min_value()).min(S::max_value());
-        [
-            self.cell(x),
-            self.cell(within(x - reach)),
-            self.cell(within(x + reach)),
-        ]
+/// The cell of `x` on one axis. Monotone in `x`, roundings included.
+fn own_cell<S: Real>(x: S, radius: S) -> S {
+    let edge = radius * S::of(EDGE);
+    let cell = if radius == S::zero() {
+        x
+    } else if edge.is_finite() {
+        floor(x / edge)
+    } else {
+        S::zero()
+    };
+    cell + S::zero() // -0.0 and 0.0 are one cell
+}
+
+/// The cell of `x` on one axis, and the first and the last one that a solution within the radius may be in.
+///
+/// The usual way costs one division: where `x` is in its cell, in [0, 1), says which neighbours are within the radius, a
+/// quarter, and a hundredth more for what `x / edge` is rounded by, as long as that is small.
+#[inline]
+fn cells_near<S: Real>(x: S, radius: S) -> [S; 3] {
+    let scaled = x / (radius * S::of(EDGE));
+    if scaled.abs() < S::of(COARSE) / S::epsilon() {
+        let cell = floor(scaled) + S::zero();
+        let place = scaled - cell;
+        let reach = S::of(1.01 / EDGE);
+        let first = if place < reach { cell - S::one() } else { cell };
+        let last = if place > S::one() - reach {
+            cell + S::one()
+        } else {
+            cell
+        };
+        return [cell, first, last];
     }
+    cells_near_by_ends(x, radius)
+}
+
+/// The same for all other `x`: coordinates so large that they are as coarse as the cells, or infinite.
+#[cold]
+fn cells_near_by_ends<S: Real>(x: S, radius: S) -> [S; 3] {
+    // A little more than the radius, so that rounding in `same` loses nothing.
+    let reach = radius * S::of(1.0 + 1e-6);
+    let within = |x: S| x.max(S::min_value()).min(S::max_value());
+    [
+        own_cell(x, radius),
+        own_cell(within(x - reach), radius),
+        own_cell(within(x + reach), radius),
+    ]
 }
 
 /// Coordinates over this share of the number of cells that the scalar tells apart are looked at with more care.
@@ -168,8 +258,11 @@ const EDGE: f64 = 4.0;
 
 /// One word after the other: hashing them as an array costs three times as much.
 #[inline]
-fn hash_cells<S: Real>(cells: [S; HASHED]) -> u64 {
+fn hash_cells<S: Real>(exact: u64, cells: [S; HASHED]) -> u64 {
     let mut hasher = KEYS.build_hasher();
+    if exact != 0 {
+        hasher.write_u64(exact);
+    }
     for cell in cells {
         hasher.write_u64(cell.to_word());
     }
@@ -183,7 +276,12 @@ fn next_cell<S: Real>(cell: S) -> S {
 
 impl<S: Real> Identity for Located<S> {
     fn key(&self) -> u64 {
-        hash_cells(self.own_cells())
+        let exact = self.exact_key();
+        if self.is_exact() {
+            exact
+        } else {
+            hash_cells(exact, self.own_cells())
+        }
     }
 
     fn same(&self, other: &Self) -> bool {
@@ -191,24 +289,20 @@ impl<S: Real> Identity for Located<S> {
     }
 
     fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
-        let mut ends = [[S::zero(); 2]; HASHED];
-        let mut own = [S::zero(); HASHED];
-        let mut cells = [S::zero(); HASHED];
-        for (((end, own), cell), &x) in ends
-            .iter_mut()
-            .zip(&mut own)
-            .zip(&mut cells)
-            .zip(&self.coordinates)
-        {
-            [*own, end[0], end[1]] = self.cells_near(x);
-            *cell = end[0];
+        let exact = self.exact_key();
+        if self.is_exact() {
+            return visit(exact);
         }
+        let near = self.cells_near();
+        let own = near.map(|[own, _, _]| own);
+        let ends = near.map(|[_, first, last]| [first, last]);
+        let mut cells = ends.map(|[first, _]| first);
         // Its own first: what is the same is most often filed there.
-        if visit(hash_cells(own)) {
+        if visit(hash_cells(exact, own)) {
             return true;
         }
         loop {
-            if cells != own && visit(hash_cells(cells)) {
+            if cells != own && visit(hash_cells(exact, cells)) {
                 return true;
             }
             // The next combination, the first axis fastest.
@@ -267,6 +361,83 @@ mod tests {
     #[test]
     fn whatever_is_the_same_is_found_by_its_keys_in_f32() {
         same_is_found::<f32>();
+    }
+
+    /// All pairs among points on mixed axes, by the keys and by what is meant.
+    #[test]
+    fn axes_by_themselves() {
+        let mut rng = crate::SearchRng::new(8);
+        let apart = Separation::axes([
+            AxisSeparation::exact(),
+            AxisSeparation::within(0.3).periodic(4.0),
+            AxisSeparation::within(0.4),
+            AxisSeparation::within(0.2).logarithmic(),
+            AxisSeparation::exact().periodic(1.0),
+        ]);
+        let point = |rng: &mut crate::SearchRng| {
+            let x = [
+                rng.below(2) as f64,
+                (rng.below(200) as f64) / 50.0,
+                2.0 * rng.uniform(),
+                (2.0 * rng.uniform()).exp(),
+                rng.below(3) as f64 / 2.0,
+            ];
+            Located::new(&x, apart.clone())
+        };
+        let mut same = 0;
+        for _ in 0..100_000 {
+            let (a, b) = (point(&mut rng), point(&mut rng));
+            let [x, y] = [&a, &b].map(|at| &at.coordinates);
+            let around = (x[1] - y[1]).abs();
+            let parts = [
+                around.min(4.0 - around) / 0.3,
+                (x[2] - y[2]) / 0.4,
+                (x[3] / y[3]).ln() / 0.2,
+            ];
+            let exact = x[0] == y[0] && (x[4] - y[4]).abs() % 1.0 == 0.0;
+            let meant = exact && parts.iter().map(|part| part * part).sum::<f64>() <= 1.0;
+            let sum: f64 = parts.iter().map(|part| part * part).sum();
+            if (sum - 1.0).abs() > 1e-9 {
+                assert_eq!(a.same(&b), meant, "{a:?} {b:?}");
+            }
+            assert_eq!(a.same(&b), b.same(&a));
+            assert!(
+                !a.same(&b) || b.visit_keys(&mut |key| key == a.key()),
+                "{a:?} {b:?}"
+            );
+            same += u32::from(meant);
+        }
+        assert!(same > 100, "the test looks at {same} pairs that are the same");
+    }
+
+    #[test]
+    fn a_separation_survives_json_and_bytes() {
+        for separation in [
+            Separation::Radius(0.25),
+            Separation::axes([AxisSeparation::exact(), AxisSeparation::within(2.0).periodic(8.0)]),
+        ] {
+            let point = Located::new(&[1.0_f64, 2.0], separation);
+            let text = serde_json::to_string(&point).unwrap();
+            assert_eq!(
+                serde_json::from_str::<Located<f64>>(&text).unwrap(),
+                point,
+                "{text}"
+            );
+            let bytes = postcard::to_extend(&point, Vec::new()).unwrap();
+            assert_eq!(postcard::from_bytes::<Located<f64>>(&bytes).unwrap(), point);
+        }
+    }
+
+    #[test]
+    fn every_coordinate_of_a_lattice_is_hashed() {
+        let keys: std::collections::BTreeSet<u64> = (0..100)
+            .map(|axis| {
+                let mut x = [0.0_f64; 100];
+                x[axis] = 1.0;
+                Located::new(&x, 0.0).key()
+            })
+            .collect();
+        assert_eq!(keys.len(), 100);
     }
 
     #[test]

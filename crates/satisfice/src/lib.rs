@@ -43,7 +43,7 @@ pub use capability::{Bounds, Encoding, Neighbourhood};
 pub use context::Context;
 pub use engine::{Engine, WarmStart};
 pub use error::Error;
-pub use identity::{Identity, Located};
+pub use identity::{AxisSeparation, Identity, Located, Separation};
 pub use observer::Observer;
 pub use problem::{SatisficingProblem, from_fn};
 pub use report::{Completeness, Counts, Report, RunReport, TracePoint};

@@ -2,9 +2,10 @@
 
 use crate::capability::{Bounds, Encoding, Neighbourhood};
 use crate::catalogue::Description;
-use crate::identity::{Identity, Located};
-use crate::scalar::{Real, copy_row};
-use crate::space::{Region, Space};
+use crate::error::Error;
+use crate::identity::{AxisSeparation, Identity, Located, Separation};
+use crate::scalar::Real;
+use crate::space::{Axis, AxisKind, Region, Space};
 
 /// A problem whose answers are all candidates with F(x) < delta.
 ///
@@ -102,14 +103,16 @@ pub trait SatisficingProblem: Sync {
 pub struct FnProblem<S, F> {
     space: Space<S>,
     threshold: S,
-    separation: S,
+    separation: Separation<S>,
     fitness: F,
 }
 
 /// A problem from a closure: all points of `space` with `fitness(values) < threshold`.
 ///
 /// On an all-integer space, different values are different answers. With a continuous axis, points within a separation
-/// radius count once: 1 % of the longest axis unless [`FnProblem::separation`] says otherwise.
+/// radius count once: 1 % of the longest continuous axis, unless [`FnProblem::separation`] or [`FnProblem::separations`] says
+/// otherwise. Different values on an integer axis are different answers all the same. On a logarithmic axis distances are those
+/// of the logarithms, and the radius is 1 % of theirs; on a periodic one they go around the circle.
 ///
 /// ```
 /// use satisfice::{engine, from_fn, Budget, Search, Space};
@@ -123,13 +126,53 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
     threshold: S,
     fitness: F,
 ) -> FnProblem<S, F> {
-    let continuous = space.axes().iter().filter(|axis| !axis.is_integer());
-    let longest = continuous.fold(S::zero(), |longest, axis| longest.max(axis.width()));
+    let lengths = space
+        .axes()
+        .iter()
+        .filter(|axis| axis.kind() == AxisKind::Continuous && !axis.is_logarithmic());
+    let longest = lengths.fold(S::zero(), |longest, axis| longest.max(axis.width()));
+    let share = S::of(0.01);
+    let separation = separation_of(&space, |axis| {
+        share
+            * if axis.is_logarithmic() {
+                axis.width()
+            } else {
+                longest
+            }
+    });
     FnProblem {
         space,
         threshold,
-        separation: longest * S::of(0.01),
+        separation,
         fitness,
+    }
+}
+
+/// A radius for each continuous axis of a space, by its rule; the others are exact. Where all axes are alike and straight, it
+/// is that of the first one.
+fn separation_of<S: Real>(space: &Space<S>, radius: impl Fn(&Axis<S>) -> S) -> Separation<S> {
+    let axes = space.axes();
+    let straight =
+        |axis: &Axis<S>| axis.kind() == AxisKind::Continuous && !axis.is_logarithmic() && !axis.is_periodic();
+    let whole = |axis: &Axis<S>| axis.kind() == AxisKind::Integer && !axis.is_periodic();
+    if axes.iter().all(straight) || axes.iter().all(whole) {
+        return Separation::Radius(axes.first().map_or(S::zero(), radius));
+    }
+    Separation::axes(axes.iter().map(|axis| separation_on(axis, radius(axis))))
+}
+
+/// A radius on one axis, by its rule.
+fn separation_on<S: Real>(axis: &Axis<S>, radius: S) -> AxisSeparation<S> {
+    if axis.kind() != AxisKind::Continuous {
+        return AxisSeparation::exact();
+    }
+    let within = AxisSeparation::within(radius);
+    if axis.is_logarithmic() {
+        within.logarithmic()
+    } else if axis.is_periodic() {
+        within.periodic(axis.width())
+    } else {
+        within
     }
 }
 
@@ -158,11 +201,34 @@ pub fn evaluated_elsewhere<S: Real>(space: Space<S>, threshold: S) -> FnProblem<
 
 impl<S: Real, F> FnProblem<S, F> {
     /// The same problem with another radius within which two points are one answer, in units of the space; 0 lets only
-    /// equal points be one. A negative radius or NaN counts as 0.
+    /// equal points be one. A negative radius or NaN counts as 0. Beside continuous axes, integer axes remain exact.
     #[must_use]
     pub fn separation(mut self, radius: S) -> Self {
-        self.separation = radius.max(S::zero());
+        self.separation = separation_of(&self.space, |_| radius.max(S::zero()));
         self
+    }
+
+    /// The same problem with a radius for each axis: two points are one answer if the squares of distance / radius sum to at
+    /// most 1. A radius of 0 lets only equal values be one, as on every integer axis.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Axis, Space};
+    /// let space = Space::new([Axis::integer(0, 20), Axis::continuous(0.0, 1000.0), Axis::continuous(-1.0, 1.0)])?;
+    /// let problem = from_fn(space, 1.0, |x: &[f64]| x[2].abs()).separations(&[0.0, 25.0, 0.1])?;
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless there is one radius an axis.
+    pub fn separations(mut self, radii: &[S]) -> Result<Self, Error> {
+        let axes = self.space.axes();
+        if radii.len() != axes.len() {
+            let wanted = format!("one radius for each of the {} axes", axes.len());
+            return Err(Error::parameter("separations", radii.len(), wanted));
+        }
+        let pairs = axes.iter().zip(radii);
+        self.separation = Separation::axes(pairs.map(|(axis, &radius)| separation_on(axis, radius)));
+        Ok(self)
     }
 }
 
@@ -174,17 +240,11 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
         &self.space
     }
     fn decode(&self, values: &[S]) -> Located<S> {
-        Located::new(values, self.separation)
+        Located::new(values, self.separation.clone())
     }
     #[inline]
     fn decode_into(&self, values: &[S], solution: &mut Located<S>) {
-        if solution.coordinates.len() == values.len() {
-            copy_row(&mut solution.coordinates, values);
-        } else {
-            solution.coordinates.clear();
-            solution.coordinates.extend_from_slice(values);
-        }
-        solution.separation = self.separation;
+        solution.set(values, &self.separation);
     }
     #[inline]
     fn fitness(&self, solution: &Located<S>) -> S {

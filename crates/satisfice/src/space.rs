@@ -2,26 +2,60 @@
 //!
 //! Engines move *positions*, which are real on every axis. Problems see *values*: on an integer axis the value is
 //! the floor of the position, so that an axis of the integers `lower..=upper` has positions in `[lower, upper + 1)`
-//! and every integer owns a cell of width one.
+//! and every integer owns a cell of width one. On a logarithmic axis the position is the logarithm of the value; the positions
+//! of a permutation are keys, whose ranks are the values. This file alone maps one to the other.
 
 use crate::error::Error;
 use crate::scalar::{Real, floor};
 
-/// Whether the values of an axis are all reals between its bounds, or the integers only.
+/// What the values of an axis are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum AxisKind {
     /// Every real in `[lower, upper]`.
     Continuous,
     /// The integers `lower..=upper`.
     Integer,
+    /// Categories, written as the integers `0..n`: they have no order.
+    Categorical,
+    /// A place of a permutation, whose value is one of the integers `0..n`, each once.
+    Place,
 }
 
-/// One axis of a [`Space`]. Made by [`Axis::continuous`] and [`Axis::integer`], checked by [`Space::new`].
+/// One axis of a [`Space`], checked by [`Space::new`].
+///
+/// ```
+/// use satisfice::{from_fn, Axis, Budget, Search, Space};
+/// // A rate over six decades, an angle, a number of layers, one of three kinds, and an order of four steps.
+/// let space = Space::<f64>::new(
+///     [
+///         Axis::continuous(1e-6, 1.0).logarithmic(),
+///         Axis::continuous(0.0, 360.0).periodic(),
+///         Axis::integer(1, 8),
+///         Axis::categorical(3),
+///     ]
+///     .into_iter()
+///     .chain(Axis::permutation(4)),
+/// )?;
+/// let problem = from_fn(space, 1.0, |x: &[f64]| {
+///     let order = (x[4], x[5], x[6], x[7]) == (3.0, 2.0, 1.0, 0.0);
+///     (x[0] / 1e-4).ln().abs() + x[1].min(360.0 - x[1]) / 60.0 + if x[3] == 1.0 && order { 0.0 } else { 9.0 }
+/// });
+/// let report = Search::new().run(&problem, &Budget::evaluations(20_000))?;
+/// assert!(report.hits().all(|hit| hit.solution.coordinates[4..] == [3.0, 2.0, 1.0, 0.0]));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Axis<S> {
     lower: S,
     upper: S,
+    /// Ends of the positions.
+    start: S,
+    end: S,
     kind: AxisKind,
+    logarithmic: bool,
+    periodic: bool,
+    /// Which place of its permutation it is, from 0.
+    place: u32,
 }
 
 impl<S: Real> Axis<S> {
@@ -31,7 +65,12 @@ impl<S: Real> Axis<S> {
         Self {
             lower,
             upper,
+            start: lower,
+            end: upper,
             kind: AxisKind::Continuous,
+            logarithmic: false,
+            periodic: false,
+            place: 0,
         }
     }
 
@@ -42,11 +81,53 @@ impl<S: Real> Axis<S> {
         reason = "`Space::new` refuses integers that are not exact"
     )]
     pub fn integer(lower: i64, upper: i64) -> Self {
+        let (lower, upper) = (S::of(lower as f64), S::of(upper as f64));
         Self {
-            lower: S::of(lower as f64),
-            upper: S::of(upper as f64),
+            end: upper + S::one(),
             kind: AxisKind::Integer,
+            ..Self::continuous(lower, upper)
         }
+    }
+
+    /// `count` categories without an order, whose values are the integers `0..count`. The neighbours of one are all others;
+    /// a model measures 0 or 1 between two.
+    #[must_use]
+    pub fn categorical(count: u32) -> Self {
+        Self {
+            kind: AxisKind::Categorical,
+            periodic: true, // no category is at an end
+            ..Self::integer(0, i64::from(count) - 1)
+        }
+    }
+
+    /// The places of a permutation of the integers `0..count`, one axis each; they stand together, in this order. Engines move
+    /// a key for each place: values are the ranks of the keys (Bean 1994, doi 10.1287/ijoc.6.2.154).
+    pub fn permutation(count: u32) -> impl Iterator<Item = Self> {
+        (0..count).map(move |place| Self {
+            start: S::zero(),
+            end: S::one(),
+            kind: AxisKind::Place,
+            place,
+            ..Self::integer(0, i64::from(count) - 1)
+        })
+    }
+
+    /// The same reals, searched by their logarithm: an axis of several orders of magnitude. [`Space::new`] refuses it unless
+    /// the axis is continuous with a lower bound above 0.
+    #[must_use]
+    pub fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
+        self.start = self.lower.ln();
+        self.end = self.upper.ln();
+        self
+    }
+
+    /// The same axis as a circle: what leaves at one end enters at the other, whatever the boundary rule of the space. The ends
+    /// of a continuous axis are one point. [`Space::new`] refuses it on logarithmic axes and on places of a permutation.
+    #[must_use]
+    pub fn periodic(mut self) -> Self {
+        self.periodic = true;
+        self
     }
 
     /// Least value.
@@ -61,55 +142,110 @@ impl<S: Real> Axis<S> {
         self.upper
     }
 
-    /// Continuous or integer.
+    /// What its values are.
     #[must_use]
     pub fn kind(&self) -> AxisKind {
         self.kind
     }
 
-    /// Whether the values are integers.
+    /// Whether positions fall into cells, one for each integer or category.
+    #[inline]
     #[must_use]
     pub fn is_integer(&self) -> bool {
-        self.kind == AxisKind::Integer
+        matches!(self.kind, AxisKind::Integer | AxisKind::Categorical)
     }
 
-    /// End of the positions: `upper`, or `upper + 1` on an integer axis (excluded there).
+    /// Whether the position is the logarithm of the value.
+    #[inline]
+    #[must_use]
+    pub fn is_logarithmic(&self) -> bool {
+        self.logarithmic
+    }
+
+    /// Whether it is a later place of the permutation that `place` is a place of.
+    pub(crate) fn follows(&self, place: &Self) -> bool {
+        let both = self.kind == AxisKind::Place && place.kind == AxisKind::Place;
+        both && self.place > place.place
+    }
+
+    /// Whether [it is a circle](Axis::periodic).
+    #[inline]
+    #[must_use]
+    pub fn is_periodic(&self) -> bool {
+        self.periodic
+    }
+
+    /// Least position: that of `lower`, or 0 for a place of a permutation.
+    #[inline]
+    #[must_use]
+    pub fn start(&self) -> S {
+        self.start
+    }
+
+    /// End of the positions: that of `upper`; `upper + 1` on an integer axis (excluded there), 1 for a place of a permutation.
+    #[inline]
     #[must_use]
     pub fn end(&self) -> S {
-        if self.is_integer() {
-            self.upper + S::one()
-        } else {
-            self.upper
-        }
+        self.end
     }
 
-    /// Length of the positions, `end - lower`; the number of values on an integer axis.
+    /// Length of the positions, `end - start`; the number of values on an integer axis.
+    #[inline]
     #[must_use]
     pub fn width(&self) -> S {
-        self.end() - self.lower
+        self.end - self.start
     }
 
-    /// The value at a position that is inside: its floor on an integer axis, itself on a continuous one.
+    /// The value at a position that is inside: its floor on an integer axis, its exponential on a logarithmic one, else
+    /// itself. At a place of a permutation that is the key, whose rank only [`Space::values`] knows.
     #[inline]
     #[must_use]
     pub fn value(&self, position: S) -> S {
-        if self.is_integer() {
-            floor(position).min(self.upper)
-        } else {
-            position
+        match self.kind {
+            AxisKind::Integer | AxisKind::Categorical => floor(position).min(self.upper),
+            AxisKind::Continuous if self.logarithmic => self.exponential(position),
+            AxisKind::Continuous | AxisKind::Place => position,
         }
     }
 
-    /// A position whose value is `value`: the centre of its cell on an integer axis.
+    /// The value on a logarithmic axis; exact at the bounds.
+    fn exponential(&self, position: S) -> S {
+        if position <= self.start {
+            self.lower
+        } else if position >= self.end {
+            self.upper
+        } else {
+            position.exp().max(self.lower).min(self.upper)
+        }
+    }
+
+    /// A position whose value is `value`: the centre of its cell on an integer axis. A key of a place of a permutation is
+    /// itself.
     #[inline]
     #[must_use]
     pub fn position(&self, value: S) -> S {
-        if self.is_integer() {
-            // Where halves are not representable, the value itself.
-            let centre = value + S::of(0.5);
-            if centre.floor() == value { centre } else { value }
-        } else {
-            value
+        match self.kind {
+            AxisKind::Integer | AxisKind::Categorical => {
+                // Where halves are not representable, the value itself.
+                let centre = value + S::of(0.5);
+                if centre.floor() == value { centre } else { value }
+            }
+            AxisKind::Continuous if self.logarithmic => value.ln().max(self.start).min(self.end),
+            AxisKind::Continuous | AxisKind::Place => value,
+        }
+    }
+
+    /// The positions of the values from `lower` to `upper`: half open on an integer axis, whose last position is left out.
+    #[must_use]
+    pub(crate) fn positions_between(&self, lower: S, upper: S) -> (S, S) {
+        match self.kind {
+            // The last cell is half open; its middle is inside whatever the rounding.
+            AxisKind::Integer | AxisKind::Categorical => (lower, upper + S::of(0.999)),
+            AxisKind::Continuous => (self.position(lower), self.position(upper)),
+            AxisKind::Place => {
+                let count = self.upper + S::one();
+                (lower / count, (upper + S::one()) / count)
+            }
         }
     }
 
@@ -117,9 +253,9 @@ impl<S: Real> Axis<S> {
     #[inline]
     #[must_use]
     pub fn at(&self, share: f64) -> S {
-        let position = self.lower + S::of(share) * self.width();
+        let position = self.start + S::of(share) * self.width();
         // Rounding may reach the end, which an integer axis excludes; `value` mends that.
-        position.min(self.end())
+        position.min(self.end)
     }
 
     fn check(&self, axis: usize) -> Result<(), Error> {
@@ -138,12 +274,18 @@ impl<S: Real> Axis<S> {
         if self.lower > self.upper {
             return bad("the lower one is above the upper one");
         }
-        if !self.width().is_finite() {
+        if !(self.upper - self.lower).is_finite() {
             return bad("their difference overflows");
+        }
+        if self.logarithmic && (self.kind != AxisKind::Continuous || self.lower <= S::zero()) {
+            return bad("a logarithmic axis is continuous, with a lower bound above 0");
+        }
+        if self.periodic && (self.logarithmic || self.kind == AxisKind::Place) {
+            return bad("a periodic axis is continuous or integer, and not logarithmic");
         }
         #[expect(clippy::cast_precision_loss, reason = "powers of two")]
         let largest = S::MAX_INTEGER as f64;
-        if self.is_integer() && lower.abs().max(upper.abs()) >= largest {
+        if self.kind != AxisKind::Continuous && lower.abs().max(upper.abs()) >= largest {
             return bad("integers have to be below 2^53 in f64 and 2^24 in f32, where they are exact");
         }
         Ok(())
@@ -182,7 +324,10 @@ pub enum Boundary {
 pub struct Space<S> {
     axes: Vec<Axis<S>>,
     boundary: Boundary,
-    any_integer: bool,
+    /// Whether values differ from positions.
+    maps: bool,
+    /// First axis and length of each permutation.
+    permutations: Vec<(usize, usize)>,
 }
 
 impl<S: Real> Space<S> {
@@ -199,11 +344,13 @@ impl<S: Real> Space<S> {
         for (index, axis) in axes.iter().enumerate() {
             axis.check(index)?;
         }
-        let any_integer = axes.iter().any(Axis::is_integer);
         Ok(Self {
+            maps: axes
+                .iter()
+                .any(|axis| axis.kind != AxisKind::Continuous || axis.logarithmic),
+            permutations: permutations(&axes)?,
             axes,
             boundary: Boundary::default(),
-            any_integer,
         })
     }
 
@@ -249,11 +396,29 @@ impl<S: Real> Space<S> {
         self.axes.len()
     }
 
-    /// Whether any axis is integer; if not, positions are values.
+    /// Whether values differ from positions on any axis.
     #[inline]
     #[must_use]
-    pub fn has_integers(&self) -> bool {
-        self.any_integer
+    pub fn maps(&self) -> bool {
+        self.maps
+    }
+
+    /// Whether equal shares of the values on some continuous axis are not equal shares of the positions: a box of values is
+    /// then no box of positions of the same shape.
+    #[must_use]
+    pub(crate) fn is_curved(&self) -> bool {
+        self.axes
+            .iter()
+            .any(|axis| axis.logarithmic || axis.kind == AxisKind::Place)
+    }
+
+    /// Whether what leaves axis `axis` at one end enters at the other: by its own rule or by that of the space.
+    ///
+    /// # Panics
+    /// If there is no such axis.
+    #[must_use]
+    pub fn is_periodic(&self, axis: usize) -> bool {
+        self.axes[axis].periodic || self.boundary == Boundary::Wrap
     }
 
     /// Number of points of an all-integer space, as a real because it may be huge; `None` with a continuous axis of
@@ -261,8 +426,8 @@ impl<S: Real> Space<S> {
     #[must_use]
     pub fn cardinality(&self) -> Option<f64> {
         self.axes.iter().try_fold(1.0, |count, axis| match axis.kind {
-            AxisKind::Integer => Some(count * axis.width().f64()),
-            AxisKind::Continuous => (axis.width() == S::zero()).then_some(count),
+            AxisKind::Integer | AxisKind::Categorical => Some(count * axis.width().f64()),
+            AxisKind::Continuous | AxisKind::Place => (axis.width() == S::zero()).then_some(count),
         })
     }
 
@@ -274,7 +439,7 @@ impl<S: Real> Space<S> {
                 .axes
                 .iter()
                 .zip(position)
-                .all(|(axis, &x)| axis.lower <= x && x <= axis.end())
+                .all(|(axis, &x)| axis.start <= x && x <= axis.end)
     }
 
     /// Checks that these are values of the space: one an axis, inside the bounds, whole on integer axes. Cost: O(D).
@@ -293,8 +458,18 @@ impl<S: Real> Space<S> {
                     "{x} on axis {j}, which is [{lower}, {upper}]"
                 )));
             }
-            if axis.value(x) != x {
+            if axis.kind != AxisKind::Continuous && x.fract() != S::zero() {
                 return Err(Error::Solution(format!("{x} on axis {j}, which is whole")));
+            }
+        }
+        for &(first, length) in &self.permutations {
+            let mut ranks = values[first..first + length].to_vec();
+            ranks.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
+            if ranks.windows(2).any(|pair| pair[0] == pair[1]) {
+                let last = first + length - 1;
+                return Err(Error::Solution(format!(
+                    "axes {first} to {last} are a permutation, in which a value is there twice"
+                )));
             }
         }
         Ok(())
@@ -303,49 +478,88 @@ impl<S: Real> Space<S> {
     /// Brings a position inside by the boundary rule; one that is inside stays as it is. Cost: O(D).
     #[inline]
     pub fn keep_inside(&self, position: &mut [S]) {
-        let axes = self.axes.iter().zip(position);
-        // Which it is, is asked once.
-        if self.any_integer {
-            axes.for_each(|(axis, x)| hold(x, axis.lower, axis.end(), self.boundary));
-        } else {
-            axes.for_each(|(axis, x)| hold(x, axis.lower, axis.upper, self.boundary));
+        for (axis, x) in self.axes.iter().zip(position) {
+            hold(x, axis, self.boundary);
         }
     }
 
     /// [`Space::keep_inside`] and [`Space::values`] in one go.
     #[inline(always)]
     pub(crate) fn keep_inside_with_values(&self, position: &mut [S], values: &mut [S]) {
-        for ((axis, x), value) in self.axes.iter().zip(position).zip(values) {
-            let is_integer = axis.is_integer();
-            let end = if is_integer {
-                axis.upper + S::one()
-            } else {
-                axis.upper
-            };
-            hold(x, axis.lower, end, self.boundary);
-            *value = if is_integer {
+        for ((axis, x), value) in self.axes.iter().zip(position).zip(&mut *values) {
+            hold(x, axis, self.boundary);
+            *value = if axis.is_integer() {
                 let whole = floor(*x);
                 if whole < axis.upper { whole } else { axis.upper }
+            } else if axis.logarithmic {
+                axis.exponential(*x)
             } else {
                 *x
             };
+        }
+        if !self.permutations.is_empty() {
+            self.rank(values);
+        }
+    }
+
+    /// Turns the keys of each permutation into their ranks.
+    #[cold]
+    fn rank(&self, values: &mut [S]) {
+        let mut order = Vec::new();
+        for &(first, length) in &self.permutations {
+            let keys = &mut values[first..first + length];
+            order.clear();
+            order.extend(0..length);
+            // Stable: of equal keys, the earlier place has the lower rank.
+            order.sort_by(|&a, &b| {
+                keys[a]
+                    .partial_cmp(&keys[b])
+                    .unwrap_or(core::cmp::Ordering::Equal)
+            });
+            for (rank, &place) in order.iter().enumerate() {
+                keys[place] =
+                    self.axes[first].lower + S::of(f64::from(u32::try_from(rank).unwrap_or(u32::MAX)));
+            }
         }
     }
 
     /// Writes the values at a position that is inside. Cost: O(D).
     #[inline]
     pub fn values(&self, position: &[S], values: &mut [S]) {
-        for ((axis, &x), value) in self.axes.iter().zip(position).zip(values) {
+        for ((axis, &x), value) in self.axes.iter().zip(position).zip(&mut *values) {
             *value = axis.value(x);
+        }
+        if !self.permutations.is_empty() {
+            self.rank(values);
+        }
+    }
+
+    /// Turns a position that is inside into values, in place.
+    #[inline]
+    pub(crate) fn to_values(&self, position: &mut [S]) {
+        if self.maps {
+            for (axis, x) in self.axes.iter().zip(&mut *position) {
+                *x = axis.value(*x);
+            }
+            if !self.permutations.is_empty() {
+                self.rank(position);
+            }
         }
     }
 
     /// Turns values into positions, in place: the inverse of [`Space::values`].
     #[inline]
     pub fn positions(&self, values: &mut [S]) {
-        if self.any_integer {
-            for (axis, x) in self.axes.iter().zip(values) {
+        if self.maps {
+            for (axis, x) in self.axes.iter().zip(&mut *values) {
                 *x = axis.position(*x);
+            }
+            for &(first, length) in &self.permutations {
+                // The middle of the keys that have this rank, if all are evenly apart.
+                let count = S::of(f64::from(u32::try_from(length).unwrap_or(u32::MAX)));
+                for x in &mut values[first..first + length] {
+                    *x = (*x + S::of(0.5)) / count;
+                }
             }
         }
     }
@@ -360,11 +574,50 @@ impl<S: Real> Space<S> {
     }
 }
 
-/// Brings `x` into `[lower, end]` if it is not there.
+/// First axis and length of each permutation.
+fn permutations<S: Real>(axes: &[Axis<S>]) -> Result<Vec<(usize, usize)>, Error> {
+    let mut found = Vec::new();
+    let mut next = 0;
+    while next < axes.len() {
+        let first = next;
+        next += 1;
+        if axes[first].kind != AxisKind::Place {
+            continue;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a u32, whole"
+        )]
+        let length = axes[first].upper.f64() as usize + 1;
+        let all = axes[first..].iter().take(length).zip(0_u32..);
+        let together = all
+            .filter(|(axis, place)| {
+                axis.kind == AxisKind::Place && axis.place == *place && axis.upper == axes[first].upper
+            })
+            .count();
+        if together != length {
+            let (lower, upper) = (axes[first].lower.f64(), axes[first].upper.f64());
+            let reason = "the places of a permutation stand together, in their order";
+            return Err(Error::Bounds {
+                axis: first,
+                lower,
+                upper,
+                reason,
+            });
+        }
+        found.push((first, length));
+        next = first + length;
+    }
+    Ok(found)
+}
+
+/// Brings `x` inside the positions of its axis if it is not there.
 #[inline(always)]
-fn hold<S: Real>(x: &mut S, lower: S, end: S, boundary: Boundary) {
-    if !(lower <= *x && *x <= end) {
-        *x = bring_inside(*x, lower, end, boundary);
+fn hold<S: Real>(x: &mut S, axis: &Axis<S>, boundary: Boundary) {
+    if !(axis.start <= *x && *x <= axis.end) {
+        let boundary = if axis.periodic { Boundary::Wrap } else { boundary };
+        *x = bring_inside(*x, axis.start, axis.end, boundary);
     }
 }
 
@@ -423,7 +676,7 @@ impl<S: Real> Region<S> {
     pub fn middle(&self, space: &Space<S>, axis: usize) -> S {
         let (lower, upper) = (self.lower[axis], self.upper[axis]);
         let half = (upper - lower) / S::of(2.0);
-        if space.axes[axis].is_integer() {
+        if space.axes[axis].kind != AxisKind::Continuous {
             lower + half.floor()
         } else {
             lower + half

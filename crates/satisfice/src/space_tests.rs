@@ -136,3 +136,83 @@ fn cardinality_counts_lattice_points() {
     assert_eq!(Space::<f64>::lattice(3, 10).unwrap().cardinality(), Some(1000.0));
     assert_eq!(Space::<f64>::cube(2, 0.0, 1.0).unwrap().cardinality(), None);
 }
+
+#[test]
+fn a_logarithmic_axis_moves_by_orders_of_magnitude() {
+    let space = Space::<f64>::new([Axis::continuous(1e-6, 1.0).logarithmic()]).unwrap();
+    let axis = space.axes()[0];
+    let mut values = [0.0];
+    for (share, value) in [(0.0, 1e-6), (0.5, 1e-3), (1.0, 1.0)] {
+        space.values(&[axis.at(share)], &mut values);
+        approx::assert_relative_eq!(values[0], value, max_relative = 1e-12);
+    }
+    // Exact at the bounds, and never beyond.
+    space.values(&[axis.start()], &mut values);
+    assert_eq!(values, [1e-6]);
+    let mut position = [1e-6];
+    space.positions(&mut position);
+    assert_eq!(position, [axis.start()]);
+    for bad in [
+        Axis::continuous(0.0, 1.0).logarithmic(),
+        Axis::continuous(-1.0, 1.0).logarithmic(),
+        Axis::integer(1, 9).logarithmic(),
+        Axis::continuous(1.0, 2.0).logarithmic().periodic(),
+    ] {
+        assert!(
+            matches!(Space::new([bad]), Err(Error::Bounds { axis: 0, .. })),
+            "{bad:?}"
+        );
+    }
+}
+
+#[test]
+fn keys_become_ranks_and_ranks_keys() {
+    let axes = [Axis::continuous(-1.0, 1.0)]
+        .into_iter()
+        .chain(Axis::permutation(4));
+    let space = Space::<f64>::new(axes.chain(Axis::permutation(2))).unwrap();
+    let mut values = [0.0; 7];
+    space.values(&[0.5, 0.9, 0.1, 0.1, 0.4, 0.2, 0.1], &mut values);
+    assert_eq!(values, [0.5, 3.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
+    assert!(space.check_values(&values).is_ok());
+    let mut position = values;
+    space.positions(&mut position);
+    assert!(space.contains(&position));
+    let mut again = [0.0; 7];
+    space.values(&position, &mut again);
+    assert_eq!(again, values);
+    let mut at_once = [0.0; 7];
+    space.keep_inside_with_values(&mut position, &mut at_once);
+    assert_eq!(at_once, values);
+    for bad in [
+        [0.5, 3.0, 0.0, 1.0, 3.0, 1.0, 0.0],
+        [0.5, 3.0, 0.0, 1.0, 2.0, 1.0, 1.0],
+    ] {
+        assert!(
+            matches!(space.check_values(&bad), Err(Error::Solution(_))),
+            "{bad:?}"
+        );
+    }
+    let mut torn: Vec<Axis<f64>> = Axis::permutation(3).collect();
+    torn.swap(0, 1);
+    assert!(Space::new(torn.clone()).is_err());
+    torn.truncate(2);
+    assert!(Space::new(torn).is_err());
+}
+
+#[test]
+fn a_periodic_axis_wraps_whatever_the_rule_of_the_space() {
+    let axes = [
+        Axis::continuous(0.0, 360.0).periodic(),
+        Axis::continuous(0.0, 360.0),
+        Axis::integer(0, 9).periodic(),
+    ];
+    for boundary in [Boundary::Reflect, Boundary::Clamp, Boundary::Wrap] {
+        let space = Space::new(axes).unwrap().with_boundary(boundary);
+        let mut position = [370.0, 370.0, -1.0];
+        space.keep_inside(&mut position);
+        assert_eq!((position[0], position[2]), (10.0, 9.0));
+        assert!(space.is_periodic(0) && space.is_periodic(2));
+        assert_eq!(space.is_periodic(1), boundary == Boundary::Wrap);
+    }
+}

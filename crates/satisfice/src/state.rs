@@ -22,8 +22,57 @@ use crate::error::Error;
 /// assert_eq!((list, number), (vec![0.1, f64::INFINITY], 7));
 /// # Ok::<(), satisfice::Error>(())
 /// ```
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
+///
+/// Written as text, as in JSON, it is compressed: most numbers of an engine are coordinates, of which many are alike.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct State(pub Vec<u8>);
+
+mod text {
+    //! Bytes are written as they are; in a text, as base64 of a zlib stream.
+
+    use std::borrow::Cow;
+    use std::io::{Read, Write};
+
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+    use flate2::Compression;
+    use flate2::read::ZlibDecoder;
+    use flate2::write::ZlibEncoder;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
+
+    use super::State;
+
+    impl Serialize for State {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            if !serializer.is_human_readable() {
+                return self.0.serialize(serializer);
+            }
+            let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+            packed.write_all(&self.0).map_err(ser::Error::custom)?;
+            let packed = packed.finish().map_err(ser::Error::custom)?;
+            (self.0.len(), STANDARD.encode(packed)).serialize(serializer)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for State {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            if !deserializer.is_human_readable() {
+                return Vec::deserialize(deserializer).map(Self);
+            }
+            let (length, text): (u64, Cow<'_, str>) = Deserialize::deserialize(deserializer)?;
+            let packed = STANDARD.decode(text.as_bytes()).map_err(de::Error::custom)?;
+            let mut bytes = Vec::new();
+            // No more than was written, whatever a damaged stream would give.
+            let mut limited = ZlibDecoder::new(&*packed).take(length);
+            limited.read_to_end(&mut bytes).map_err(de::Error::custom)?;
+            if bytes.len() as u64 == length {
+                Ok(Self(bytes))
+            } else {
+                Err(de::Error::custom("the state of an engine ends too early"))
+            }
+        }
+    }
+}
 
 impl State {
     /// Appends a value.
@@ -160,6 +209,30 @@ mod tests {
         let back: [f64; 5] = reader.read().unwrap();
         assert_eq!(back.map(f64::to_bits), values.map(f64::to_bits));
         assert!(reader.finish().is_ok());
+    }
+
+    #[test]
+    fn as_text_it_is_compressed() {
+        let mut state = State::default();
+        state.write(&(0..20_000).map(|i| f64::from(i % 50)).collect::<Vec<f64>>());
+        let text = serde_json::to_string(&state).unwrap();
+        assert!(
+            text.len() * 8 < state.0.len(),
+            "{} of {}",
+            text.len(),
+            state.0.len()
+        );
+        assert_eq!(serde_json::from_str::<State>(&text).unwrap(), state);
+        let bytes = postcard::to_extend(&state, Vec::new()).unwrap();
+        assert_eq!(postcard::from_bytes::<State>(&bytes).unwrap(), state);
+        let middle = text.len() / 2;
+        let other = if text.as_bytes()[middle] == b'A' { "B" } else { "A" };
+        let mut flipped = text.clone();
+        flipped.replace_range(middle..=middle, other);
+        for damaged in [text.replacen("160", "161", 1), flipped, "[4,\"\"]".to_owned()] {
+            let read = serde_json::from_str::<State>(&damaged);
+            assert!(read.map_or(true, |other| other != state), "{damaged}");
+        }
     }
 
     #[test]

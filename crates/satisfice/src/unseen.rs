@@ -72,10 +72,27 @@ impl Unseen {
 impl core::fmt::Display for Unseen {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let (lower, upper) = self.interval;
-        write!(f, "{:.0} [{lower:.0}, ", self.estimate)?;
+        // Without a probe that supports it, an estimate of 0 says less than its interval.
+        if self.estimate >= 0.5 || upper.is_some_and(|upper| upper < 1.0) {
+            write!(f, "{} ", Whole(self.estimate))?;
+        }
         match upper {
-            Some(upper) => write!(f, "{upper:.0}]"),
-            None => write!(f, "?]"),
+            Some(upper) => write!(f, "[{}, {}]", Whole(lower), Whole(upper)),
+            None => write!(f, "[{}, ?]", Whole(lower)),
+        }
+    }
+}
+
+/// A whole number, a large one by its exponent.
+struct Whole(f64);
+
+impl core::fmt::Display for Whole {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let x = self.0;
+        if x < 1e9 {
+            write!(f, "{x:.0}")
+        } else {
+            write!(f, "{x:.1e}")
         }
     }
 }

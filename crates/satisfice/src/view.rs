@@ -9,7 +9,8 @@ use crate::budget::Budget;
 use crate::capability::{Encoding, Neighbourhood};
 use crate::context::Context;
 use crate::problem::SatisficingProblem;
-use crate::space::{Region, Space};
+use crate::scalar::Real;
+use crate::space::{Axis, AxisKind, Region, Space};
 
 /// Calls that engines make through a view.
 #[derive(Debug, Default)]
@@ -62,11 +63,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         scratch: &'s mut Scratch<P::Scalar, P::Solution>,
     ) -> (&'s P::Solution, &'s mut [P::Scalar]) {
         let Scratch { values, solution } = scratch;
-        if self.problem.space().has_integers() {
-            for (axis, x) in self.problem.space().axes().iter().zip(&mut *values) {
-                *x = axis.value(*x);
-            }
-        }
+        self.problem.space().to_values(values);
         let solution = match solution {
             Some(solution) => {
                 self.problem.decode_into(values, solution);
@@ -96,7 +93,9 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         })
     }
 
-    /// Index `2 j` is the lattice point below on axis j, `2 j + 1` the one above.
+    /// Index `2 j` is the lattice point below on axis j, `2 j + 1` the one above, around the circle where the axis is periodic;
+    /// at a place of a permutation they are swaps with the next place and the one after it. Later indices are the other
+    /// categories of each categorical axis.
     fn lattice_neighbours(
         &self,
         position: &[P::Scalar],
@@ -104,8 +103,12 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         visit: &mut dyn FnMut(usize, &[P::Scalar]),
     ) {
         let axes = self.problem.space().axes();
-        let indices = indices.start..indices.end.min(2 * axes.len());
-        if !indices.clone().any(|index| axes[index / 2].is_integer()) {
+        let indices = indices.start..indices.end.min(lattice_count(axes));
+        let moves = |index: usize| {
+            axes.get(index / 2)
+                .is_none_or(|axis| axis.kind() != AxisKind::Continuous)
+        };
+        if !indices.clone().any(moves) {
             return;
         }
         self.with_scratch(position, |scratch| {
@@ -114,25 +117,77 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
                 *x = axis.position(axis.value(*x));
             }
             for index in indices {
-                let (j, axis) = (index / 2, &axes[index / 2]);
-                if !axis.is_integer() {
+                let Some((j, way)) = lattice_move(axes, index) else {
                     continue;
-                }
-                let here = neighbour[j];
-                let one: P::Scalar = num_traits::one();
-                let there = if index.is_multiple_of(2) {
-                    here - one
-                } else {
-                    here + one
                 };
-                if axis.lower() <= there && there < axis.end() {
-                    neighbour[j] = there;
+                if axes[j].kind() == AxisKind::Place {
+                    let other = j + if way < 0 { 1 } else { 2 };
+                    if axes.get(other).is_some_and(|axis| axis.follows(&axes[j])) {
+                        neighbour.swap(j, other);
+                        visit(index, neighbour);
+                        neighbour.swap(j, other);
+                    }
+                } else if let Some(there) = step(&axes[j], neighbour[j], way) {
+                    let here = core::mem::replace(&mut neighbour[j], there);
                     visit(index, neighbour);
                     neighbour[j] = here;
                 }
             }
         });
     }
+}
+
+/// Number of indices of lattice neighbours.
+fn lattice_count<S: Real>(axes: &[Axis<S>]) -> usize {
+    2 * axes.len() + axes.iter().map(more_categories).sum::<usize>()
+}
+
+/// Categories beyond those that are a step away.
+fn more_categories<S: Real>(axis: &Axis<S>) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a u32, whole"
+    )]
+    match axis.kind() {
+        AxisKind::Categorical => (axis.width().f64() as usize).saturating_sub(3),
+        _ => 0,
+    }
+}
+
+/// The axis of an index, and by how many values it moves; `None` on continuous axes.
+fn lattice_move<S: Real>(axes: &[Axis<S>], index: usize) -> Option<(usize, i64)> {
+    if let Some(axis) = axes.get(index / 2) {
+        let way = if index.is_multiple_of(2) { -1 } else { 1 };
+        return (axis.kind() != AxisKind::Continuous).then_some((index / 2, way));
+    }
+    let mut more = index - 2 * axes.len();
+    for (j, axis) in axes.iter().enumerate() {
+        let here = more_categories(axis);
+        if more < here {
+            return Some((j, i64::try_from(more).ok()? + 2));
+        }
+        more -= here;
+    }
+    None
+}
+
+/// The position so many values further on an integer axis; `None` beyond its end, and where it is the same value.
+fn step<S: Real>(axis: &Axis<S>, here: S, way: i64) -> Option<S> {
+    #[expect(clippy::cast_precision_loss, reason = "a number of categories")]
+    let there = here + S::of(way as f64);
+    let there = if axis.lower() <= there && there < axis.end() {
+        there
+    } else if !axis.is_periodic() {
+        return None;
+    } else if there < axis.lower() {
+        there + axis.width()
+    } else {
+        there - axis.width()
+    };
+    // Two categories are a step apart both ways: one of these is enough.
+    let again = way < 0 && axis.is_periodic() && axis.width() <= S::of(2.0);
+    (there != here && !again).then_some(there)
 }
 
 /// The capabilities behind a problem's own neighbours.
@@ -165,7 +220,7 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     }
     fn neighbour_count(&self, of: &[P::Scalar]) -> usize {
         self.with_own_neighbourhood(of, |own, solution, _| own.neighbourhood.count(solution))
-            .unwrap_or(2 * self.problem.space().dimension())
+            .unwrap_or_else(|| lattice_count(self.problem.space().axes()))
     }
     fn neighbours(
         &self,

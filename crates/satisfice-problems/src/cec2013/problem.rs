@@ -248,9 +248,7 @@ impl SatisficingProblem for Cec2013 {
         Located::new(values, self.radius())
     }
     fn decode_into(&self, values: &[f64], solution: &mut Located<f64>) {
-        solution.coordinates.clear();
-        solution.coordinates.extend_from_slice(values);
-        solution.separation = self.radius();
+        solution.set(values, &self.radius().into());
     }
     #[inline]
     fn fitness(&self, solution: &Located<f64>) -> f64 {

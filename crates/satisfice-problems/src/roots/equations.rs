@@ -84,9 +84,7 @@ impl Equations {
 
     #[inline]
     pub(crate) fn decode_into(&self, values: &[f64], solution: &mut Located<f64>) {
-        solution.coordinates.clear();
-        solution.coordinates.extend_from_slice(values);
-        solution.separation = self.separation;
+        solution.set(values, &self.separation.into());
     }
 
     /// The sum of the squares of the equations.
@@ -105,7 +103,7 @@ impl Equations {
     pub(crate) fn canonical(&self, hit: &Located<f64>) -> Option<Located<f64>> {
         Some(Located {
             coordinates: newton::polish(self, &hit.coordinates)?,
-            separation: hit.separation,
+            separation: hit.separation.clone(),
         })
     }
 }

@@ -65,7 +65,7 @@ macro_rules! surface_methods {
         fn decode_into(&self, values: &[f64], solution: &mut Self::Solution) {
             solution.coordinates.clear();
             solution.coordinates.extend_from_slice(values);
-            solution.separation = self.surface.separation;
+            solution.separation = self.surface.separation.into();
         }
         fn fitness(&self, solution: &Self::Solution) -> f64 {
             $f(&solution.coordinates)

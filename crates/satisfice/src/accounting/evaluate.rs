@@ -43,6 +43,11 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         self.shared
     }
 
+    /// Calls of the fitness in batches that were shared among threads.
+    pub(crate) fn shared_calls(&self) -> u64 {
+        self.shared_calls
+    }
+
     fn evaluate_alone<P: SatisficingProblem<Solution = T> + ?Sized>(
         &mut self,
         problem: &P,
@@ -83,6 +88,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let work = cost.saturating_mul(calls as u64);
         self.shared = calls >= 2 && work >= WORTH_SHARING && !self.interrupted();
         if self.shared {
+            self.shared_calls += calls as u64;
             self.evaluate_shared(threads, problem, candidates);
             return;
         }

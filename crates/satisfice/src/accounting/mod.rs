@@ -33,6 +33,8 @@ pub(crate) struct Ledger<T> {
     fitness_cost: Option<u64>,
     /// Whether the last batch was shared among threads.
     shared: bool,
+    /// Calls of the fitness in batches that were.
+    shared_calls: u64,
     alarm: Option<Alarm>,
     /// Time since the start at which an evaluation of a batch returns early, so that it can be saved.
     pub(crate) hold: Option<Duration>,
@@ -89,6 +91,7 @@ impl<T> Ledger<T> {
             #[cfg(feature = "rayon")]
             fitness_cost: None,
             shared: false,
+            shared_calls: 0,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             hold: None,
             next_count: next,

@@ -154,9 +154,10 @@ pub trait Steps<S> {
 pub enum Origin {
     /// The engine itself: the points are those of its last `ask`, in order.
     Engine,
-    /// The search: hits of the slice before, evaluated anew; also start points, values from elsewhere, and answers that came
-    /// after their batch was told.
+    /// The search: hits of the slice before, evaluated anew; also answers that came after their batch was told.
     WarmStart,
+    /// The user: [start points](crate::Search::start_from) and [values from elsewhere](crate::Tickets::inform).
+    Start,
     /// The search: neighbours of a hit.
     Exhaustion,
 }

@@ -238,7 +238,9 @@ mod serial {
                 (Self::Radius(radius), true) => radius.serialize(serializer),
                 (Self::Axes(axes), true) => serializer.collect_seq(axes.iter().map(plain)),
                 (Self::Radius(radius), false) => Tagged::Radius(*radius).serialize(serializer),
-                (Self::Axes(axes), false) => Tagged::Axes(axes.iter().map(Axis::from).collect()).serialize(serializer),
+                (Self::Axes(axes), false) => {
+                    Tagged::Axes(axes.iter().map(Axis::from).collect()).serialize(serializer)
+                }
             }
         }
     }

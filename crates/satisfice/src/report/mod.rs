@@ -174,7 +174,7 @@ impl<T> core::fmt::Display for Report<T> {
         )?;
         match &self.unseen {
             Some(unseen) if self.completeness == Completeness::Unknown => {
-                write!(f, ", about {unseen} hits not seen")
+                write!(f, ", {unseen} hits not seen")
             }
             _ => Ok(()),
         }

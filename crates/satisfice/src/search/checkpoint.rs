@@ -18,6 +18,7 @@ use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
 use crate::report::{Counts, TracePoint};
 use crate::scalar::Real;
+use crate::space::AxisKind;
 use crate::state::{Saved, State};
 
 /// A search at one moment: [`Search::resume`] continues from it, with the same results but for the times.
@@ -104,9 +105,9 @@ pub struct Unfinished<T> {
 pub struct Fingerprint {
     /// Its name and parameters.
     pub description: Description,
-    /// The bits of delta, and of each axis.
+    /// The bits of delta, and of each axis with its kind.
     threshold: u64,
-    axes: Vec<(u64, u64, bool)>,
+    axes: Vec<(u64, u64, AxisKind, [bool; 2])>,
 }
 
 impl Fingerprint {
@@ -116,7 +117,15 @@ impl Fingerprint {
             description: problem.description(),
             threshold: problem.threshold().to_word(),
             axes: axes
-                .map(|axis| (axis.lower().to_word(), axis.upper().to_word(), axis.is_integer()))
+                .map(|axis| {
+                    let (lower, upper) = (axis.lower().to_word(), axis.upper().to_word());
+                    (
+                        lower,
+                        upper,
+                        axis.kind(),
+                        [axis.is_logarithmic(), axis.is_periodic()],
+                    )
+                })
                 .collect(),
         }
     }
@@ -226,6 +235,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.verified_before_pending().save(&mut state);
         self.to_verify.end.save(&mut state);
         self.pending().save(&mut state);
+        self.starts.save(&mut state);
         let ledger = &self.ledger;
         Unfinished {
             budget: Budget {

@@ -65,6 +65,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
                 slice.propose_previous(problem, previous);
                 return true;
             }
+            if !slice.starts.is_empty() {
+                slice.propose_starts(problem, deletes);
+                return true;
+            }
             if slice.probes.is_due(slice.ledger.counts.evaluations) {
                 slice.propose_probes(problem, usize::MAX);
                 return true;
@@ -139,6 +143,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
                 }
                 Origin::WarmStart
             }
+            Source::Starts => Origin::Start,
             Source::Engine => {
                 if slice.last == Ask::Covered && !slice.candidates.outcomes.contains(&Outcome::NotEvaluated) {
                     // That was the last of the space, even if the budget ends with it.

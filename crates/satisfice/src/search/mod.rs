@@ -80,6 +80,8 @@ pub struct Search<P: SatisficingProblem + ?Sized> {
     islands: usize,
     warm_start: Option<WarmStart>,
     probes: Option<f64>,
+    /// Points that the next slice evaluates first.
+    starts: Vec<Vec<P::Scalar>>,
     slices: u64,
     /// Number of axes, once a slice has begun.
     dimension: Option<usize>,
@@ -88,6 +90,8 @@ pub struct Search<P: SatisficingProblem + ?Sized> {
     /// Engines and random numbers; none before the first slice and after a panic.
     lanes: Vec<Lane<P::Scalar>>,
     pool: Option<Threads>,
+    /// Calls of the fitness that several threads shared, in the slice that ended last.
+    shared_calls: u64,
     /// The slice that had begun when the search was saved.
     unfinished: Option<Running<P::Scalar, P::Solution>>,
     /// The problem of the slice that began last.
@@ -133,11 +137,13 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             islands: 1,
             warm_start: None,
             probes: None,
+            starts: Vec::new(),
             slices: 0,
             dimension: None,
             previous: Arc::default(),
             lanes: Vec::new(),
             pool: None,
+            shared_calls: 0,
             unfinished: None,
             problem: None,
             resumed: false,
@@ -194,6 +200,14 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self
     }
 
+    /// How many calls of the fitness in the slice that ended last were in batches that several threads shared. With one lane
+    /// and several threads, few of them mean that the engine's batches are too small, or the fitness too cheap: then
+    /// [islands](Search::islands) keep the threads busy. It is no part of a report, which does not depend on threads.
+    #[must_use]
+    pub fn shared_calls(&self) -> u64 {
+        self.shared_calls
+    }
+
     /// The number of lanes, from 1 (the default) to 65,536: engines side by side, each with an equal share of the
     /// evaluations, which share the hits they find. For a fitness so cheap that one engine cannot keep several threads busy.
     ///
@@ -222,6 +236,27 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     #[must_use]
     pub fn warm_start(mut self, rule: WarmStart) -> Self {
         self.warm_start = Some(rule);
+        self
+    }
+
+    /// Points that the next slice evaluates first, as values: one number an axis, inside the bounds and whole on integer axes. They
+    /// are counted like all others. Engines are told of them: descents, climbers and populations start at the best ones, models
+    /// learn from all; swarms follow those that hit.
+    ///
+    /// A slice refuses to begin with a point that is not of the space: [`Error::StartPoint`] says which one.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Budget, Search, Space};
+    /// // A needle in a million points, and a guess that is near.
+    /// let problem = from_fn(Space::lattice(2, 1000)?, 0.5, |x: &[f64]| (x[0] - 700.0).hypot(x[1] - 300.0));
+    /// let mut search = Search::named("descent")?.start_from([[690.0, 305.0]]);
+    /// let report = search.run(&problem, &Budget::evaluations(60))?;
+    /// assert_eq!(report.hit_count(), 1);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn start_from<X: AsRef<[P::Scalar]>>(mut self, points: impl IntoIterator<Item = X>) -> Self {
+        self.starts = points.into_iter().map(|point| point.as_ref().to_vec()).collect();
         self
     }
 
@@ -296,6 +331,13 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         budget.check()?;
         let now = self.check(problem)?;
         self.check_resumed(problem)?;
+        for (index, point) in self.starts.iter().enumerate() {
+            let checked = problem.space().check_values(point);
+            checked.map_err(|error| Error::StartPoint {
+                index,
+                reason: error.to_string(),
+            })?;
+        }
         self.resumed = false;
         self.unfinished = None;
         self.build_lanes()?;
@@ -373,6 +415,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             lanes: Vec::with_capacity(count),
             exchange,
         };
+        let starts = self.take_starts(problem);
         for (number, mut lane) in core::mem::take(&mut self.lanes).into_iter().enumerate() {
             let (own_budget, own_probes) = match &running.exchange {
                 Some(_) => (
@@ -388,6 +431,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
                 to_verify(number),
                 Reached::default(),
             );
+            slice.starts = starts[lanes::verified_by(number, count, starts.len())].concat();
             if own_budget.evaluations == Some(0) {
                 slice.ledger.stop = Some(StopReason::Evaluations); // fewer evaluations than lanes
             } else {
@@ -397,6 +441,15 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         }
         running.pause_for_exchange();
         Ok(running)
+    }
+
+    /// The positions that the slice evaluates first.
+    fn take_starts(&mut self, problem: &P) -> Vec<Vec<P::Scalar>> {
+        let mut starts = core::mem::take(&mut self.starts);
+        for point in &mut starts {
+            problem.space().positions(point);
+        }
+        starts
     }
 
     /// Name and parameters of the engine.
@@ -412,6 +465,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         let (mut slice, lanes) = running.into_parts();
         self.lanes = lanes;
         let times = slice.ledger.close();
+        self.shared_calls = slice.ledger.shared_calls();
         let mut report = self.describe(problem, &slice, times);
         slice.ledger.archive.rest();
         self.previous = Arc::new(slice.ledger.archive);

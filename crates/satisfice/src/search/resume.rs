@@ -186,11 +186,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let probes: Probes = reader.read()?;
         let (from, to): (usize, usize) = (reader.read()?, reader.read()?);
         let pending: Option<Pending<S>> = reader.read()?;
+        let starts: Vec<S> = reader.read()?;
         reader.finish()?;
         saved.check(previous, from, to)?;
         if pending
             .as_ref()
             .is_some_and(|pending| !pending.positions.len().is_multiple_of(dimension.max(1)))
+            || !starts.len().is_multiple_of(dimension.max(1))
         {
             return Err(Error::State("a batch of another dimension".to_owned()));
         }
@@ -213,6 +215,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         };
         let mut slice = Self::begin(&saved.budget, dimension, probes, from..to, reached);
         slice.last = last;
+        slice.starts = starts;
         if let Some(pending) = pending {
             slice.stage = Stage::Repeat(pending);
         }

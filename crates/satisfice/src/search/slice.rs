@@ -28,6 +28,8 @@ pub(super) struct Slice<S, T> {
     pub(super) last: Ask,
     /// Which hits of the slice before are still to be verified, by index.
     pub(super) to_verify: core::ops::Range<usize>,
+    /// Positions that are still to be evaluated before the engine is asked, one after the other.
+    pub(super) starts: Vec<S>,
     /// Evaluations after which nothing is proposed for the time being.
     pub(super) pause: u64,
     pub(super) calls: Calls,
@@ -54,6 +56,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             stage: Stage::Propose,
             last: Ask::More,
             to_verify,
+            starts: Vec::new(),
             pause: u64::MAX,
             calls,
             scratches: Scratches::default(),
@@ -122,6 +125,21 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.candidates
             .prepare_solutions(next.iter(), &self.ledger.archive, limit);
         self.stage = Stage::Settle(Source::WarmStart);
+    }
+
+    /// Proposes the next points that the user has given.
+    pub(super) fn propose_starts<P>(&mut self, problem: &P, deletes: bool)
+    where
+        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
+    {
+        let dimension = self.batch.dimension();
+        let numbers = self.starts.len().min(VERIFY_BATCH * dimension);
+        self.batch.clear();
+        for position in self.starts[..numbers].chunks_exact(dimension) {
+            self.batch.push(position);
+        }
+        self.starts.drain(..numbers);
+        self.prepare(problem, Source::Starts, deletes);
     }
 
     /// Proposes the next uniform probes, at most so many.

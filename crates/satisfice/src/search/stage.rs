@@ -20,6 +20,8 @@ pub(super) enum Source {
     Engine,
     /// The hits of the slice before.
     WarmStart,
+    /// The user.
+    Starts,
     /// The uniform probes.
     Probes,
 }

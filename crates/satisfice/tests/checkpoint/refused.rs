@@ -135,12 +135,16 @@ fn damage_is_found() {
     for (place, byte) in saved
         .bytes()
         .enumerate()
-        .filter(|(_, byte)| byte.is_ascii_digit())
+        .filter(|(_, byte)| byte.is_ascii_alphanumeric())
     {
         if place % 7 != 0 {
             continue;
         }
-        let other = if byte == b'9' { b'1' } else { byte + 1 };
+        let other = if matches!(byte, b'9' | b'Z' | b'z') {
+            b'1'
+        } else {
+            byte + 1
+        };
         let mut changed = saved.clone().into_bytes();
         changed[place] = other;
         let Ok(read) = serde_json::from_slice::<Saved>(&changed) else {

@@ -204,7 +204,10 @@ impl<S: Real> Engine<S> for Pruned<S> {
         self.calls = 1;
         self.whole.clear();
         self.dead.clear();
-        if let Some(bound) = context.lower_bound(&context.space().region()) {
+        // Its cells are boxes of values and of positions at once.
+        if !context.space().is_curved()
+            && let Some(bound) = context.lower_bound(&context.space().region())
+        {
             self.cells.push(Self::new_cell(bound >= context.threshold(), 1.0));
         }
         self.inner.begin(context);

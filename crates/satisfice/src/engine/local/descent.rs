@@ -7,7 +7,7 @@ use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::{Boundary, Space};
+use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
@@ -60,7 +60,12 @@ pub(super) struct RestartedDescent<S> {
     only_compass: bool,
     /// Whether one of them was left out because it is in C.
     touches: bool,
+    /// Points given by the user, the best last, where the next descents start; with their fitness.
+    starts: Vec<(S, Vec<S>)>,
 }
+
+/// At most so many given points are kept, the best ones.
+const STARTS: usize = 1024;
 
 impl<S: Real> RestartedDescent<S> {
     /// A descent with compass steps from `step` to `shortest`, as shares of each axis.
@@ -77,7 +82,14 @@ impl<S: Real> RestartedDescent<S> {
             tried: 0,
             only_compass: false,
             touches: false,
+            starts: Vec::new(),
         }
+    }
+
+    /// Begins a slice.
+    pub(super) fn begin(&mut self) {
+        self.restart();
+        self.starts.clear();
     }
 
     /// Ends the descent; the next one starts at a uniform point.
@@ -86,58 +98,90 @@ impl<S: Real> RestartedDescent<S> {
         self.neighbours = None;
     }
 
+    /// Keeps points that the user has given.
+    pub(super) fn keep_starts(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+        for (position, outcome) in batch.points().zip(outcomes) {
+            if let Outcome::Miss(fitness) = *outcome {
+                let place = self.starts.partition_point(|(other, _)| *other > fitness);
+                self.starts.insert(place, (fitness, position.to_vec()));
+            }
+        }
+        let excess = self.starts.len().saturating_sub(STARTS);
+        self.starts.drain(..excess);
+    }
+
+    /// Goes to the best point that the user has given, where no descent has started; `false` without one.
+    fn go_to_start(&mut self, dimension: usize) -> bool {
+        let Some((fitness, position)) = self.starts.pop() else {
+            return false;
+        };
+        if position.len() != dimension {
+            return false; // of another space
+        }
+        self.fitness = fitness;
+        self.point = position;
+        self.step = self.first_step;
+        self.neighbours = None;
+        true
+    }
+
     /// Proposes the next neighbour, or a uniform point.
     pub(super) fn propose(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         let dimension = out.dimension();
-        // A restored point may be of another space.
-        while self.point.len() == dimension {
-            let neighbours = self.look_around(context);
-            let (from, count) = if self.only_compass {
-                (neighbours, 2 * dimension)
-            } else {
-                (0, neighbours + 2 * dimension)
-            };
-            while self.tried < count {
-                self.current = from + (self.first + self.tried) % count;
-                self.tried += 1;
-                let mut proposed = false;
-                let mut propose = |neighbour: &[S]| {
-                    if context.is_deleted(neighbour) {
-                        self.touches = true;
-                    } else {
-                        out.push(neighbour);
-                        proposed = true;
-                    }
-                };
-                if self.current < neighbours {
-                    let index = self.current;
-                    context.neighbours(&self.point, index..index + 1, &mut |_, neighbour| {
-                        propose(neighbour);
-                    });
+        loop {
+            // A restored point may be of another space.
+            while self.point.len() == dimension {
+                let neighbours = self.look_around(context);
+                let (from, count) = if self.only_compass {
+                    (neighbours, 2 * dimension)
                 } else {
-                    let step = compass_step(
-                        context.space(),
-                        &mut self.point,
-                        self.step,
-                        self.current - neighbours,
-                    );
-                    if let Some((axis, here)) = step {
-                        propose(&self.point);
-                        self.point[axis] = here;
+                    (0, neighbours + 2 * dimension)
+                };
+                while self.tried < count {
+                    self.current = from + (self.first + self.tried) % count;
+                    self.tried += 1;
+                    let mut proposed = false;
+                    let mut propose = |neighbour: &[S]| {
+                        if context.is_deleted(neighbour) {
+                            self.touches = true;
+                        } else {
+                            out.push(neighbour);
+                            proposed = true;
+                        }
+                    };
+                    if self.current < neighbours {
+                        let index = self.current;
+                        context.neighbours(&self.point, index..index + 1, &mut |_, neighbour| {
+                            propose(neighbour);
+                        });
+                    } else {
+                        let step = compass_step(
+                            context.space(),
+                            &mut self.point,
+                            self.step,
+                            self.current - neighbours,
+                        );
+                        if let Some((axis, here)) = step {
+                            propose(&self.point);
+                            self.point[axis] = here;
+                        }
+                    }
+                    if proposed {
+                        return;
                     }
                 }
-                if proposed {
-                    return;
+                self.step = self.step / S::of(2.0);
+                if self.touches || self.step < self.shortest || !has_compass(context.space()) {
+                    break;
                 }
+                self.only_compass = true;
+                self.tried = 0;
             }
-            self.step = self.step / S::of(2.0);
-            if self.touches || self.step < self.shortest || !has_compass(context.space()) {
+            self.restart();
+            if !self.go_to_start(dimension) {
                 break;
             }
-            self.only_compass = true;
-            self.tried = 0;
         }
-        self.restart();
         out.push_with(|position| rng.position(context.space(), position));
     }
 
@@ -187,10 +231,10 @@ fn compass_step<S: Real>(space: &Space<S>, point: &mut [S], step: S, index: usiz
     } else {
         here + length
     };
-    let there = if space.boundary() == Boundary::Wrap {
+    let there = if space.is_periodic(j) {
         there
     } else {
-        there.max(axis.lower()).min(axis.upper())
+        there.max(axis.start()).min(axis.end())
     };
     (there != here).then(|| {
         point[j] = there;
@@ -216,13 +260,14 @@ impl<S: Real> Part for RestartedDescent<S> {
         current,
         first,
         only_compass,
-        touches
+        touches,
+        starts
     );
 }
 
 impl<S: Real> Engine<S> for RestartedDescent<S> {
     fn begin(&mut self, _: &dyn Context<S>) {
-        self.restart();
+        Self::begin(self);
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
@@ -231,8 +276,10 @@ impl<S: Real> Engine<S> for RestartedDescent<S> {
     }
 
     fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
-        if origin == Origin::Engine {
-            self.learn(batch, outcomes);
+        match origin {
+            Origin::Engine => self.learn(batch, outcomes),
+            Origin::Start => self.keep_starts(batch, outcomes),
+            Origin::WarmStart | Origin::Exhaustion => {}
         }
     }
 

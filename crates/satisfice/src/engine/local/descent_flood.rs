@@ -53,7 +53,7 @@ struct FloodingDescent<S> {
 
 impl<S: Real> Engine<S> for FloodingDescent<S> {
     fn begin(&mut self, _: &dyn Context<S>) {
-        self.descent.restart();
+        self.descent.begin();
         self.flood.clear();
         self.flooding = false;
     }
@@ -70,6 +70,8 @@ impl<S: Real> Engine<S> for FloodingDescent<S> {
         self.flood.add_hits(batch, outcomes);
         if origin == Origin::Engine && !self.flooding {
             self.descent.learn(batch, outcomes);
+        } else if origin == Origin::Start {
+            self.descent.keep_starts(batch, outcomes);
         }
     }
 

@@ -286,6 +286,13 @@ impl<S: Real> Engine<S> for Searches<S> {
                     .extend(axes.map(|(axis, &x)| axis.position(axis.value(x))));
             }
         }
+        if origin == Origin::Start {
+            for (position, outcome) in batch.points().zip(outcomes) {
+                if let Outcome::Miss(fitness) = *outcome {
+                    self.keep(position, fitness);
+                }
+            }
+        }
         if origin != Origin::Engine {
             return;
         }

@@ -59,11 +59,11 @@ impl Units {
         out.clear();
         out.extend(self.axes.iter().map(|unit| {
             let axis = &space.axes()[unit.axis];
-            let value = (axis.value(position[unit.axis]) - axis.lower()).f64();
+            let position = position[unit.axis];
             if axis.is_integer() {
-                (value + 0.5) / unit.cells
+                ((axis.value(position) - axis.lower()).f64() + 0.5) / unit.cells
             } else {
-                value / unit.width
+                (position - axis.start()).f64() / unit.width
             }
         }));
     }

@@ -168,7 +168,7 @@ impl<S: Real> Sources<S> {
     fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
         let space = context.space();
         let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
-            axis.lower() <= x
+            axis.start() <= x
                 && if axis.is_integer() {
                     x < axis.end()
                 } else {
@@ -438,6 +438,13 @@ impl<S: Real> Engine<S> for Sources<S> {
             }
         }
         self.expand(context, batch, outcomes, origin);
+        if origin == Origin::Start {
+            for (position, outcome) in batch.points().zip(outcomes) {
+                if let Outcome::Miss(fitness) = *outcome {
+                    self.climbers.offer(position, fitness);
+                }
+            }
+        }
         if origin != Origin::Engine {
             return;
         }
@@ -528,7 +535,7 @@ impl<S: Real> Sources<S> {
         for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
             let is_near = match origin {
                 Origin::Engine => matches!(self.tags[i].0, Source::Neighbour | Source::NearMiss),
-                Origin::WarmStart | Origin::Exhaustion => true,
+                Origin::WarmStart | Origin::Start | Origin::Exhaustion => true,
             };
             match *outcome {
                 Outcome::Hit(fitness) => self.neighbourhoods.expand(context, position, fitness, true),

@@ -12,7 +12,7 @@ use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::{Axis, Region, Space};
+use crate::space::{Region, Space};
 
 engine_settings! {
     /// Bounding volumes, then swarms, after Li et al. 2010 as the paper mentions it. **A reconstruction** from one sentence: bounding
@@ -110,16 +110,6 @@ struct LeafSwarms<S> {
     fitness: Vec<S>,
 }
 
-/// The ends of a leaf on an axis, as positions.
-fn ends<S: Real>(axis: &Axis<S>, lower: S, upper: S) -> (S, S) {
-    if axis.is_integer() {
-        // The last cell is half open; its middle is inside whatever the rounding.
-        (lower, upper + S::of(0.999))
-    } else {
-        (lower, upper)
-    }
-}
-
 impl<S: Real> LeafSwarms<S> {
     fn is_leaf(&self, space: &Space<S>, region: &Region<S>) -> bool {
         let sides = region.lower.iter().zip(&region.upper);
@@ -209,7 +199,7 @@ impl<S: Real> LeafSwarms<S> {
         for _ in 0..self.particles {
             out.push_with(|position| {
                 for (j, axis) in space.axes().iter().enumerate() {
-                    let (lower, upper) = ends(axis, leaf.lower[j], leaf.upper[j]);
+                    let (lower, upper) = axis.positions_between(leaf.lower[j], leaf.upper[j]);
                     position[j] = lower + S::of(rng.uniform()) * (upper - lower);
                     let limit = self.coefficients.v_max * (upper - lower);
                     self.velocities.push(limit * S::of(2.0 * rng.uniform() - 1.0));
@@ -239,7 +229,7 @@ impl<S: Real> LeafSwarms<S> {
                 for (j, axis) in axes.iter().enumerate() {
                     let x = self.positions[row + j];
                     let v = &mut self.velocities[row + j];
-                    let (lower, upper) = ends(axis, leaf.lower[j], leaf.upper[j]);
+                    let (lower, upper) = axis.positions_between(leaf.lower[j], leaf.upper[j]);
                     let to_best = *cognitive * S::of(rng.uniform()) * (self.bests[row + j] - x);
                     let to_leader = *social * S::of(rng.uniform()) * (self.bests[best + j] - x);
                     let limit = *v_max * (upper - lower);

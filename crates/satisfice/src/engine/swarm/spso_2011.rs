@@ -184,9 +184,9 @@ impl<S: Real> Engine<S> for Spso2011Swarm<S> {
                 let to_draw = pull(j, *x) + radius * self.direction[j] * axis.width();
                 *v = self.inertia * *v + to_draw;
                 *x = *x + *v;
-                let outside = !(axis.lower() <= *x && *x <= axis.end());
-                if outside && confined {
-                    *x = x.max(axis.lower()).min(axis.end());
+                let outside = !(axis.start() <= *x && *x <= axis.end());
+                if outside && confined && !axis.is_periodic() {
+                    *x = x.max(axis.start()).min(axis.end());
                     *v = -*v / two;
                 }
                 // A sum that has overflown must not stay.

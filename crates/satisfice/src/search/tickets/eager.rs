@@ -37,7 +37,7 @@ pub(super) struct Eager<S, T> {
     pub(super) probes: VecDeque<Vec<S>>,
     pub(super) probes_out: usize,
     /// What every engine is told of, those of later lanes included.
-    pub(super) given: Vec<(Vec<S>, Outcome<S>)>,
+    pub(super) given: Vec<(Vec<S>, Outcome<S>, Origin)>,
     /// Whether a proposal was forgotten: then nothing is proved.
     pub(super) has_gaps: bool,
 }
@@ -63,6 +63,8 @@ pub(super) enum Of {
     Probe,
     /// A hit of the slice before.
     Verified,
+    /// A point that the user has given.
+    Start,
 }
 
 /// An engine and its batch.
@@ -148,7 +150,7 @@ impl<S: Real, T> Open<S, T> {
             Of::Lane { lane, batch, place } => lanes.get(lane).is_some_and(|lane| {
                 batch < lane.books.number || (batch == lane.books.number && place < lane.books.next)
             }),
-            Of::Probe | Of::Verified => true,
+            Of::Probe | Of::Verified | Of::Start => true,
         };
         placed && (self.position.is_empty() || self.position.len() == dimension)
     }
@@ -179,7 +181,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             WarmStart::Verify => 0..hits,
             WarmStart::Cold | WarmStart::Engine => hits..hits,
         };
-        let slice = Slice::begin(budget, dimension, probes, to_verify, Reached::default());
+        let mut slice = Slice::begin(budget, dimension, probes, to_verify, Reached::default());
+        slice.starts = search.take_starts(problem).concat();
         let mut eager = Self {
             slice,
             lanes: Vec::new(),
@@ -201,9 +204,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     {
         let view = self.slice.view(problem, previous);
         lane.engine.begin(&view);
-        for (position, outcome) in &self.given {
-            lane.engine
-                .tell(&view, &one(position), &[*outcome], Origin::WarmStart);
+        for (position, outcome, origin) in &self.given {
+            lane.engine.tell(&view, &one(position), &[*outcome], *origin);
         }
         self.lanes.push(EagerLane::new(lane, problem.space().dimension()));
     }
@@ -267,7 +269,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     fn deletes(&self, of: Of) -> bool {
         match of {
             Of::Lane { lane, .. } => self.lanes[lane].lane.engine.deletes(),
-            Of::Probe | Of::Verified => true,
+            Of::Probe | Of::Verified | Of::Start => true,
         }
     }
 
@@ -303,9 +305,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             let points = self.slice.batch.points().map(<[S]>::to_vec);
             self.probes.extend(points);
         }
-        let (mut position, of) = match self.probes.pop_front() {
-            Some(position) => (position, Of::Probe),
-            None => self.point(problem, search)?,
+        let dimension = problem.space().dimension();
+        let (mut position, of) = if self.slice.starts.is_empty() {
+            match self.probes.pop_front() {
+                Some(position) => (position, Of::Probe),
+                None => self.point(problem, search)?,
+            }
+        } else {
+            (self.slice.starts.drain(..dimension).collect(), Of::Start)
         };
         let mut values = vec![S::zero(); position.len()];
         problem
@@ -441,13 +448,20 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             }
             Of::Verified => {
                 self.slice.ledger.counts.verified += u64::from(outcome != Outcome::NotEvaluated);
-                self.tell_all(position, outcome, problem, previous);
+                self.tell_all(position, outcome, Origin::WarmStart, problem, previous);
             }
+            Of::Start => self.tell_all(position, outcome, Origin::Start, problem, previous),
         }
     }
 
-    fn tell_all<P>(&mut self, position: &[S], outcome: Outcome<S>, problem: &P, previous: &Archive<T>)
-    where
+    fn tell_all<P>(
+        &mut self,
+        position: &[S],
+        outcome: Outcome<S>,
+        origin: Origin,
+        problem: &P,
+        previous: &Archive<T>,
+    ) where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
         if position.is_empty() || outcome == Outcome::NotEvaluated {
@@ -455,11 +469,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         }
         let (batch, view) = (one(position), self.slice.view(problem, previous));
         for lane in &mut self.lanes {
-            lane.lane
-                .engine
-                .tell(&view, &batch, &[outcome], Origin::WarmStart);
+            lane.lane.engine.tell(&view, &batch, &[outcome], origin);
         }
-        self.given.push((position.to_vec(), outcome));
+        self.given.push((position.to_vec(), outcome, origin));
     }
 
     /// Takes a value, or forgets a ticket; `None` if it is not open.
@@ -484,7 +496,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 let books = &mut self.lanes[lane].books;
                 books.out -= usize::from(batch == books.number);
             }
-            Of::Verified => {}
+            Of::Verified | Of::Start => {}
         }
         let over = self.slice.ledger.stops_before_more();
         let outcome = match value {
@@ -514,7 +526,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
         let outcome = self.slice.ledger.inform(problem, solution, value);
-        self.tell_all(position, outcome, problem, previous);
+        self.tell_all(position, outcome, Origin::Start, problem, previous);
     }
 
     /// Whether restored parts fit each other.
@@ -536,7 +548,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             && self
                 .probes
                 .iter()
-                .chain(self.given.iter().map(|(position, _)| position))
+                .chain(self.given.iter().map(|(position, ..)| position))
                 .all(|position| position.len() == dimension)
     }
 
