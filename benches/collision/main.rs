@@ -8,6 +8,8 @@
 mod budget;
 mod deadline;
 mod deforming;
+#[path = "../machine.rs"]
+mod machine;
 mod peers;
 mod plain_grid;
 mod points;

@@ -1,8 +1,7 @@
 //! Interleaved timing, errors against the truth, and the printed and written report.
 #![expect(clippy::disallowed_methods, reason = "a bench asks the time")]
 
-use std::fmt::Write as _;
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 
 /// Turns of a method running.
 const TURNS: usize = 3;
@@ -104,7 +103,7 @@ impl Report {
         };
         report.line("# Collision: time against error");
         report.line("");
-        report.line(&machine());
+        report.line(&crate::machine::line());
         report.line("");
         report.line(
             "Times are medians in milliseconds, one thread unless a name says otherwise, results included. In a round every \
@@ -234,43 +233,4 @@ pub(crate) fn time<R>(run: impl FnOnce() -> R) -> (f64, R) {
 pub(crate) fn deadline(milliseconds: f64) -> impl FnMut(usize) -> bool {
     let start = Instant::now();
     move |_| start.elapsed().as_secs_f64() * 1e3 >= milliseconds
-}
-
-fn machine() -> String {
-    let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = cpu
-        .lines()
-        .find_map(|line| line.strip_prefix("model name")?.split(':').nth(1))
-        .map_or("unknown processor", str::trim);
-    let threads = std::thread::available_parallelism().map_or(0, usize::from);
-    let rustc = std::process::Command::new("rustc").arg("--version").output();
-    let rustc = rustc
-        .map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned())
-        .unwrap_or_default();
-    let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
-    let load = load.split(' ').next().unwrap_or("?").to_owned();
-    let mut text = String::new();
-    let _ = write!(
-        text,
-        "{}; {model}, {threads} threads; {}; {rustc}; load before the run {load}.",
-        date(),
-        std::env::consts::OS
-    );
-    text
-}
-
-/// Today, from the days since 1970 (civil calendar).
-fn date() -> String {
-    let seconds = SystemTime::now()
-        .duration_since(SystemTime::UNIX_EPOCH)
-        .map_or(0, |d| d.as_secs());
-    let days = (seconds / 86_400) as i64 + 719_468;
-    let era = days.div_euclid(146_097);
-    let of_era = days.rem_euclid(146_097);
-    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    format!("{}-{month:02}-{day:02}", year + era * 400 + i64::from(month <= 2))
 }

@@ -21,5 +21,6 @@ mod simd;
 pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, FeatureKind, Mesh, Shape};
 pub use order::VertexOrder;
+pub(crate) use placement::CompactPlacement;
 pub use placement::Placement;
 pub use problem::{FeaturePairs, VertexPairs};

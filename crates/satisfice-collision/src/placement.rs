@@ -159,6 +159,32 @@ impl Placement {
     }
 }
 
+/// A placement without its matrix: less than half the size.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CompactPlacement {
+    quaternion: [f64; 4],
+    translation: [f64; 3],
+}
+
+impl From<&Placement> for CompactPlacement {
+    fn from(placement: &Placement) -> Self {
+        Self {
+            quaternion: placement.quaternion,
+            translation: placement.translation,
+        }
+    }
+}
+
+impl From<CompactPlacement> for Placement {
+    fn from(compact: CompactPlacement) -> Self {
+        Self {
+            quaternion: compact.quaternion,
+            rotation: matrix(compact.quaternion),
+            translation: compact.translation,
+        }
+    }
+}
+
 impl Default for Placement {
     fn default() -> Self {
         Self::IDENTITY

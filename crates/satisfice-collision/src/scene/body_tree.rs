@@ -10,6 +10,7 @@ use std::collections::BinaryHeap;
 
 use crate::Aabb;
 use crate::broad::{Box32, Slabs, exponent, order_by_median, power_of_two};
+use crate::simd::{Floats as _, Lanes, Work, dispatch};
 
 /// Marks an empty lane, and the parent of the root.
 const NONE: u32 = u32::MAX;
@@ -76,24 +77,22 @@ impl Node {
             .filter(|&(_, child)| child != NONE)
     }
 
-    /// Bit `lane` is set if the box of that lane overlaps `b`.
-    #[inline]
-    fn overlaps(&self, b: &Box32) -> u32 {
-        let mut gap = [f32::NEG_INFINITY; 8];
-        for k in 0..3 {
-            let sides = self.lower[k].iter().zip(&self.upper[k]);
-            for (gap, (lower, upper)) in gap.iter_mut().zip(sides) {
-                let below = lower - b.max[k];
-                let above = b.min[k] - upper;
-                let wider = if below > above { below } else { above };
-                *gap = if wider > *gap { wider } else { *gap };
-            }
-        }
-        (0..8).fold(0, |mask, lane| mask | u32::from(gap[lane] <= 0.0) << lane)
+    /// Bit `lane` is set if the box of that lane overlaps `b`, which is finite.
+    #[inline(always)]
+    fn overlaps<L: Lanes>(&self, lanes: L, b: &Box32) -> u32 {
+        let s = lanes.single();
+        let on = |k: usize| {
+            s.both(
+                s.at_most(s.load(&self.lower[k]), s.splat(b.max[k])),
+                s.at_most(s.splat(b.min[k]), s.load(&self.upper[k])),
+            )
+        };
+        s.bits(s.both(s.both(on(0), on(1)), on(2)))
     }
 }
 
 /// The lanes of a mask, ascending.
+#[inline(always)]
 fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lane = mask.trailing_zeros() as usize;
@@ -175,7 +174,7 @@ impl BodyTree {
                     self.adopt(*child, level, id);
                 }
                 above.push((id, node.bounds()));
-                self.nodes.push(node);
+                super::push(&mut self.nodes, node);
             }
             if above.len() == 1 {
                 self.root = Some(above[0].0);
@@ -232,7 +231,7 @@ impl BodyTree {
                 id
             }
             None => {
-                self.nodes.push(Node::empty(level));
+                super::push(&mut self.nodes, Node::empty(level));
                 self.nodes.len() as u32 - 1
             }
         }
@@ -400,19 +399,13 @@ impl BodyTree {
     }
 
     /// Visits every body whose box overlaps `bounds`, among them the body itself.
-    pub(super) fn overlapping(&self, bounds: &Aabb, stack: &mut Vec<u32>, mut visit: impl FnMut(u32)) {
-        let b = self.place(bounds);
-        stack.clear();
-        stack.extend(self.root);
-        while let Some(node) = stack.pop() {
-            let at = &self.nodes[node as usize];
-            for lane in lanes(at.overlaps(&b)) {
-                match at.level {
-                    0 => visit(at.child[lane]),
-                    _ => stack.push(at.child[lane]),
-                }
-            }
-        }
+    pub(super) fn overlapping(&self, bounds: &Aabb, stack: &mut Vec<u32>, visit: impl FnMut(u32)) {
+        dispatch(Overlapping {
+            tree: self,
+            bounds: self.place(bounds),
+            stack,
+            visit,
+        });
     }
 
     /// Visits pairs of bodies, those with the least gap between their boxes first, as long as the gap is at most what the last visit
@@ -548,19 +541,60 @@ impl BodyTree {
     }
 
     /// Visits every pair of bodies whose boxes overlap, each once.
-    pub(super) fn pairs(&self, mut visit: impl FnMut(u32, u32)) {
-        let mut stack: Vec<(u32, u32)> = self.root.map(|root| (root, root)).into_iter().collect();
+    pub(super) fn pairs(&self, visit: impl FnMut(u32, u32)) {
+        dispatch(OverlappingPairs { tree: self, visit });
+    }
+}
+
+struct Overlapping<'a, V> {
+    tree: &'a BodyTree,
+    bounds: Box32,
+    stack: &'a mut Vec<u32>,
+    visit: V,
+}
+
+impl<V: FnMut(u32)> Work for Overlapping<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, unit: L) {
+        self.stack.clear();
+        self.stack.extend(self.tree.root);
+        while let Some(node) = self.stack.pop() {
+            let at = &self.tree.nodes[node as usize];
+            for lane in lanes(at.overlaps(unit, &self.bounds)) {
+                match at.level {
+                    0 => (self.visit)(at.child[lane]),
+                    _ => self.stack.push(at.child[lane]),
+                }
+            }
+        }
+    }
+}
+
+struct OverlappingPairs<'a, V> {
+    tree: &'a BodyTree,
+    visit: V,
+}
+
+impl<V: FnMut(u32, u32)> Work for OverlappingPairs<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, unit: L) {
+        let nodes = &self.tree.nodes;
+        let mut stack: Vec<(u32, u32)> = self.tree.root.map(|root| (root, root)).into_iter().collect();
         while let Some((a, b)) = stack.pop() {
-            let (one, two) = (&self.nodes[a as usize], &self.nodes[b as usize]);
+            let (one, two) = (&nodes[a as usize], &nodes[b as usize]);
             for (lane, child) in one.children() {
-                let mut mask = two.overlaps(&one.lane_box(lane));
+                let mut mask = two.overlaps(unit, &one.lane_box(lane));
                 if a == b {
                     // each pair once; a node with itself for its descendants, but no body
                     mask &= u32::MAX << (lane + usize::from(one.level == 0));
                 }
                 for other in lanes(mask) {
                     match one.level {
-                        0 => visit(child, two.child[other]),
+                        0 => (self.visit)(child, two.child[other]),
                         _ => stack.push((child, two.child[other])),
                     }
                 }

@@ -107,7 +107,7 @@ impl World {
             self.free.pop();
             self.states[slot as usize] = Some(state);
         } else {
-            self.states.push(Some(state));
+            super::push(&mut self.states, Some(state));
         }
         if collides_with_itself {
             self.add_record([slot; 2]);
@@ -157,10 +157,10 @@ impl World {
             counted: None,
         };
         let state = State::new(new, known.generation)?;
-        let next = match self.next_placement(body.slot) {
-            Some(placement) => Some((placement, state.bounds_at(&placement)?)),
-            None => None,
-        };
+        let next = self.next_placement(body.slot);
+        if let Some(placement) = &next {
+            state.check_placement(placement)?;
+        }
         self.changing();
         self.workspaces.iter_mut().for_each(Workspace::forget);
         self.forget_pending(body.slot);
@@ -172,8 +172,8 @@ impl World {
         }
         self.states[body.slot as usize] = Some(state);
         self.unpaired.push(body.slot);
-        if let Some((placement, bounds)) = next {
-            self.move_to(body.slot, placement, bounds);
+        if let Some(placement) = &next {
+            self.move_to(body.slot, placement);
         }
         Ok(())
     }

@@ -53,7 +53,7 @@ pub use skips::Skips;
 
 use crate::broad::{Method, Pair};
 use crate::distance::{self, PairKind, Proximity, Threshold};
-use crate::{Aabb, Error, FeatureKind, Placement};
+use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement};
 use body_tree::BodyTree;
 use changes::Log;
 use membership::Membership;
@@ -88,8 +88,10 @@ pub struct World {
     has_removed_dirty: bool,
     /// Counts the frames in which something changed.
     frame: u64,
-    /// Where the bodies that moved in this frame came from.
-    came_from: Vec<(u32, Placement)>,
+    /// Whether contacts are measured between frames, so that it is of interest where bodies came from.
+    predicts: bool,
+    /// Where the bodies that moved in this frame came from, if it is of interest.
+    came_from: Vec<(u32, CompactPlacement)>,
     /// Counts what changes the known contacts: a pass that began before is of no more use.
     answers: u64,
     log: Log,
@@ -97,6 +99,14 @@ pub struct World {
     /// The last query of each body for its partners, by slot.
     marks: Vec<u32>,
     mark: u32,
+}
+
+/// Pushes to a list that grows by an eighth, so that little of its room is empty.
+fn push<T>(list: &mut Vec<T>, item: T) {
+    if list.len() == list.capacity() {
+        list.reserve_exact(list.len() / 8 + 4);
+    }
+    list.push(item);
 }
 
 impl World {
@@ -118,6 +128,7 @@ impl World {
             dirty: Vec::new(),
             has_removed_dirty: false,
             frame: 0,
+            predicts: false,
             came_from: Vec::new(),
             answers: 0,
             log: Log::default(),
@@ -223,7 +234,7 @@ impl World {
             + self.marks.capacity() * 4
             + (self.unpaired.capacity() + self.dirty.capacity()) * 4
             + self.pending.capacity() * size_of::<Pending>()
-            + self.came_from.capacity() * size_of::<(u32, Placement)>()
+            + self.came_from.capacity() * size_of::<(u32, CompactPlacement)>()
     }
 
     /// How many pairs of bodies are kept because their boxes meet, or nearly.

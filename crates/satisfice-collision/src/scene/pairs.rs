@@ -110,6 +110,13 @@ impl Pairs {
             .filter(|(_, record)| record.bodies[0] != NONE)
     }
 
+    /// The same, to be changed.
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = (u32, &mut Record)> {
+        (0..)
+            .zip(&mut self.records)
+            .filter(|(_, record)| record.bodies[0] != NONE)
+    }
+
     /// Adds a record, of a body with itself if both are one.
     pub(super) fn add(&mut self, bodies: [u32; 2]) -> u32 {
         let record = Record {
@@ -130,7 +137,7 @@ impl Pairs {
                 id
             }
             None => {
-                self.records.push(record);
+                super::push(&mut self.records, record);
                 self.records.len() as u32 - 1
             }
         };
@@ -213,6 +220,16 @@ fn sides(bodies: [u32; 2]) -> usize {
 }
 
 impl Record {
+    /// The bodies have come closer by at most `motion`.
+    pub(super) fn has_moved(&mut self, motion: f64) {
+        if let Some(list) = &mut self.verlet {
+            list.spend(motion);
+        }
+        if self.status == Status::Current {
+            self.status = Status::Behind;
+        }
+    }
+
     /// A new grid has found many or few pairs, or a tree was tried.
     pub(super) fn note_sparse(&mut self, sparse: Option<bool>) {
         self.sparse = match sparse {

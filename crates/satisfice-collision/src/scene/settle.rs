@@ -6,7 +6,7 @@ use super::pairs::{NONE, Status};
 use super::verlet::VerletList;
 use crate::broad::inflate;
 use crate::distance::{Point, Threshold};
-use crate::{Aabb, Error, Placement};
+use crate::{Aabb, CompactPlacement, Error, Placement};
 
 /// The box of a moving body is widened by so many frames of its motion...
 const FRAMES: f64 = 4.0;
@@ -14,13 +14,17 @@ const FRAMES: f64 = 4.0;
 const MOST: f64 = 0.25;
 /// The tree is built anew if more than this share of the bodies leave their boxes in a frame.
 const REBUILT: f64 = 0.3;
+/// All pairs of bodies are found anew, in one traversal, if more than this share of the bodies leave their boxes.
+const ALL_PARTNERS: f64 = 0.1;
+/// All records are looked through, in their order in memory, if more than this share of the bodies moves.
+const ALL_RECORDS: f64 = 0.2;
 
 /// A body that moves in the next frame.
 pub(super) struct Pending {
     /// [`NONE`] if that was taken back.
     slot: u32,
-    /// Where a rigid body goes, and its box there.
-    to: Option<(Placement, Aabb)>,
+    /// Where a rigid body goes.
+    to: Option<CompactPlacement>,
 }
 
 impl World {
@@ -38,19 +42,19 @@ impl World {
                 "only a rigid body has a moving placement",
             ));
         }
-        let bounds = state.bounds_at(&placement)?;
-        self.move_to(body.slot, placement, bounds);
+        state.check_placement(&placement)?;
+        self.move_to(body.slot, &placement);
         Ok(())
     }
 
-    pub(super) fn move_to(&mut self, slot: u32, placement: Placement, bounds: Aabb) {
-        self.pend(slot).to = Some((placement, bounds));
+    pub(super) fn move_to(&mut self, slot: u32, placement: &Placement) {
+        self.pend(slot).to = Some(placement.into());
     }
 
     /// Where a rigid body goes in the next frame, if it was placed since the last query.
     pub(super) fn next_placement(&self, slot: u32) -> Option<Placement> {
         let pending = self.pending.get(self.state(slot).pending as usize)?;
-        pending.to.as_ref().map(|(placement, _)| *placement)
+        pending.to.map(Placement::from)
     }
 
     /// Gives the vertices of a deforming body in the next frame. The last call before a query counts. Cost: linear in them.
@@ -131,7 +135,7 @@ impl World {
             NONE => {
                 let at = self.pending.len();
                 self.state_mut(slot).pending = at as u32;
-                self.pending.push(Pending { slot, to: None });
+                super::push(&mut self.pending, Pending { slot, to: None });
                 at
             }
             at => at as usize,
@@ -179,7 +183,7 @@ impl World {
             return;
         }
         self.put_into_tree(&left);
-        if self.pairs.of_two() == 0 {
+        if left.len() as f64 > ALL_PARTNERS * self.len() as f64 {
             self.find_all_partners();
         } else {
             let mut room = Room::default();
@@ -195,12 +199,13 @@ impl World {
         let mut left = Vec::new();
         let mut pending = std::mem::take(&mut self.pending);
         self.came_from.clear();
+        let many = pending.len() as f64 > ALL_RECORDS * self.len() as f64;
         for Pending { slot, to } in pending.drain(..).filter(|pending| pending.slot != NONE) {
             let state = self.state_mut(slot);
             state.pending = NONE;
             let (placement, bounds) = (state.placement, state.bounds);
             let motion = match to {
-                Some((placement, bounds)) => state.go_to(&placement, &bounds),
+                Some(to) => state.go_to(&to.into()),
                 None => state.advance(),
             };
             let Some(motion) = motion else { continue };
@@ -210,13 +215,38 @@ impl World {
             if !self.tree.holds(slot, &wanted) {
                 left.push((slot, fattened(&wanted, &bounds, &new, motion)));
             }
-            if is_rigid {
-                self.came_from.push((slot, placement));
+            if is_rigid && self.predicts {
+                self.came_from.push((slot, (&placement).into()));
             }
-            self.mark_records(slot, motion);
+            if !many {
+                self.mark_records(slot, motion);
+            }
         }
         self.pending = pending;
+        if many {
+            self.mark_all_records();
+        }
         left
+    }
+
+    /// The same as [`World::mark_records`] for every body that has moved.
+    fn mark_all_records(&mut self) {
+        let (pairs, dirty) = (&mut self.pairs, &mut self.dirty);
+        for (id, record) in pairs.iter_mut() {
+            let [one, two] = record.bodies.map(|slot| {
+                let state = self.states[slot as usize].as_ref();
+                state
+                    .filter(|state| state.moved_at == self.frame)
+                    .map(|state| state.motion)
+            });
+            if one.is_some() || two.is_some() {
+                let motion = one.unwrap_or(0.0) + two.unwrap_or(0.0);
+                record.has_moved(motion);
+                if !std::mem::replace(&mut record.is_dirty, true) {
+                    dirty.push(id);
+                }
+            }
+        }
     }
 
     /// A body has moved: its records are no longer current.
@@ -231,12 +261,7 @@ impl World {
             } else {
                 1.0
             };
-            if let Some(list) = &mut known.verlet {
-                list.spend(ways * motion);
-            }
-            if known.status == Status::Current {
-                known.status = Status::Behind;
-            }
+            known.has_moved(ways * motion);
             if !std::mem::replace(&mut known.is_dirty, true) {
                 self.dirty.push(record);
             }
@@ -267,15 +292,37 @@ impl World {
         self.tree.build(&boxes);
     }
 
-    /// Lists every pair of bodies whose boxes meet, if none is listed.
+    /// Brings the records of all bodies in line with the tree: one traversal, and one sort of what was known and what meets now.
     fn find_all_partners(&mut self) {
-        let tree = std::mem::take(&mut self.tree);
-        tree.pairs(|a, b| {
-            if self.collides(a, b) {
+        let mut known: Vec<([u32; 2], u32)> = self
+            .pairs
+            .iter()
+            .filter(|(_, record)| record.bodies[0] != record.bodies[1])
+            .map(|(id, record)| (ordered(record.bodies), id))
+            .collect();
+        known.sort_unstable();
+        let mut met: Vec<[u32; 2]> = Vec::with_capacity(known.len());
+        self.tree.pairs(|a, b| met.push(ordered([a, b])));
+        if !known.is_empty() {
+            met.sort_unstable();
+        }
+        let mut known = known.into_iter().peekable();
+        for bodies in met {
+            while let Some((_, record)) = known.next_if(|(other, _)| *other < bodies) {
+                self.remove_record(record);
+            }
+            let mut is_known = false;
+            while known.next_if(|(other, _)| *other == bodies).is_some() {
+                is_known = true;
+            }
+            let [a, b] = bodies;
+            if !is_known && self.collides(a, b) {
                 self.pair_up(a, b);
             }
-        });
-        self.tree = tree;
+        }
+        for (_, record) in known {
+            self.remove_record(record);
+        }
     }
 
     /// Brings the records of a body that has another box in line with the tree.
@@ -318,6 +365,11 @@ impl World {
             }
         }
     }
+}
+
+/// Two bodies, the lower one first.
+fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// Room for the queries of a frame.

@@ -32,10 +32,11 @@ impl World {
     /// bodies' motion alone which of them still hold. For the time between frames: no answer changes by it. Cost: one distance a
     /// contact.
     pub fn measure_contacts(&mut self) {
+        self.predicts = true;
         let expected: BTreeMap<u32, Placement> = self
             .came_from
             .iter()
-            .map(|(slot, from)| (*slot, self.next_place(*slot, from)))
+            .map(|&(slot, from)| (slot, self.next_place(slot, &from.into())))
             .collect();
         let wanted = |record: &Record| {
             record.status == Status::Current && record.slack.is_none() && !record.pairs.is_empty()

@@ -56,23 +56,24 @@ impl State {
         })
     }
 
-    /// The box that the body has in a placement.
-    ///
-    /// # Errors
-    /// [`Error::NonFiniteVertex`] if a vertex would leave the range of numbers.
-    pub(super) fn bounds_at(&self, placement: &Placement) -> Result<Aabb, Error> {
-        let bounds = posed_bounds(self.mesh.bounds(), placement);
-        check(&self.mesh, placement, &bounds)?;
-        Ok(bounds)
+    /// Refuses a placement that takes a vertex out of the range of numbers.
+    pub(super) fn check_placement(&self, placement: &Placement) -> Result<(), Error> {
+        let local = self.mesh.bounds();
+        let farthest = largest(&local.min) + largest(&local.max);
+        if (4.0 * farthest + largest(&placement.translation())).is_finite() {
+            return Ok(());
+        }
+        check(&self.mesh, placement, &posed_bounds(local, placement))
     }
 
     /// Goes to a placement. Returns how far no vertex moves, or `None` if it is there already.
-    pub(super) fn go_to(&mut self, placement: &Placement, bounds: &Aabb) -> Option<f64> {
+    pub(super) fn go_to(&mut self, placement: &Placement) -> Option<f64> {
         if *placement == self.placement {
             return None;
         }
         let motion = farthest(self.mesh.bounds(), &self.placement, placement);
-        (self.placement, self.bounds) = (*placement, *bounds);
+        self.bounds = posed_bounds(self.mesh.bounds(), placement);
+        self.placement = *placement;
         self.rests = *placement == Placement::IDENTITY;
         Some(motion)
     }
@@ -217,20 +218,24 @@ fn largest(v: &[f64; 3]) -> f64 {
     v.iter().fold(0.0_f64, |most, c| most.max(c.abs()))
 }
 
-/// A rotated box is the hull of its rotated corners; posing rounds in proportion to the lengths involved.
+/// A rotated box has its rotated centre, and half sides by the absolute matrix; posing rounds in proportion to the lengths
+/// involved.
 fn posed_bounds(local: &Aabb, placement: &Placement) -> Aabb {
     if *placement == Placement::IDENTITY {
         return *local;
     }
-    let corners = corners(local);
-    let mut bounds = Aabb::point(placement.apply(corners[0]));
-    corners[1..]
-        .iter()
-        .for_each(|&corner| bounds.include(placement.apply(corner)));
     let slack = rounding(local, placement);
+    let rotation = placement.rotation();
+    let centre = std::array::from_fn(|k| local.min[k] / 2.0 + local.max[k] / 2.0);
+    let half: Point = std::array::from_fn(|k| local.max[k] / 2.0 - local.min[k] / 2.0);
+    let centre = placement.apply(centre);
+    let side = |i: usize| {
+        let [x, y, z] = rotation[i];
+        x.abs() * half[0] + y.abs() * half[1] + z.abs() * half[2] + slack
+    };
     Aabb {
-        min: bounds.min.map(|c| c - slack),
-        max: bounds.max.map(|c| c + slack),
+        min: std::array::from_fn(|i| centre[i] - side(i)),
+        max: std::array::from_fn(|i| centre[i] + side(i)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Worlds over several frames against brute force over all pairs of features, by every method and query.
 #![allow(clippy::unwrap_used)]
 
-use super::{Body, BodyId, Completeness, Contact, Frame, World};
+use super::{Body, BodyId, Completeness, Contact, World};
 use crate::broad::Method;
 use crate::distance::{PairKind, Point, Threshold};
 use crate::{Error, Placement, generate, oracle};
@@ -117,7 +117,11 @@ fn what_need_not_be_done_is_skipped_and_counted() {
         assert_eq!(skips.rigid_self, 2);
         // three bodies, of which one collides with itself, too; one of them is far away in frames 8 and 9
         if frame == 4 || frame == 9 {
-            assert_eq!(skips.unmoved_bodies + skips.boxes_apart, 4, "frame {frame}");
+            assert_eq!(
+                skips.unmoved_bodies,
+                if frame == 4 { 4 } else { 2 },
+                "frame {frame}"
+            );
         }
         assert_eq!(skips.boxes_apart, if frame == 8 || frame == 9 { 2 } else { 0 });
         all.push(skips);

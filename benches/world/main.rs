@@ -1,0 +1,87 @@
+//! Worlds of many bodies: time a frame and memory, against parry3d's `Bvh` over the boxes of the bodies.
+//!
+//! `cargo bench --bench world` runs everything and writes `docs/results/worlds.md`; started as a test it runs 300 bodies for three
+//! frames and writes nothing. A word after `--` runs the scenes whose names contain it, a number those of that many bodies, and
+//! writes nothing.
+
+#[path = "../machine.rs"]
+mod machine;
+mod measure;
+mod peers;
+mod scenes;
+
+use measure::{Row, measure};
+use scenes::Scene;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let full = arguments.iter().any(|argument| argument == "--bench");
+    let words: Vec<&String> = arguments
+        .iter()
+        .filter(|argument| !argument.starts_with("--"))
+        .collect();
+    let sizes: &[usize] = if full { &[1_000, 10_000, 100_000] } else { &[300] };
+    let mut report = Report::default();
+    report.line("# Worlds of many bodies");
+    report.line("");
+    report.line(&machine::line());
+    report.line("");
+    report.line(INTRODUCTION);
+    for &bodies in sizes {
+        report.line("");
+        report.line(&format!("## {bodies} bodies"));
+        report.line("");
+        report.line(Row::HEADING);
+        for scene in Scene::all(bodies) {
+            let is_wanted = |word: &&String| match word.parse::<usize>() {
+                Ok(number) => bodies == number,
+                Err(_) => scene.name.contains(word.as_str()),
+            };
+            if words.iter().all(is_wanted) {
+                let frames = if full { scenes::frames(bodies) } else { 3 };
+                report.line(&measure(&scene, frames).to_string());
+            }
+        }
+    }
+    if full && words.is_empty() {
+        report.save();
+    }
+}
+
+const INTRODUCTION: &str = "Spheres of 80 triangles and radius 0.4 that share one mesh; pairs of triangles within 0.01; one thread, \
+    release build. Every moving body has a step of up to 0.005 along each axis; directions turn every eight frames. All methods \
+    follow the same motion in one run, one after the other in every frame; times are medians in milliseconds over the frames.
+
+- *bodies ms*: placing what moves and finding the pairs of bodies whose boxes meet (`World::place`, and a query of an empty region).
+- *worst*: the slowest of these frames, divided by *new*, the time of a world made anew (adding all bodies and finding the pairs).
+- *triangles ms*: the contacts of these pairs (`World::update` after that).
+- *parry kept*: `Bvh::insert_or_update_partially` with a margin of 0.02 for what moves, `refit`, `optimize_incremental`, \
+`traverse_bvtt_single_tree` with change detection: the pairs of which one left its box, as rapier3d's broad phase finds them. \
+Nothing is called in a frame in which nothing moves. *parry new*: `Bvh::from_iter` (binned) and a traversal. Boxes are `f32` and are \
+given; ours are computed from the placement in `f64`. *ratio*: the faster one, divided by *bodies ms*.
+- *bytes a body*: `World::bytes` beside meshes, of a scene of the same motion without pairs where there are many; *a pair*: what is \
+left, divided by the kept pairs.
+
+Written by `cargo bench --bench world`.";
+
+/// What is printed, and kept for the file.
+#[derive(Default)]
+struct Report {
+    text: String,
+}
+
+impl Report {
+    fn line(&mut self, line: &str) {
+        println!("{line}");
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    fn save(&self) {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/worlds.md");
+        match std::fs::write(&path, &self.text) {
+            Ok(()) => println!("written to docs/results/worlds.md"),
+            Err(error) => eprintln!("cannot write {}: {error}", path.display()),
+        }
+    }
+}
