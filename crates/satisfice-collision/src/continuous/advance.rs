@@ -119,6 +119,16 @@ pub(super) fn advance<H: Hull<K>, const K: usize>(swept: &Swept<K>, goal: Goal) 
     reached
 }
 
+/// A time up to which one step proves the hull free, if it is free up to `from`; at least that.
+#[inline(always)]
+pub(super) fn free_until<H: Hull<K>, const K: usize>(swept: &Swept<K>, from: f64) -> f64 {
+    let nearest = H::nearest(&swept.at(from));
+    swept
+        .apart_around(nearest.direction, from)
+        .or_else(|| swept.apart_around(nearest.point, from))
+        .map_or(from, |(_, next)| next)
+}
+
 impl Reached {
     /// Nothing is known.
     pub(super) fn nothing(goal: Goal) -> Self {

@@ -1,9 +1,10 @@
 //! The kinds of moving pairs.
 
-use super::advance::Goal;
+use super::advance::{Goal, free_until};
 use super::hull::{ParallelogramHull, PointHull, SegmentHull, TriangleHull};
 use super::motion::{Motion, Moving};
 use super::resolve::{Solved, solve};
+use super::swept::Swept;
 use crate::distance::{
     PairKind, Point, Proximity, Segment, Triangle, edge_edge, vertex_edge, vertex_triangle, vertex_vertex,
 };
@@ -17,6 +18,8 @@ mod sealed {
             delta: f64,
             goal: super::Goal,
         ) -> super::Solved;
+
+        fn free_until(a: &super::Moving<Self>, b: &super::Moving<B>, delta: f64, from: f64) -> f64;
     }
 }
 
@@ -64,6 +67,18 @@ macro_rules! against {
                     to_b: $vertices_b(b.to),
                 };
                 solve::<$hull, $corners, _, _>(&motion, delta, goal)
+            }
+
+            #[inline]
+            fn free_until(a: &Moving<$a>, b: &Moving<$b>, delta: f64, from: f64) -> f64 {
+                let motion = Motion {
+                    from_a: $vertices_a(a.from),
+                    to_a: $vertices_a(a.to),
+                    from_b: $vertices_b(b.from),
+                    to_b: $vertices_b(b.to),
+                };
+                Swept::<$corners>::new(&motion, delta)
+                    .map_or(from, |swept| free_until::<$hull, $corners>(&swept, from))
             }
         }
 

@@ -108,6 +108,17 @@ pub fn impact<A: Against<B>, B: Copy>(
     Ok(within(a, b, separation, goal))
 }
 
+/// A time up to which one step of the advance proves the pair free, if it is free up to `from`; at least that.
+#[inline]
+pub(super) fn free_until<A: Against<B>, B: Copy>(
+    a: &Moving<A>,
+    b: &Moving<B>,
+    separation: Separation,
+    from: f64,
+) -> f64 {
+    A::free_until(a, b, separation.get(), from)
+}
+
 /// The first hit up to a time.
 pub(super) fn within<A: Against<B>, B: Copy>(
     a: &Moving<A>,

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::Moving;
-use super::tree::{Frame, MIXED, MovingTree};
+use super::tree::{Frame, MIXED, MovingBox, MovingTree};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::{Error, Mesh};
 
@@ -266,20 +266,15 @@ impl Step {
                 let is_rigid = !self.bodies[body as usize].collides_with_itself;
                 (body, if is_rigid { body } else { MIXED })
             };
-            match list {
-                List::Vertices => MovingTree::new(frame, self.from.len(), body, |v| {
-                    let vertex = self.vertex(v);
-                    ([vertex.from], [vertex.to])
-                }),
-                List::Edges => MovingTree::new(frame, self.edges.len(), body, |e| {
-                    let edge = self.edge(e);
-                    (edge.from, edge.to)
-                }),
-                List::Triangles => MovingTree::new(frame, self.triangles.len(), body, |t| {
-                    let triangle = self.triangle(t);
-                    (triangle.from, triangle.to)
-                }),
-            }
+            let vertices = frame.boxes(&self.from, &self.to);
+            let around =
+                |corners: &[u32]| MovingBox::around(corners.iter().map(|&corner| &vertices[corner as usize]));
+            let boxes = match list {
+                List::Vertices => vertices,
+                List::Edges => self.edges.iter().map(|edge| around(edge)).collect(),
+                List::Triangles => self.triangles.iter().map(|triangle| around(triangle)).collect(),
+            };
+            MovingTree::new(&boxes, body)
         })
     }
 

@@ -8,6 +8,7 @@
 
 use crate::distance::Point;
 use crate::order::morton_key;
+use crate::simd::{self, Floats};
 
 /// Boxes of a group.
 pub(super) const LANES: usize = 8;
@@ -69,9 +70,19 @@ impl Frame {
         }
     }
 
-    /// A coordinate in the frame: the exact value lies within one step of single precision of it, or two.
-    fn local(&self, x: f64, axis: usize) -> f32 {
-        ((0.5 * x - 0.5 * self.centre[axis]) * self.scale) as f32
+    /// A point in the frame: the exact value of each coordinate lies within one step of single precision of it, or two.
+    fn local(&self, p: Point) -> [f32; 3] {
+        std::array::from_fn(|k| ((0.5 * p[k] - 0.5 * self.centre[k]) * self.scale) as f32)
+    }
+
+    /// The boxes around vertices at both ends of the step.
+    pub(super) fn boxes(&self, from: &[Point], to: &[Point]) -> Vec<MovingBox> {
+        let ends = from.iter().zip(to).map(|(&p, &q)| [self.local(p), self.local(q)]);
+        ends.map(|ends| MovingBox {
+            min: ends.map(|p| p.map(below)),
+            max: ends.map(|p| p.map(above)),
+        })
+        .collect()
     }
 
     /// A distance in the frame, rounded up.
@@ -92,43 +103,53 @@ fn above(x: f32) -> f32 {
     x + (x.abs() * 4.0 * f32::EPSILON + 1e-12)
 }
 
+/// A lower end less a margin, rounded down.
+#[inline(always)]
+fn lowered(x: f32, margin: f32) -> f32 {
+    if margin == 0.0 {
+        x
+    } else {
+        (x - margin).next_down()
+    }
+}
+
+/// An upper end and a margin, rounded up.
+#[inline(always)]
+fn raised(x: f32, margin: f32) -> f32 {
+    if margin == 0.0 { x } else { (x + margin).next_up() }
+}
+
 impl MovingBox {
     const EMPTY: Self = Self {
         min: [[f32::INFINITY; 3]; 2],
         max: [[f32::NEG_INFINITY; 3]; 2],
     };
 
-    fn of<const N: usize>(frame: &Frame, ends: [[Point; N]; 2]) -> Self {
+    /// The box around several.
+    pub(super) fn around<'a>(boxes: impl IntoIterator<Item = &'a Self>) -> Self {
         let mut all = Self::EMPTY;
-        for (end, points) in ends.into_iter().enumerate() {
-            for p in points {
-                for (k, &x) in p.iter().enumerate() {
-                    let x = frame.local(x, k);
-                    all.min[end][k] = all.min[end][k].min(below(x));
-                    all.max[end][k] = all.max[end][k].max(above(x));
-                }
-            }
+        for of in boxes {
+            all.include(of);
         }
         all
     }
 
     fn include(&mut self, other: &Self) {
+        let less = |x: f32, y: f32| if x < y { x } else { y };
+        let more = |x: f32, y: f32| if x > y { x } else { y };
         for end in 0..2 {
             for k in 0..3 {
-                self.min[end][k] = self.min[end][k].min(other.min[end][k]);
-                self.max[end][k] = self.max[end][k].max(other.max[end][k]);
+                self.min[end][k] = less(other.min[end][k], self.min[end][k]);
+                self.max[end][k] = more(other.max[end][k], self.max[end][k]);
             }
         }
     }
 
     /// The box grown by a margin on every side.
     pub(super) fn grown(&self, margin: f32) -> Self {
-        if margin == 0.0 {
-            return *self;
-        }
         Self {
-            min: self.min.map(|p| p.map(|x| (x - margin).next_down())),
-            max: self.max.map(|p| p.map(|x| (x + margin).next_up())),
+            min: self.min.map(|p| p.map(|x| lowered(x, margin))),
+            max: self.max.map(|p| p.map(|x| raised(x, margin))),
         }
     }
 
@@ -160,7 +181,70 @@ impl MovingBox {
     }
 }
 
+/// When the boxes of two groups first meet.
+#[derive(Debug, Clone)]
+pub(super) struct Meetings {
+    /// For each box of the first group those of the second that are not apart from it all the time, a bit each.
+    pub(super) masks: [u32; LANES],
+    /// Lower bounds of the times at which they first meet, where the bit is set.
+    pub(super) first: [Lanes; LANES],
+}
+
+/// The work of [`Group::meetings`].
+struct Meet<'g> {
+    a: &'g Group,
+    b: &'g Group,
+    lanes: usize,
+    margin: f32,
+}
+
+impl simd::Work for Meet<'_> {
+    type Output = Meetings;
+
+    /// A gap is a difference of two numbers, so its sign is right and its value off by one rounding; a quotient of gaps is off by
+    /// less than four.
+    #[inline(always)]
+    fn run<L: simd::Lanes>(self, lanes: L) -> Meetings {
+        let s = lanes.single();
+        let zero = s.splat(0.0);
+        let down = s.splat(1.0 - 8.0 * f32::EPSILON);
+        let mut meetings = Meetings {
+            masks: [0; LANES],
+            first: [[0.0; LANES]; LANES],
+        };
+        for lane in 0..self.lanes {
+            let (mut apart, mut first) = (s.splat(-1.0), zero);
+            for k in 0..3 {
+                let max = |end: usize| s.splat(raised(self.a.max[end][k][lane], self.margin));
+                let min = |end: usize| s.splat(lowered(self.a.min[end][k][lane], self.margin));
+                let after = |end: usize| s.sub(s.load(&self.b.min[end][k]), max(end));
+                let before = |end: usize| s.sub(min(end), s.load(&self.b.max[end][k]));
+                for (from, to) in [(after(0), after(1)), (before(0), before(1))] {
+                    apart = s.max(s.min(from, to), apart);
+                    let from = s.max(from, zero);
+                    // NaN (of 0 / 0) is not greater.
+                    first = s.max(s.div(from, s.sub(from, to)), first);
+                }
+            }
+            meetings.masks[lane] = s.bits(s.at_most(apart, zero));
+            meetings.first[lane] = s.store(s.mul(first, down));
+        }
+        meetings
+    }
+}
+
 impl Group {
+    /// When each of the first `lanes` boxes of this group, grown by a margin, meets the boxes of another group.
+    #[inline]
+    pub(super) fn meetings(&self, lanes: usize, margin: f32, other: &Self) -> Meetings {
+        simd::dispatch(Meet {
+            a: self,
+            b: other,
+            lanes,
+            margin,
+        })
+    }
+
     const EMPTY: Self = Self {
         min: [[[f32::INFINITY; LANES]; 3]; 2],
         max: [[[f32::NEG_INFINITY; LANES]; 3]; 2],
@@ -217,28 +301,21 @@ impl Group {
 }
 
 impl MovingTree {
-    /// The tree over `count` features: `body` gives the body of each, and again if it is rigid or [`MIXED`]; `at` gives its
-    /// vertices at both ends. Features of a body stay together.
-    pub(super) fn new<const N: usize>(
-        frame: &Frame,
-        count: usize,
-        body: impl Fn(u32) -> (u32, u32),
-        at: impl Fn(u32) -> ([Point; N], [Point; N]),
-    ) -> Self {
-        let boxes: Vec<MovingBox> = (0..count as u32)
-            .map(|feature| {
-                let (from, to) = at(feature);
-                MovingBox::of(frame, [from, to])
-            })
-            .collect();
+    /// The tree over features with these boxes: `body` gives the body of each, and again if it is rigid or [`MIXED`]. Features
+    /// of a body stay together.
+    pub(super) fn new(boxes: &[MovingBox], body: impl Fn(u32) -> (u32, u32)) -> Self {
         let cell =
             |x: f64| ((x + 0.5) * f64::from(1_u32 << BITS)).clamp(0.0, f64::from((1_u32 << BITS) - 1)) as u32;
-        let mut keyed: Vec<(u32, u64, u32)> = (0..)
-            .zip(&boxes)
-            .map(|(feature, of)| (body(feature).0, morton_key(of.middle().map(cell), BITS), feature))
+        // As one number: the body, the cell, the feature.
+        let mut keyed: Vec<u128> = (0..)
+            .zip(boxes)
+            .map(|(feature, of)| {
+                let cell = morton_key(of.middle().map(cell), BITS);
+                u128::from(body(feature).0) << 80 | u128::from(cell) << 32 | u128::from(feature)
+            })
             .collect();
         keyed.sort_unstable();
-        let order: Vec<u32> = keyed.into_iter().map(|(_, _, feature)| feature).collect();
+        let order: Vec<u32> = keyed.into_iter().map(|key| key as u32).collect();
         let mut rigid = vec![common(order.iter().map(|&feature| body(feature).1))];
         let sorted = order.iter().map(|&feature| boxes[feature as usize]);
         let mut levels = vec![groups(sorted)];
