@@ -398,3 +398,92 @@ fn the_candidates_of_a_step_are_a_problem() {
         }
     }
 }
+
+#[test]
+fn a_free_step_is_above_zero_whenever_the_start_is_free() {
+    let floor = Mesh::new(
+        vec![[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]],
+        vec![],
+        vec![[0, 1, 2]],
+    )
+    .unwrap();
+    for exponent in [-20, -41, -60, -200, -900] {
+        let height = 2.0_f64.powi(exponent);
+        let point = Mesh::new(vec![[1.0, 1.0, height]], vec![], vec![]).unwrap();
+        let mut step = Step::new();
+        step.add_rigid(&point, &[[1.0, 1.0, height - 1.0]]).unwrap();
+        step.add_rigid(&floor, floor.vertices()).unwrap();
+        let free = step.free_step(Separation::TOUCHING).unwrap();
+        // It touches at the time `height`, or just after for heights lost in `height - 1`.
+        assert!(
+            0.0 < free && free <= height * (1.0 + 1e-12),
+            "2^{exponent}: {free}"
+        );
+        let first = step.earliest(Separation::TOUCHING, 1e-6).unwrap();
+        assert!(first.time[1] >= height && !first.first.unwrap().2.at_start);
+    }
+    // Exactly delta apart at the start is free, but nothing after it is.
+    let point = Mesh::new(vec![[1.0, 1.0, 1.0]], vec![], vec![]).unwrap();
+    let mut step = Step::new();
+    step.add_rigid(&point, &[[1.0, 1.0, 0.0]]).unwrap();
+    step.add_rigid(&floor, floor.vertices()).unwrap();
+    let first = step.earliest(Separation::new(1.0).unwrap(), 1e-6).unwrap();
+    assert!(first.time[0] == 0.0 && first.time[1] < 1e-6 && !first.first.unwrap().2.at_start);
+}
+
+#[test]
+fn a_hundred_thousand_identical_vertices() {
+    let count = 100_000;
+    let points = Mesh::new(vec![[1.0, 1.0, 1.0]; count], vec![], vec![]).unwrap();
+    let floor = Mesh::new(
+        vec![[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]],
+        vec![],
+        vec![[0, 1, 2]],
+    )
+    .unwrap();
+    let mut falling = Step::new();
+    falling
+        .add_rigid(&points, &vec![[1.0, 1.0, -1.0]; count])
+        .unwrap();
+    falling.add_rigid(&floor, floor.vertices()).unwrap();
+    let hits = falling
+        .hits(PairKind::VertexTriangle, Separation::TOUCHING)
+        .unwrap();
+    assert_eq!(hits.pairs.len(), count);
+    let first = falling.earliest(Separation::TOUCHING, 1e-6).unwrap();
+    assert!(first.is_proved && first.time[0] <= 0.5 && 0.5 <= first.time[1]);
+    // A step without motion, of a body with itself: they touch at the start.
+    let mut resting = Step::new();
+    resting.add_deforming(&points, points.vertices()).unwrap();
+    let first = resting.earliest(Separation::TOUCHING, 1e-6).unwrap();
+    assert!(first.is_proved && first.time == [0.0, 0.0] && first.first.unwrap().2.at_start);
+}
+
+#[test]
+fn any_number_of_threads_delivers_the_same_pairs_in_the_same_order() {
+    let ball = generate::icosphere(0.5, 3).unwrap();
+    let to: Vec<_> = ball.vertices().iter().map(|&[x, y, z]| [x, y, z + 0.4]).collect();
+    let mut step = Step::new();
+    step.add_rigid(&ball, &to).unwrap();
+    step.add_rigid(&ball, ball.vertices()).unwrap();
+    let visited = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut pairs = Vec::new();
+            let counts = step.each_hit(
+                PairKind::EdgeEdge,
+                Separation::TOUCHING,
+                &mut || false,
+                &mut |pair| pairs.push(pair),
+            );
+            (pairs, counts.unwrap())
+        })
+    };
+    let one = visited(1);
+    assert!(!one.0.is_empty() && one.1.undecided == 0);
+    assert_eq!(one, visited(2));
+    assert_eq!(one, visited(5));
+}

@@ -148,7 +148,9 @@ impl Reached {
     }
 
     fn is_close_enough(&self, goal: Goal) -> bool {
-        self.hit.is_some_and(|hit| hit - self.free <= goal.tolerance)
+        let is_after_start = self.free > 0.0 || goal.tolerance.is_infinite();
+        self.hit
+            .is_some_and(|hit| hit - self.free <= goal.tolerance && is_after_start)
     }
 
     fn decided(self) -> Self {

@@ -34,7 +34,7 @@ pub struct Earliest {
     pub first: Option<(PairKind, MovingContact, Impact)>,
     /// Whether the bounds are within the tolerance, or no pair hits.
     pub is_proved: bool,
-    /// Pairs of groups of features not looked into because the run was stopped.
+    /// Pairs of groups of features, and of features, that still waited when the run was stopped.
     pub undecided: u64,
     /// Pairs of features asked about.
     pub queries: u64,
@@ -164,20 +164,13 @@ impl Step {
         descent.run(stop)
     }
 
-    /// A time up to which the step is proved free of hits; above 0 whenever the start is free. 1 if the whole step is free.
+    /// A time up to which the step is proved free of hits, and which is at most 1e-6 before the first one. Above 0 whenever the
+    /// start is free and there is no hit before 2^-1000; 1 if the whole step is free.
     ///
     /// # Errors
     /// None for a step that has bodies; see [`earliest`](Self::earliest).
     pub fn free_step(&self, separation: Separation) -> Result<f64, Error> {
-        let mut free = 0.0;
-        for tolerance in [1e-6, 1e-9, 1e-12] {
-            let earliest = self.earliest(separation, tolerance)?;
-            free = earliest.time[0];
-            if free > 0.0 || earliest.first.is_some_and(|(_, _, impact)| impact.at_start) {
-                break;
-            }
-        }
-        Ok(free)
+        Ok(self.earliest(separation, 1e-6)?.time[0])
     }
 
     /// The kinds of pairs in which the bodies of this step first meet: vertex-triangle and edge-edge for surfaces, and those
@@ -231,6 +224,11 @@ impl<'s> Descent<'s> {
         let mut rounds = 0_u32;
         while let Some(next) = self.at_once.pop().or_else(|| self.waiting.pop()) {
             if next.time >= self.best.time[1] {
+                break;
+            }
+            // All that wait are later than this one, which is close enough. A bound of 0 would not say that the start is free.
+            if self.at_once.is_empty() && next.time > 0.0 && next.time + self.tolerance >= self.best.time[1] {
+                self.best.time[0] = self.best.time[0].min(next.time);
                 break;
             }
             rounds = rounds.wrapping_add(1);

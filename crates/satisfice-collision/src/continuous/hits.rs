@@ -1,6 +1,8 @@
 //! All pairs of a step that come within delta.
 
-use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc;
 
 use super::advance::Goal;
 use super::query::decide_during;
@@ -41,8 +43,8 @@ struct Found {
     by_integers: u64,
 }
 
-/// Groups searched between two looks at the stop condition.
-const ROWS: u32 = 64;
+/// Groups that a thread searches at a time, between two looks at the stop condition.
+const ROWS: u32 = 16;
 
 impl Step {
     /// All pairs of a kind that come nearer than delta during the step, or touch for a delta of 0. Uses the threads of the
@@ -113,31 +115,45 @@ impl Step {
 }
 
 impl Search<'_> {
+    /// Hands out rows to the threads in turn, and what they find to `visit` in the order of the rows.
     fn run(&self, stop: &mut dyn FnMut() -> bool, visit: &mut dyn FnMut(MovingContact)) -> Hits {
         let rows = self.trees[0].order.len().div_ceil(LANES) as u32;
-        let threads = rayon::current_num_threads() as u32;
+        let (next, is_stopped) = (AtomicU32::new(0), AtomicBool::new(false));
+        let work = || {
+            let first = next.fetch_add(ROWS, Ordering::Relaxed);
+            (first < rows).then(|| (first, self.rows(first..rows.min(first + ROWS))))
+        };
+        let (sender, receiver) = mpsc::channel();
         let mut hits = Hits::default();
-        let mut row = 0;
-        while row < rows {
-            if stop() {
-                hits.undecided = self.pairs_from(row);
-                break;
+        let mut early: BTreeMap<u32, Found> = BTreeMap::new();
+        let mut due = 0;
+        let mut deliver = |part: (u32, Found), hits: &mut Hits| {
+            early.insert(part.0, part.1);
+            while let Some(found) = early.remove(&due) {
+                self.take(hits, &found, visit);
+                due += ROWS;
             }
-            let end = rows.min(row + ROWS * threads);
-            if threads > 1 {
-                let parts: Vec<Found> = (row..end)
-                    .into_par_iter()
-                    .step_by(LANES)
-                    .map(|first| self.rows(first..end.min(first + LANES as u32)))
-                    .collect();
-                for part in parts {
-                    self.take(&mut hits, &part, visit);
-                }
-            } else {
-                self.take(&mut hits, &self.rows(row..end), visit);
+        };
+        rayon::in_place_scope(|scope| {
+            for _ in 1..rayon::current_num_threads() {
+                let (sender, work, is_stopped) = (sender.clone(), &work, &is_stopped);
+                scope.spawn(move |_| {
+                    while !is_stopped.load(Ordering::Relaxed)
+                        && let Some(part) = work()
+                        && sender.send(part).is_ok()
+                    {}
+                });
             }
-            row = end;
-        }
+            while !stop() {
+                let Some(part) = work() else { return };
+                deliver(part, &mut hits);
+                receiver.try_iter().for_each(|part| deliver(part, &mut hits));
+            }
+            is_stopped.store(true, Ordering::Relaxed);
+        });
+        drop(sender);
+        receiver.iter().for_each(|part| deliver(part, &mut hits));
+        hits.undecided = self.pairs_from(next.into_inner().min(rows));
         hits
     }
 

@@ -13,7 +13,8 @@ pub type Decided = Decision;
 /// The first time at which a pair comes nearer than delta (touches, for a delta of 0), and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {
-    /// A lower and an upper bound of the infimum of the times of a hit, both proved, in `[0, 1]`.
+    /// A lower and an upper bound of the infimum of the times of a hit, both proved, in `[0, 1]`. The lower one is above 0 unless the
+    /// infimum is below 2^-1000.
     pub time: [f64; 2],
     /// Whether the pair is a hit at time 0 already; `time` is then `[0, 0]`.
     pub at_start: bool,

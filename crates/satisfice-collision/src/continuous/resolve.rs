@@ -13,6 +13,9 @@ const SHIFT: u32 = 6;
 /// The finest piece of the step that an answer names, as a power of two.
 const FINEST: u32 = 50;
 
+/// Impacts are told from the start down to this power of a half.
+const LATEST: u32 = 1000;
+
 /// The answer to a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
@@ -74,5 +77,41 @@ fn exactly<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
     // Exact: short binary fractions.
     let unit = length / (1_u64 << levels) as f64;
     let from = part.start() + piece as f64 * unit;
-    Some([from.max(reached.free), from + unit])
+    let low = from.max(reached.free);
+    if low == 0.0 {
+        return Some(soon::<H, K, M, N>(motion, delta, from + unit));
+    }
+    Some([low, from + unit])
+}
+
+/// The same for the infimum of hits from 0 to `end` that is not a hit itself: bounds that are powers of two, the upper one twice the
+/// lower. The lower one is 0 if there are hits before `2^-LATEST`, as where the distance at the start is delta.
+#[cold]
+fn soon<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
+    motion: &Motion<M, N>,
+    delta: f64,
+    end: f64,
+) -> [f64; 2] {
+    let is_hit = |shift: u32| {
+        let part = Part {
+            from: 0,
+            to: 1,
+            shift,
+        };
+        exact::is_hit(motion, delta, H::PARTS, part)
+    };
+    let time = |shift: u32| 0.5_f64.powi(shift as i32);
+    if is_hit(LATEST) {
+        return [0.0, time(LATEST)];
+    }
+    let (mut hit, mut free) = ((-end.log2()).floor().max(0.0) as u32, LATEST);
+    while free - hit > 1 {
+        let middle = hit + (free - hit) / 2;
+        if is_hit(middle) {
+            hit = middle;
+        } else {
+            free = middle;
+        }
+    }
+    [time(free), time(hit)]
 }

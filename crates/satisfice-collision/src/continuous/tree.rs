@@ -213,21 +213,30 @@ impl simd::Work for Meet<'_> {
             first: [[0.0; LANES]; LANES],
         };
         for lane in 0..self.lanes {
-            let (mut apart, mut first) = (s.splat(-1.0), zero);
+            let mut apart = s.splat(-1.0);
+            let mut gaps = [[zero; 2]; 6];
             for k in 0..3 {
-                let max = |end: usize| s.splat(raised(self.a.max[end][k][lane], self.margin));
-                let min = |end: usize| s.splat(lowered(self.a.min[end][k][lane], self.margin));
-                let after = |end: usize| s.sub(s.load(&self.b.min[end][k]), max(end));
-                let before = |end: usize| s.sub(min(end), s.load(&self.b.max[end][k]));
-                for (from, to) in [(after(0), after(1)), (before(0), before(1))] {
-                    apart = s.max(s.min(from, to), apart);
+                for end in 0..2 {
+                    let max = s.splat(raised(self.a.max[end][k][lane], self.margin));
+                    let min = s.splat(lowered(self.a.min[end][k][lane], self.margin));
+                    gaps[2 * k][end] = s.sub(s.load(&self.b.min[end][k]), max);
+                    gaps[2 * k + 1][end] = s.sub(min, s.load(&self.b.max[end][k]));
+                }
+                for gap in [gaps[2 * k], gaps[2 * k + 1]] {
+                    apart = s.max(s.min(gap[0], gap[1]), apart);
+                }
+            }
+            let mask = s.bits(s.at_most(apart, zero));
+            meetings.masks[lane] = mask;
+            if mask != 0 {
+                let mut first = zero;
+                for [from, to] in gaps {
                     let from = s.max(from, zero);
                     // NaN (of 0 / 0) is not greater.
                     first = s.max(s.div(from, s.sub(from, to)), first);
                 }
+                meetings.first[lane] = s.store(s.mul(first, down));
             }
-            meetings.masks[lane] = s.bits(s.at_most(apart, zero));
-            meetings.first[lane] = s.store(s.mul(first, down));
         }
         meetings
     }
