@@ -216,15 +216,18 @@ impl simd::Work for Meet<'_> {
             let mut apart = s.splat(-1.0);
             let mut gaps = [[zero; 2]; 6];
             for k in 0..3 {
-                for end in 0..2 {
+                let (mut after, mut before) = ([zero; 2], [zero; 2]);
+                for (end, (after, before)) in after.iter_mut().zip(&mut before).enumerate() {
                     let max = s.splat(raised(self.a.max[end][k][lane], self.margin));
                     let min = s.splat(lowered(self.a.min[end][k][lane], self.margin));
-                    gaps[2 * k][end] = s.sub(s.load(&self.b.min[end][k]), max);
-                    gaps[2 * k + 1][end] = s.sub(min, s.load(&self.b.max[end][k]));
+                    *after = s.sub(s.load(&self.b.min[end][k]), max);
+                    *before = s.sub(min, s.load(&self.b.max[end][k]));
                 }
-                for gap in [gaps[2 * k], gaps[2 * k + 1]] {
+                for gap in [after, before] {
                     apart = s.max(s.min(gap[0], gap[1]), apart);
                 }
+                gaps[2 * k] = after;
+                gaps[2 * k + 1] = before;
             }
             let mask = s.bits(s.at_most(apart, zero));
             meetings.masks[lane] = mask;
