@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use crate::accounting::Reached;
 use crate::archive::Archive;
-use crate::batch::{Batch, Outcome};
+use crate::batch::Outcome;
 use crate::budget::{Budget, StopReason};
 use crate::engine::{Answers, Ask, Origin, WarmStart};
 use crate::identity::Identity;
@@ -24,6 +24,7 @@ use crate::seed::SearchRng;
 use crate::view::View;
 
 use super::Told;
+use super::lane::{EagerLane, Of, Open, one};
 
 /// So many candidates in a row that are out already: others have to be answered first.
 const FRUITLESS: usize = 100;
@@ -40,127 +41,6 @@ pub(super) struct Eager<S, T> {
     pub(super) given: Vec<(Vec<S>, Outcome<S>, Origin)>,
     /// Whether a proposal was forgotten: then nothing is proved.
     pub(super) has_gaps: bool,
-}
-
-/// An open ticket.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(super) struct Open<S, T> {
-    pub(super) solution: T,
-    /// Empty where the problem does not encode it.
-    pub(super) position: Vec<S>,
-    pub(super) of: Of,
-}
-
-/// Whose a candidate is.
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
-pub(super) enum Of {
-    /// A lane's, at this place of this batch.
-    Lane {
-        lane: usize,
-        batch: u64,
-        place: usize,
-    },
-    Probe,
-    /// A hit of the slice before.
-    Verified,
-    /// A point that the user has given.
-    Start,
-}
-
-/// An engine and its batch.
-pub(super) struct EagerLane<S> {
-    pub(super) lane: Lane<S>,
-    pub(super) batch: Batch<S>,
-    pub(super) books: Books<S>,
-}
-
-/// How far a batch is.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(super) struct Books<S> {
-    /// Which one it is.
-    number: u64,
-    outcomes: Vec<Outcome<S>>,
-    /// The next point to be given out.
-    next: usize,
-    /// How many are out.
-    out: usize,
-    /// Whether the engine was told.
-    told: bool,
-    /// What the engine said last, and how often it had nothing to propose.
-    last: Ask,
-    idle: usize,
-}
-
-impl<S: Real> EagerLane<S> {
-    fn new(lane: Lane<S>, dimension: usize) -> Self {
-        Self {
-            lane,
-            batch: Batch::new(dimension),
-            books: Books {
-                number: 0,
-                outcomes: Vec::new(),
-                next: 0,
-                out: 0,
-                told: true,
-                last: Ask::More,
-                idle: 0,
-            },
-        }
-    }
-
-    pub(super) fn restored(lane: Lane<S>, batch: Batch<S>, books: Books<S>) -> Option<Self> {
-        let fits =
-            books.outcomes.len() == batch.len() && books.next <= batch.len() && books.out <= books.next;
-        fits.then_some(Self { lane, batch, books })
-    }
-
-    fn has_points(&self) -> bool {
-        self.books.next < self.batch.len()
-    }
-
-    fn has_ended(&self) -> bool {
-        !self.has_points() && self.books.last != Ask::More
-    }
-
-    /// Whether every point of the space has been given out.
-    fn has_covered(&self) -> bool {
-        !self.has_points() && self.books.last == Ask::Covered
-    }
-
-    /// Whether it can be asked for the next batch.
-    fn is_ready(&self) -> bool {
-        self.books.told && !self.has_points() && self.books.last == Ask::More
-    }
-
-    /// Whether the batch can be told without the answers that are awaited.
-    fn can_be_closed(&self) -> bool {
-        let (out, all) = (self.books.out, self.batch.len());
-        let enough = match self.lane.engine.answers() {
-            Answers::ByBatch => 2 * out <= all,
-            Answers::Alone | Answers::AnyOrder => true,
-        };
-        !self.books.told && !self.has_points() && self.books.last == Ask::More && enough
-    }
-}
-
-impl<S: Real, T> Open<S, T> {
-    /// Whether it fits these lanes, in a space of so many axes.
-    pub(super) fn fits(&self, lanes: &[EagerLane<S>], dimension: usize) -> bool {
-        let placed = match self.of {
-            Of::Lane { lane, batch, place } => lanes.get(lane).is_some_and(|lane| {
-                batch < lane.books.number || (batch == lane.books.number && place < lane.books.next)
-            }),
-            Of::Probe | Of::Verified | Of::Start => true,
-        };
-        placed && (self.position.is_empty() || self.position.len() == dimension)
-    }
-}
-
-/// A batch of one point.
-pub(super) fn one<S: Real>(position: &[S]) -> Batch<S> {
-    let mut batch = Batch::new(position.len());
-    batch.push(position);
-    batch
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
@@ -235,7 +115,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 self.route(of, &position, Outcome::NotEvaluated, problem, &search.previous);
             } else {
                 if let Of::Lane { lane, .. } = of {
-                    self.lanes[lane].books.out += 1;
+                    self.lanes[lane].progress.out += 1;
                 }
                 self.probes_out += usize::from(matches!(of, Of::Probe));
                 let open = Open {
@@ -335,12 +215,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 return None;
             }
             if let Some(lane) = self.lanes.iter().position(EagerLane::has_points) {
-                let EagerLane { batch, books, .. } = &mut self.lanes[lane];
-                let place = books.next;
-                books.next += 1;
+                let EagerLane { batch, progress, .. } = &mut self.lanes[lane];
+                let place = progress.next;
+                progress.next += 1;
                 let of = Of::Lane {
                     lane,
-                    batch: books.number,
+                    batch: progress.number,
                     place,
                 };
                 return Some((batch.point(place).to_vec(), of));
@@ -354,7 +234,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 self.tell_batch(lane, problem, previous);
             } else if self.lanes.len() < MOST_LANES
                 && self.lanes.iter().all(|lane| {
-                    lane.books.last == Ask::More && lane.lane.engine.answers() == Answers::ByBatch
+                    lane.progress.last == Ask::More && lane.lane.engine.answers() == Answers::ByBatch
                 })
                 && let Ok(engine) = search.engine.build()
             {
@@ -371,7 +251,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
-        let EagerLane { lane, batch, books } = &mut self.lanes[lane];
+        let EagerLane {
+            lane,
+            batch,
+            progress,
+        } = &mut self.lanes[lane];
         let slice = &mut self.slice;
         batch.clear();
         let view = View {
@@ -381,24 +265,24 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             calls: &slice.calls,
             scratches: &slice.scratches,
         };
-        books.last = lane.engine.ask(&view, &mut lane.rng, batch);
+        progress.last = lane.engine.ask(&view, &mut lane.rng, batch);
         let bounds = slice.calls.bounds.get();
         let works = bounds > slice.ledger.counts.bound_calls;
         slice.ledger.count_bounds(bounds);
-        books.number += 1;
-        books.next = 0;
-        books.out = 0;
-        books.outcomes.clear();
-        books.outcomes.resize(batch.len(), Outcome::NotEvaluated);
-        books.told = batch.is_empty();
+        progress.number += 1;
+        progress.next = 0;
+        progress.out = 0;
+        progress.outcomes.clear();
+        progress.outcomes.resize(batch.len(), Outcome::NotEvaluated);
+        progress.told = batch.is_empty();
         // An engine that works on bounds has not come to its end.
-        books.idle = if batch.is_empty() && !works {
-            books.idle + 1
+        progress.idle = if batch.is_empty() && !works {
+            progress.idle + 1
         } else {
             0
         };
-        if books.idle >= EMPTY_ASKS && books.last == Ask::More {
-            books.last = Ask::Exhausted;
+        if progress.idle >= EMPTY_ASKS && progress.last == Ask::More {
+            progress.last = Ask::Exhausted;
         }
     }
 
@@ -407,11 +291,15 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
-        let EagerLane { lane, batch, books } = &mut self.lanes[lane];
-        books.told = true;
+        let EagerLane {
+            lane,
+            batch,
+            progress,
+        } = &mut self.lanes[lane];
+        progress.told = true;
         if lane.engine.answers() != Answers::AnyOrder {
             let view = self.slice.view(problem, previous);
-            lane.engine.tell(&view, batch, &books.outcomes, Origin::Engine);
+            lane.engine.tell(&view, batch, &progress.outcomes, Origin::Engine);
         }
     }
 
@@ -425,16 +313,16 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 let view = self.slice.view(problem, previous);
                 let EagerLane {
                     lane: Lane { engine, .. },
-                    books,
+                    progress,
                     batch: points,
                 } = &mut self.lanes[lane];
                 let any_order = engine.answers() == Answers::AnyOrder;
                 if any_order {
                     engine.tell(&view, &one(position), &[outcome], Origin::Engine);
                 }
-                if batch == books.number && !books.told {
-                    books.outcomes[place] = outcome;
-                    if books.next == points.len() && books.out == 0 {
+                if batch == progress.number && !progress.told {
+                    progress.outcomes[place] = outcome;
+                    if progress.next == points.len() && progress.out == 0 {
                         self.tell_batch(lane, problem, previous);
                     }
                 } else if !any_order && outcome != Outcome::NotEvaluated {
@@ -493,8 +381,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         match of {
             Of::Probe => self.probes_out -= 1,
             Of::Lane { lane, batch, .. } => {
-                let books = &mut self.lanes[lane].books;
-                books.out -= usize::from(batch == books.number);
+                let progress = &mut self.lanes[lane].progress;
+                progress.out -= usize::from(batch == progress.number);
             }
             Of::Verified | Of::Start => {}
         }
@@ -533,9 +421,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     pub(super) fn fits(&self, dimension: usize) -> bool {
         let of_lane = |number: usize, lane: &EagerLane<S>| {
             let out = self.open.values().filter(|open| {
-                matches!(open.of, Of::Lane { lane: of, batch, .. } if of == number && batch == lane.books.number)
+                matches!(open.of, Of::Lane { lane: of, batch, .. } if of == number && batch == lane.progress.number)
             });
-            out.count() == lane.books.out
+            out.count() == lane.progress.out
         };
         let probes = self.open.values().filter(|open| matches!(open.of, Of::Probe));
         !self.lanes.is_empty()

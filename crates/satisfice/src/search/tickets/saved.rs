@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::eager::{EagerLane, Open};
+use super::lane::{EagerLane, Open};
 use super::ordered::{Ordered, Out};
 use super::{Checkpoint, Eager, Inner, Order, TicketCounts, TicketLog, Tickets, ValueBits, position_of};
 use crate::batch::Batch;
@@ -156,7 +156,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         let mut state = State::default();
         for lane in &self.lanes {
             lane.batch.positions().to_vec().save(&mut state);
-            lane.books.save(&mut state);
+            lane.progress.save(&mut state);
         }
         for open in self.open.values() {
             open.position.save(&mut state);
