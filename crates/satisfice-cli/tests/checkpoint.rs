@@ -59,7 +59,12 @@ fn interrupted_and_resumed(more: &str) {
         folder.path(),
         "run falsification --resume run.json --threads 2 --json rest.json",
     );
-    assert_eq!((done.code, done.stderr.as_str()), (0, ""));
+    // That two threads had little to share is all there may be to say.
+    assert!(
+        done.code == 0 && (done.stderr.is_empty() || done.stderr.starts_with("note: threads shared")),
+        "{}",
+        done.stderr
+    );
     let whole = satisfice_in(
         folder.path(),
         &format!("{LONG}{more} --json whole.json --checkpoint end.json"),

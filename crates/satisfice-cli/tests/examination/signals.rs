@@ -46,6 +46,9 @@ fn interrupted(name: &str, signals: &[&str]) {
             "teapots",
             "--set",
             "samples=500",
+            // The default would enumerate all pairs, and be done.
+            "--engine",
+            "latest-hit-qpso",
             "--time",
             "1h",
             "--json",
