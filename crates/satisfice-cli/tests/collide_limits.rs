@@ -225,3 +225,35 @@ fn the_summary_speaks_of_pairs_and_distances() {
         assert!(!done.stdout.contains(part), "{part}: {}", done.stdout);
     }
 }
+
+#[test]
+fn the_closest_pairs_need_no_threshold() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |name: &str, x: f64| {
+        let ball = generate::icosphere(1.0, 4).unwrap();
+        let ball = Placement::from_translation([x, 0.0, 0.0])
+            .unwrap()
+            .place(&ball)
+            .unwrap();
+        io::save_obj(&ball, folder.path().join(name)).unwrap();
+    };
+    save("a.obj", 0.0);
+    save("b.obj", 5.3);
+    let call = "collide a.obj b.obj --pairs triangle-triangle --closest 3";
+    let report = json_of(folder.path(), call);
+    assert_eq!((&report["hits"], &report["threshold"]), (&3.into(), &Value::Null));
+    let distance = report["pairs"][0]["distance"].as_f64().unwrap();
+    assert!((distance - 3.3).abs() < 0.01, "{distance}");
+    let limited = json_of(folder.path(), &format!("{call} --threshold 10"));
+    assert_eq!(limited["pairs"], report["pairs"]);
+    fs::write(folder.path().join("report.json"), report.to_string()).unwrap();
+    let verified = satisfice_in(folder.path(), "verify report.json");
+    assert_eq!(verified.code, 0, "{}", verified.stdout);
+    let told = satisfice_in(folder.path(), call);
+    assert!(
+        told.stdout
+            .starts_with("the closest triangle-triangle pairs by exact"),
+        "{}",
+        told.stdout
+    );
+}

@@ -22,6 +22,8 @@ Examples:
       As many pairs as a search engine finds in 100 ms, and what share of all that is.
   satisfice collide *.obj --threshold 0.1 --pairs triangle-triangle --touching
       Only which bodies touch, with one pair of triangles that shows it for each pair of bodies.
+  satisfice collide a.obj b.obj --closest 1 --pairs triangle-triangle --witnesses
+      How far apart two bodies are, and where.
   satisfice collide factory.glb --threshold 0.01 --pairs triangle-triangle --touching
       Which nodes of a scene touch, by their names.
   satisfice collide --from cloth92.ply --to cloth93.ply --self --threshold 0 --out impacts.csv
@@ -68,8 +70,9 @@ pub(crate) struct CollideArguments {
 
     /// A pair is found if its distance is below this, in the unit of the meshes. With --from, below it at some time of the step;
     /// 0 then asks for pairs that touch.
-    #[arg(long, value_name = "D", value_parser = quantity::not_negative, allow_hyphen_values = true)]
-    pub(crate) threshold: f64,
+    /// --closest needs none.
+    #[arg(long, value_name = "D", required_unless_present = "closest", value_parser = quantity::not_negative, allow_hyphen_values = true)]
+    threshold: Option<f64>,
 
     /// Which features make pairs [default: vertex-vertex; with --from all in which the bodies first meet, which for surfaces are
     /// vertex-triangle and edge-edge].
@@ -131,6 +134,11 @@ pub(crate) struct CollideArguments {
 }
 
 impl CollideArguments {
+    /// The threshold; infinite without one.
+    pub(super) fn threshold(&self) -> f64 {
+        self.threshold.unwrap_or(f64::INFINITY)
+    }
+
     /// The kind of pairs of bodies at rest.
     pub(super) fn pairs_at_rest(&self) -> PairKind {
         self.pairs.unwrap_or(PairKind::VertexVertex)
@@ -160,7 +168,7 @@ pub(crate) struct FindArguments {
     #[arg(long)]
     first: bool,
 
-    /// Only the K closest pairs, nearest first.
+    /// Only the K closest pairs, nearest first; at any distance, unless --threshold limits it.
     #[arg(long, value_name = "K", value_parser = quantity::count, allow_hyphen_values = true)]
     closest: Option<u64>,
 }

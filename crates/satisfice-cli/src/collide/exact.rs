@@ -168,7 +168,10 @@ impl Exact<'_> {
             }
             Find::Closest(k) => {
                 let wanted = usize::try_from(k).unwrap_or(usize::MAX);
-                let (closest, state) = scene.closest_until(wanted, &stop)?;
+                let (closest, state) = match world.request.threshold.is_finite() {
+                    true => scene.closest_until(wanted, &stop)?,
+                    false => scene.nearest_until(wanted, &stop)?,
+                };
                 let enough = (closest.len() >= wanted).then_some(StopReason::Hits);
                 let (contacts, known) = closest.into_iter().unzip();
                 Answer {

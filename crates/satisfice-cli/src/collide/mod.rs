@@ -64,7 +64,7 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
             weld: arguments.weld,
         },
         kind: arguments.pairs_at_rest().into(),
-        threshold: arguments.threshold,
+        threshold: arguments.threshold(),
         within: arguments.within,
         ring_width: arguments.ring_width,
         find: arguments.find.find(),
@@ -178,7 +178,7 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
 
 /// Refuses options that do not go together, before anything is read.
 fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
-    if arguments.threshold == 0.0 {
+    if arguments.threshold() == 0.0 {
         bail!(
             "--threshold 0 asks for pairs that touch in a motion, between --from and --to: bodies at rest need a distance above 0"
         );

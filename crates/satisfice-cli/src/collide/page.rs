@@ -50,7 +50,9 @@ pub(super) fn html(report: &Report<'_>, asked: Option<Axis>, missed: &[Pair]) ->
         world.request.kind.name()
     ));
     page.up(up(&world.bodies, asked));
-    page.threshold(head.threshold);
+    if head.threshold.is_finite() {
+        page.threshold(head.threshold);
+    }
     page.method(&head.engine);
     for body in &world.bodies {
         let mesh = &body.mesh;

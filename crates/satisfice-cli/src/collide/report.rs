@@ -8,7 +8,7 @@ use satisfice_catalogue::report::{Best, recall};
 use satisfice_catalogue::{Limits, RunReport, Settings};
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::Skips;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::PROBLEM;
 use super::exact::{Exact, Found};
@@ -24,7 +24,8 @@ pub(super) struct Head {
     /// The exact method or the engine.
     pub(super) engine: String,
     pub(super) engine_parameters: Settings,
-    /// In the unit of the meshes.
+    /// In the unit of the meshes; infinite, `null` in JSON, where the closest pairs are asked for at any distance.
+    #[serde(deserialize_with = "or_infinite")]
     pub(super) threshold: f64,
     pub(super) seed: u64,
     pub(super) budget: Limits,
@@ -51,6 +52,10 @@ pub(super) struct Head {
     pub(super) unseen_confidence: Option<f64>,
     pub(super) unseen_method: Option<Estimate>,
     pub(super) version: String,
+}
+
+fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
 impl Head {

@@ -85,6 +85,7 @@ impl Job {
 pub(super) struct Request {
     pub(super) inputs: Inputs,
     pub(super) kind: PairKind,
+    /// Infinite if only the closest pairs count.
     pub(super) threshold: f64,
     pub(super) within: bool,
     pub(super) ring_width: Option<usize>,
@@ -110,7 +111,7 @@ impl World {
             bail!("one body has no partner: name a second mesh, or look for pairs within it by --self");
         }
         let world = Self {
-            threshold: Threshold::new(request.threshold)?,
+            threshold: Threshold::new(request.threshold.min(f64::MAX))?,
             request,
             bodies,
             jobs: OnceLock::new(),
@@ -161,9 +162,10 @@ impl World {
         Self::read(Request {
             inputs,
             kind: text("pairs")?.parse()?,
-            threshold: parameter("threshold")?
-                .as_f64()
-                .context("`threshold` is no number")?,
+            threshold: match parameter("threshold")? {
+                Value::Null => f64::INFINITY,
+                threshold => threshold.as_f64().context("`threshold` is no number")?,
+            },
             within: parameter("self")?
                 .as_bool()
                 .context("`self` is neither true nor false")?,
@@ -291,7 +293,9 @@ impl World {
         if let Some(jobs) = self.jobs.get() {
             return Ok(jobs);
         }
-        let Request { kind, threshold, .. } = self.request;
+        let kind = self.request.kind;
+        // The closest pairs at any distance have an infinite one.
+        let threshold = self.request.threshold.min(f64::MAX);
         let jobs = self.couples().map(|[a, b]| {
             let [first, second] = [a, b].map(|body| &*self.bodies[body].mesh);
             let problem = if a == b {

@@ -36,12 +36,11 @@ impl Lines {
 
 pub(super) fn summary(report: &Report<'_>) -> String {
     let head = &report.head;
-    let mut lines = Lines::new(format!(
-        "{} pairs closer than {} by {}",
-        report.world.request.kind.name(),
-        head.threshold,
-        head.engine
-    ));
+    let kind = report.world.request.kind.name();
+    let mut lines = Lines::new(match head.threshold.is_finite() {
+        true => format!("{kind} pairs closer than {} by {}", head.threshold, head.engine),
+        false => format!("the closest {kind} pairs by {}", head.engine),
+    });
     lines.line("pairs", &count(report));
     lines.line("completeness", &completeness(report));
     if let Some((least, most)) = report.pairs.range() {

@@ -103,7 +103,12 @@ fn pairs(lists: &Lists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
         }
         let distance = world.fitness(&pair)?;
         let is_pair = distance < threshold; // never true of NaN
-        let agrees = |given: f64| (given - distance).abs() <= ROUNDING * threshold;
+        let scale = if threshold.is_finite() {
+            threshold
+        } else {
+            distance
+        };
+        let agrees = |given: f64| (given - distance).abs() <= ROUNDING * scale;
         if !is_pair {
             wrong.push(Mismatch::new(
                 place,

@@ -33,7 +33,7 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
 
     let threshold = world.request.threshold;
     let largest = sizes.iter().fold(0.0_f64, |most, &size| most.max(size));
-    if largest > 0.0 && threshold > largest {
+    if largest > 0.0 && threshold > largest && threshold.is_finite() {
         said.push(format!(
             "the threshold {} is larger than every body (the largest is {} long), so that most pairs will be found: \
              is it in the unit of the meshes?",

@@ -38,7 +38,7 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         from: inputs(&arguments.from),
         to: inputs(&arguments.to),
         pairs: arguments.pairs.map(Into::into),
-        threshold: arguments.threshold,
+        threshold: arguments.threshold(),
         within: arguments.within,
         first: arguments.find.find() == Find::First,
     })?;
