@@ -7,6 +7,7 @@ mod near_misses;
 mod neighbourhoods;
 mod populations;
 mod scan;
+mod source;
 mod sources;
 mod swarms;
 mod translations;

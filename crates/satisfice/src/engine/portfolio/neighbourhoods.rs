@@ -4,6 +4,7 @@ use std::collections::BinaryHeap;
 
 use hashbrown::HashTable;
 
+use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
 use crate::scalar::Real;
 use crate::state::{Reader, Saved, State};
@@ -89,8 +90,25 @@ impl<S: Real> Neighbourhoods<S> {
         (!self.heap.is_empty()).then_some((self.hits, self.trials))
     }
 
+    /// Takes note of the hits of a batch, and of the misses that are near to a hit, by their place in the batch.
+    pub(super) fn expand_all(
+        &mut self,
+        context: &dyn Context<S>,
+        batch: &Batch<S>,
+        outcomes: &[Outcome<S>],
+        is_near: impl Fn(usize) -> bool,
+    ) {
+        for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
+            match *outcome {
+                Outcome::Hit(fitness) => self.expand(context, position, fitness, true),
+                Outcome::Miss(fitness) if is_near(i) => self.expand(context, position, fitness, false),
+                _ => {}
+            }
+        }
+    }
+
     /// Takes note of an evaluated point, whose neighbours become candidates.
-    pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: S, is_hit: bool) {
+    fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: S, is_hit: bool) {
         if self.positions.len() >= MOST_COORDINATES || !is_hit && self.candidates.len() >= MOST {
             return;
         }

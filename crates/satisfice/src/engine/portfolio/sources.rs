@@ -6,6 +6,7 @@ use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
 use super::scan::Scan;
+use super::source::{ARMS, CROSS, MEMBER, Source, TRIAL, Tag, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -25,48 +26,6 @@ const REJECTED: usize = 100;
 const SCANNED: usize = 256;
 /// Share of the evaluations that estimates how complete the result is.
 const PROBES: f64 = 0.02;
-
-/// Where a candidate comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-enum Source {
-    Uniform,
-    Swarm,
-    Climber,
-    /// A hit moved by a step that is known.
-    Step,
-    /// A hit moved by the difference of two hits, on trial.
-    Trial,
-    /// Some coordinates of a hit, the others of another.
-    Cross,
-    /// A member of a population that adapts its covariance.
-    Member,
-    /// A neighbour of a hit, named by the problem.
-    Neighbour,
-    /// A near miss of the slice before.
-    NearMiss,
-}
-
-/// A candidate's source, and which swarm, climber, step or trial of it.
-type Tag = (Source, usize);
-
-/// Number of sources with an arm, and some of these.
-const ARMS: usize = 6;
-const TRIAL: usize = 3;
-const CROSS: usize = 4;
-const MEMBER: usize = 5;
-
-/// The arm of a source; steps, neighbours and near misses keep their own counts.
-fn arm_of(source: Source) -> Option<usize> {
-    match source {
-        Source::Uniform => Some(0),
-        Source::Swarm => Some(1),
-        Source::Climber => Some(2),
-        Source::Trial => Some(TRIAL),
-        Source::Cross => Some(CROSS),
-        Source::Member => Some(MEMBER),
-        Source::Step | Source::Neighbour | Source::NearMiss => None,
-    }
-}
 
 /// The engine of [`Portfolio`].
 #[derive(Debug)]
@@ -437,7 +396,14 @@ impl<S: Real> Engine<S> for Sources<S> {
                 visited.insert(space, position);
             }
         }
-        self.expand(context, batch, outcomes, origin);
+        if self.without != Omitted::Neighbours && context.offers_neighbours() {
+            let tags = &self.tags;
+            self.neighbourhoods
+                .expand_all(context, batch, outcomes, |i| match origin {
+                    Origin::Engine => matches!(tags[i].0, Source::Neighbour | Source::NearMiss),
+                    Origin::WarmStart | Origin::Start | Origin::Exhaustion => true,
+                });
+        }
         if origin == Origin::Start {
             for (position, outcome) in batch.points().zip(outcomes) {
                 if let Outcome::Miss(fitness) = *outcome {
@@ -517,33 +483,5 @@ impl<S: Real> Engine<S> for Sources<S> {
             return Err(Error::State("its neighbourhoods are of another space".to_owned()));
         }
         Ok(())
-    }
-}
-
-impl<S: Real> Sources<S> {
-    /// Enters the neighbours of new hits, of candidates that were neighbours themselves, and of last slice's hits.
-    fn expand(
-        &mut self,
-        context: &dyn Context<S>,
-        batch: &Batch<S>,
-        outcomes: &[Outcome<S>],
-        origin: Origin,
-    ) {
-        if self.without == Omitted::Neighbours || !context.offers_neighbours() {
-            return;
-        }
-        for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
-            let is_near = match origin {
-                Origin::Engine => matches!(self.tags[i].0, Source::Neighbour | Source::NearMiss),
-                Origin::WarmStart | Origin::Start | Origin::Exhaustion => true,
-            };
-            match *outcome {
-                Outcome::Hit(fitness) => self.neighbourhoods.expand(context, position, fitness, true),
-                Outcome::Miss(fitness) if is_near => {
-                    self.neighbourhoods.expand(context, position, fitness, false);
-                }
-                _ => {}
-            }
-        }
     }
 }

@@ -1,0 +1,86 @@
+//! The end of a slice: what it found becomes a report.
+
+use core::time::Duration;
+use std::sync::Arc;
+
+use super::Search;
+use super::running::Running;
+use super::slice::Slice;
+use crate::budget::StopReason;
+use crate::catalogue::Description;
+use crate::problem::SatisficingProblem;
+use crate::report::{Completeness, Report};
+use crate::scalar::Real;
+use crate::unseen::Unseen;
+
+impl<P: SatisficingProblem + ?Sized> Search<P> {
+    /// Name and parameters of the engine.
+    pub(super) fn description(&self) -> Description {
+        Description {
+            name: self.engine.name().to_owned(),
+            parameters: self.engine.parameters(),
+        }
+    }
+
+    /// Ends the slice and writes the report.
+    pub(super) fn report(
+        &mut self,
+        problem: &P,
+        running: Running<P::Scalar, P::Solution>,
+    ) -> Report<P::Solution> {
+        let (mut slice, lanes) = running.into_parts();
+        self.lanes = lanes;
+        let times = slice.ledger.close();
+        self.shared_calls = slice.ledger.shared_calls();
+        let mut report = self.describe(problem, &slice, times);
+        slice.ledger.archive.rest();
+        self.previous = Arc::new(slice.ledger.archive);
+        report.archive = Arc::clone(&self.previous);
+        self.slices += 1;
+        report
+    }
+
+    /// The report of the slice as it is, without its hits; with the time it took and its overshoot.
+    pub(super) fn describe(
+        &self,
+        problem: &P,
+        slice: &Slice<P::Scalar, P::Solution>,
+        (elapsed, overshoot): (Duration, Duration),
+    ) -> Report<P::Solution> {
+        let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
+        let counts = slice.counts();
+        // A hit that only a probe found contradicts an engine that says it has covered everything.
+        let proved = stop_reason == StopReason::Covered && slice.ledger.archive.probe_only() == 0;
+        let unseen = if proved {
+            Some(Unseen::nothing(slice.probes.count()))
+        } else {
+            slice.probes.estimate(problem, &slice.ledger.archive)
+        };
+        Report {
+            problem: problem.description(),
+            engine: self.description(),
+            scalar: P::Scalar::NAME.to_owned(),
+            seed: self.seed,
+            islands: self.islands,
+            slice: self.slices,
+            budget: slice.ledger.budget.clone(),
+            threshold: Some(problem.threshold().f64()).filter(|threshold| threshold.is_finite()),
+            requested_probe_share: self.probes,
+            probe_share: slice.probes.share(),
+            stop_reason,
+            counts,
+            elapsed,
+            overshoot,
+            completeness: if proved {
+                Completeness::Proved
+            } else {
+                Completeness::Unknown
+            },
+            unseen,
+            best: slice.ledger.best.get().cloned(),
+            trace: slice.ledger.trace.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            archive: Arc::default(),
+        }
+    }
+}
