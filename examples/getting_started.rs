@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example getting_started`
 
-use satisfice::{Axis, Budget, SatisficingProblem, Search, Space, engine};
+use satisfice::{Axis, Budget, SatisficingProblem, Search, Space};
 
 /// Two pairs of wheels: `[driving, driving, driven, driven]`, the smaller wheel of each pair first.
 struct GearTrain(Space<f64>);
@@ -28,7 +28,7 @@ impl SatisficingProblem for GearTrain {
 
 fn main() -> Result<(), satisfice::Error> {
     let problem = GearTrain(Space::new([Axis::integer(12, 60); 4])?);
-    let mut search = Search::with(engine::build("portfolio")?).seed(1);
+    let mut search = Search::new().seed(1);
     let report = search.run(&problem, &Budget::evaluations(300_000))?;
 
     println!("{report}\nthe first hits:");

@@ -41,7 +41,7 @@ impl Observer<Located<f64>> for Patience {
 }
 
 fn search<P: SatisficingProblem<Scalar = f64>>() -> Result<Search<P>, satisfice::Error> {
-    Ok(Search::with(engine::build("latest-hit-qpso")?).seed(1))
+    Ok(Search::with(engine::LatestHitQpso::default()).seed(1))
 }
 
 fn main() -> Result<(), satisfice::Error> {

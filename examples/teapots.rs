@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::{Budget, Report, SatisficingProblem, Search, engine};
+use satisfice::{Budget, Report, SatisficingProblem, Search};
 use satisfice_collision::broad::PointGrid;
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::problem::Teapots;
@@ -153,7 +153,7 @@ fn exact(problem: &Teapots) -> Result<BTreeSet<Pair>, Box<dyn Error>> {
 }
 
 fn search(problem: &Teapots, name: &str, seed: u64, budget: &Budget) -> Result<Found, satisfice::Error> {
-    Search::with(engine::build(name)?).seed(seed).run(problem, budget)
+    Search::named(name)?.seed(seed).run(problem, budget)
 }
 
 /// The reports of all seeds, made on all cores. Under budgets of evaluations the number of cores changes no report.

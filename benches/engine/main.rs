@@ -29,7 +29,7 @@ where
     P: SatisficingProblem<Scalar = f64>,
 {
     // Probes are not part of the comparison: no loop has them.
-    let mut search = Search::with(engine::build(name).unwrap()).seed(seed).probes(0.0);
+    let mut search = Search::named(name).unwrap().seed(seed).probes(0.0);
     let report = search
         .run(problem, &Budget::evaluations(evaluations as u64))
         .unwrap();

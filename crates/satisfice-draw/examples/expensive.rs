@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::sync::Mutex;
 
-use satisfice::engine::{self, GaussianProcess};
+use satisfice::engine::GaussianProcess;
 use satisfice::{Budget, Search, SearchRng, Space, from_fn};
 use satisfice_draw::plot::{Colour, Layer, Map, Maps, Marker, Shape, draw_maps};
 use satisfice_problems::{Branin, Hartmann6};
@@ -74,7 +74,7 @@ impl Function {
         })
         .separation(self.separation);
         let last = counted.iter().copied().max().unwrap_or(1);
-        let mut search = Search::with(engine::build(engine)?).seed(seed);
+        let mut search = Search::named(engine)?.seed(seed);
         let report = search.run(&problem, &Budget::evaluations(last))?;
         let hits = |limit: u64| report.hits().filter(|hit| hit.evaluation <= limit).count();
         let hits = counted.iter().map(|&limit| hits(limit)).collect();

@@ -17,7 +17,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use hashbrown::HashMap;
-use satisfice::{Budget, SatisficingProblem, Search, SearchRng, engine};
+use satisfice::{Budget, SatisficingProblem, Search, SearchRng};
 use satisfice_problems::{Cec2013, Score, peak_ratio};
 
 const ACCURACIES: [f64; 2] = [1e-4, 1e-5];
@@ -126,7 +126,7 @@ fn row(
     let (mut submitted, mut last) = (0, 0);
     let runs = seeds.end - seeds.start;
     for seed in seeds.clone() {
-        let mut search = Search::with(engine::build(engine)?).seed(seed);
+        let mut search = Search::named(engine)?.seed(seed);
         let report = search.run(problem, &Budget::evaluations(problem.max_evaluations()))?;
         let points: Vec<_> = report
             .hits()
@@ -162,7 +162,7 @@ fn race(problem: &Cec2013, number: usize, seeds: Range<u64>, engines: &[&str]) -
             // The reader of the clock is the same for all.
             let start = Instant::now();
             let points: Vec<Vec<f64>> = if let Some(engine) = engines.get(entrant) {
-                let mut search = Search::with(engine::build(engine)?).seed(seed).probes(0.0);
+                let mut search = Search::named(engine)?.seed(seed).probes(0.0);
                 let report = search.run(problem, &Budget::time(LIMIT).and_hits(maxima as u64))?;
                 report
                     .hits()

@@ -7,7 +7,7 @@
 use std::error::Error;
 
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::{Budget, SatisficingProblem, Search, SearchRng, Space, engine, from_fn};
+use satisfice::{Budget, SatisficingProblem, Search, SearchRng, Space, from_fn};
 use satisfice_problems::{Arm, Branin, Falsification, Hartmann6, SallenKey, Shell};
 
 /// Share of the space that is a hit of the functions with a name.
@@ -97,7 +97,7 @@ impl Settings {
         seed: u64,
         budget: u64,
     ) -> Result<Vec<u64>, satisfice::Error> {
-        let mut search = Search::with(engine::build(&self.engine)?).seed(seed);
+        let mut search = Search::named(&self.engine)?.seed(seed);
         let report = search.run(problem, &Budget::evaluations(budget))?;
         Ok(report.hits().map(|hit| hit.evaluation).collect())
     }

@@ -4,7 +4,7 @@
 //! evaluations for two unknowns, 100,000 for three, 200,000 for four and five, 500,000 above.
 
 use satisfice::catalogue::Catalogued;
-use satisfice::{Budget, Search, engine};
+use satisfice::{Budget, Search};
 use satisfice_problems::{Himmelblau, System};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -51,7 +51,7 @@ fn row<P: Catalogued<Scalar = f64>>(
     let roots = problem.reference_hits().unwrap_or(0);
     let (mut found, mut complete) = (0, 0);
     for seed in 0..runs {
-        let mut search = Search::with(engine::build(engine)?).seed(seed);
+        let mut search = Search::named(engine)?.seed(seed);
         let hits = search
             .run(problem, &Budget::evaluations(evaluations))?
             .hit_count() as u64;

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::{Budget, Search, engine};
+use satisfice::{Budget, Search};
 use satisfice_problems::{
     Arm, Falsification, Islands, Needles, Queens, Rastrigin, SallenKey, SevenJoints, Shell,
 };
@@ -18,7 +18,7 @@ fn hits<P: Catalogued<Scalar = f64>>(engine: &str, settings: &[(&str, &str)]) ->
     let problem =
         P::from_params(&Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap()).unwrap();
     let count = (0..SEEDS).map(|seed| {
-        let mut search = Search::with(engine::build(engine).unwrap()).seed(seed);
+        let mut search = Search::named(engine).unwrap().seed(seed);
         let report = search.run(&problem, &Budget::evaluations(EVALUATIONS)).unwrap();
         report.hit_count()
     });

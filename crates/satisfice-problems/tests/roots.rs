@@ -104,7 +104,7 @@ fn roots() {
 #[test]
 fn a_swarm_finds_all_four() {
     let himmelblau = problem::<Himmelblau>(&[]);
-    let engine = satisfice::engine::build("latest-hit-qpso").unwrap();
+    let engine = satisfice::engine::LatestHitQpso::default();
     let budget = satisfice::Budget::evaluations(100_000).and_hits(4);
     let report = satisfice::Search::with(engine)
         .seed(1)

@@ -5,10 +5,10 @@
 /// When nothing hits, it shows how far the threshold is from what exists. Its fitness is never above that of any hit.
 ///
 /// ```
-/// use satisfice::{engine, from_fn, Budget, Search, Space};
+/// use satisfice::{from_fn, Budget, Search, Space};
 /// // No point of this space is below the threshold: the least F is 3.
 /// let problem = from_fn(Space::lattice(2, 50)?, 1.0, |x: &[f64]| 3.0 + x[0] + x[1]);
-/// let report = Search::with(engine::build("portfolio")?).run(&problem, &Budget::evaluations(5_000))?;
+/// let report = Search::new().run(&problem, &Budget::evaluations(5_000))?;
 /// assert_eq!(report.hit_count(), 0);
 /// let best = report.best().expect("F is finite everywhere");
 /// assert_eq!((best.fitness, &best.solution.coordinates[..]), (3.0, &[0.0, 0.0][..]));

@@ -46,7 +46,7 @@
 //!
 //! let problem = SmallSums(Space::lattice(2, 100)?);
 //! assert_eq!(satisfice::testing::problem::check(&problem, 1), []);
-//! let report = satisfice::Search::with(satisfice::engine::build("branch-and-bound")?)
+//! let report = satisfice::Search::with(satisfice::engine::BranchAndBound::default())
 //!     .run(&problem, &satisfice::Budget::evaluations(10_000))?;
 //! assert_eq!((report.hit_count(), report.completeness), (15, satisfice::Completeness::Proved));
 //! # Ok::<(), satisfice::Error>(())

@@ -117,7 +117,7 @@ pub struct FnProblem<S, F> {
 /// ```
 /// use satisfice::{engine, from_fn, Budget, Search, Space};
 /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| ((x[0] - 50.0).powi(2) + (x[1] - 20.0).powi(2)).sqrt());
-/// let report = Search::with(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(100_000))?;
+/// let report = Search::with(engine::Random::default()).seed(1).run(&problem, &Budget::evaluations(100_000))?;
 /// assert_eq!(report.hit_count(), 21); // the lattice points of a disc of radius 2.5
 /// # Ok::<(), satisfice::Error>(())
 /// ```

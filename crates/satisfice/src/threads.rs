@@ -177,7 +177,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
             x[0]
         });
-        let mut search = Search::with(engine::build("random").unwrap()).threads(2);
+        let mut search = Search::with(engine::Random::default()).threads(2);
         search.run(&problem, &Budget::evaluations(64)).unwrap();
         let seen = seen.lock().unwrap();
         assert!(seen.len() == 64 && seen.iter().any(|id| *id != seen[0]));

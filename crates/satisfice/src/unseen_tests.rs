@@ -95,7 +95,7 @@ fn run<P: SatisficingProblem<Scalar = f64>>(
     share: f64,
     seed: u64,
 ) -> Report<P::Solution> {
-    Search::with(engine::build(engine).unwrap())
+    Search::named(engine).unwrap()
         .seed(seed)
         .probes(share)
         .run(problem, &Budget::evaluations(budget))
@@ -330,7 +330,7 @@ fn probes_do_not_disturb_the_engine() {
     let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
     let mut compared = 0;
     for entry in engine::all() {
-        if engine::build::<f64>(entry.name).unwrap().is_scheduled() {
+        if engine::ConfiguredEngine::<f64>::named(entry.name).unwrap().is_scheduled() {
             continue; // a schedule follows the whole budget, probes included
         }
         if entry.expensive_proposals {
@@ -360,7 +360,7 @@ fn probes_do_not_disturb_the_engine() {
 #[test]
 fn every_hit_is_announced_and_counted_once() {
     let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
-    let mut search = Search::with(engine::build("descent-flood").unwrap()).probes(0.3);
+    let mut search = Search::with(engine::DescentFlood::default()).probes(0.3);
     let mut announced = Vec::new();
     let mut observer = |hit: crate::Hit<'_, crate::Located<f64>>, count: usize| {
         announced.push((hit.solution.clone(), count));
@@ -394,7 +394,7 @@ fn driven_by_hand_and_on_threads_it_is_the_same() {
     let whole = run(&problem, "latest-hit-qpso", 4_000, 0.1, 3);
     let budget = Budget::evaluations(4_000);
     let search = || {
-        Search::with(engine::build("latest-hit-qpso").unwrap())
+        Search::with(engine::LatestHitQpso::default())
             .seed(3)
             .probes(0.1)
     };
@@ -474,7 +474,7 @@ fn what_is_covered_is_proved_unless_a_probe_belies_it() {
 fn a_share_that_is_none_is_refused() {
     let problem = from_fn(Space::lattice(1, 9).unwrap(), 1.0, |x: &[f64]| x[0]);
     for share in [-0.1, 0.51, f64::NAN, f64::INFINITY] {
-        let result = Search::with(engine::build("random").unwrap())
+        let result = Search::with(engine::Random::default())
             .probes(share)
             .run(&problem, &Budget::evaluations(10));
         assert!(matches!(result, Err(Error::Parameter { .. })), "{share}");

@@ -106,14 +106,14 @@ fn over_islands() {
 #[test]
 fn after_a_checkpoint() {
     let valley = Valley::new(0.5);
-    let mut search = Search::with(engine::build("latest-hit-qpso").unwrap()).seed(2);
+    let mut search = Search::with(engine::LatestHitQpso::default()).seed(2);
     let mut slice = search.start(&valley, &Budget::evaluations(900)).unwrap();
     for _ in 0..10 {
         let fitness: Vec<f64> = slice.ask().unwrap().iter().map(|c| valley.fitness(c)).collect();
         slice.tell(&fitness).unwrap();
     }
     let saved = slice.checkpoint();
-    let mut resumed = Search::resume(saved, engine::build("latest-hit-qpso").unwrap()).unwrap();
+    let mut resumed = Search::resume(saved, engine::LatestHitQpso::default()).unwrap();
     let report = resumed.run_resumed(&valley, RunOptions::new()).unwrap();
     is_true(&report, &valley, "resumed");
 }
@@ -135,7 +135,7 @@ fn observers_see_the_fitness() {
         seen.push((hit.solution.coordinates[0], hit.fitness));
         std::ops::ControlFlow::Continue(())
     };
-    Search::with(engine::build("random").unwrap())
+    Search::with(engine::Random::default())
         .run_with(
             &problem,
             &Budget::evaluations(500),
@@ -173,7 +173,7 @@ impl SatisficingProblem for Whole {
 
 #[test]
 fn a_representative_is_listed_with_its_own_fitness() {
-    let report = Search::with(engine::build("random").unwrap())
+    let report = Search::with(engine::Random::default())
         .run(
             &Whole(Space::lattice(1, 12).unwrap()),
             &Budget::evaluations(2_000),

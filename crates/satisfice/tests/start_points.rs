@@ -133,7 +133,7 @@ fn a_saved_slice_still_has_them() {
         slice.tell(&fitness).unwrap();
     }
     for checkpoint in saved {
-        let mut resumed = Search::<Problem>::resume(checkpoint, engine::build("walk").unwrap()).unwrap();
+        let mut resumed = Search::<Problem>::resume(checkpoint, engine::Walk::default()).unwrap();
         let report = resumed.run_resumed(&*problem, RunOptions::new()).unwrap();
         assert!(
             report

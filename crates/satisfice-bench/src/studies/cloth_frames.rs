@@ -4,7 +4,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use satisfice::{Budget, Cancel, SatisficingProblem, Search, engine};
+use satisfice::{Budget, Cancel, SatisficingProblem, Search};
 use satisfice_cloth::{Response, Settings, Simulation};
 use satisfice_collision::distance::{Point, Threshold};
 use satisfice_collision::{VertexPairs, oracle};
@@ -458,7 +458,7 @@ fn recalls(
     seed: u64,
 ) -> Result<Vec<f64>, Error> {
     let fresh = |frame: u64| -> Result<Search<VertexPairs>, Error> {
-        Ok(Search::with(engine::build(name)?).seed(seed.wrapping_mul(1000).wrapping_add(frame)))
+        Ok(Search::named(name)?.seed(seed.wrapping_mul(1000).wrapping_add(frame)))
     };
     let mut search = fresh(0)?;
     let mut recalls = Vec::new();

@@ -38,7 +38,7 @@ const TOLERANCE: f64 = 1e-6;
 /// step.add_rigid(&sheet, sheet.vertices())?;
 /// let problem = MovingPairs::new(&step, PairKind::EdgeEdge, Separation::TOUCHING)?;
 /// let hits = step.hits(PairKind::EdgeEdge, Separation::TOUCHING)?;
-/// let report = satisfice::Search::with(satisfice::engine::build("branch-and-bound")?)
+/// let report = satisfice::Search::with(satisfice::engine::BranchAndBound::default())
 ///     .run(&problem, &satisfice::Budget::evaluations(1_000_000))?;
 /// assert_eq!(report.hits().len(), hits.pairs.len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

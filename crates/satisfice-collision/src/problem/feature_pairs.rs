@@ -37,7 +37,7 @@ use crate::placement::Placement;
 /// let ball = generate::icosphere(1.0, 2)?;
 /// let other = Placement::from_translation([1.9, 0.0, 0.0])?.place(&ball)?;
 /// let problem = FeaturePairs::between(PairKind::TriangleTriangle, &ball, &other, 0.02)?;
-/// let report = Search::with(engine::build("branch-and-bound")?).run(&problem, &Budget::evaluations(1_000_000))?;
+/// let report = Search::with(engine::BranchAndBound::default()).run(&problem, &Budget::evaluations(1_000_000))?;
 /// assert_eq!(report.hit_count(), problem.exact_pairs().len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -65,7 +65,7 @@ fn the_tree_and_every_pair_decided_agree() {
 #[test]
 fn branch_and_bound_proves_the_exact_count() {
     for problem in scenes(0.12) {
-        let report = Search::with(engine::build("branch-and-bound").unwrap())
+        let report = Search::with(engine::BranchAndBound::default())
             .run(&problem, &Budget::evaluations(10_000_000))
             .unwrap();
         let name = problem.description().name;
@@ -102,7 +102,7 @@ fn branch_and_bound_proves_vertex_pairs() {
         VertexPairs::within(&fold(), 0.12, 1).unwrap(),
         teapots.pairs().clone(),
     ] {
-        let report = Search::with(engine::build("branch-and-bound").unwrap())
+        let report = Search::with(engine::BranchAndBound::default())
             .run(&problem, &Budget::evaluations(10_000_000))
             .unwrap();
         let found: BTreeSet<_> = report.hits().map(|hit| *hit.solution).collect();
@@ -119,7 +119,7 @@ fn branch_and_bound_proves_vertex_pairs() {
 #[test]
 fn engines_find_pairs_of_every_kind() {
     for problem in scenes(0.12) {
-        let report = Search::with(engine::build("descent-flood").unwrap())
+        let report = Search::with(engine::DescentFlood::default())
             .seed(1)
             .run(&problem, &Budget::evaluations(20_000))
             .unwrap();

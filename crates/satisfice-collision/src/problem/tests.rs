@@ -407,7 +407,7 @@ fn teapot_parameters_are_refused_by_name() {
 fn an_engine_finds_teapot_hits_that_are_true() {
     let problem = teapots(&[]).unwrap();
     let truth = problem.pairs().reference_pairs();
-    let mut search = Search::with(engine::build("latest-hit-qpso").unwrap()).seed(1);
+    let mut search = Search::with(engine::LatestHitQpso::default()).seed(1);
     let report = search.run(&problem, &Budget::evaluations(50_000)).unwrap();
     assert!(report.hit_count() > 50, "{}", report.hit_count());
     for hit in report.hits() {

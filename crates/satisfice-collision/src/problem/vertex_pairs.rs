@@ -34,7 +34,7 @@ use crate::order::VertexOrder;
 /// let ball = generate::icosphere(1.0, 2)?;
 /// let other = Placement::from_translation([1.9, 0.0, 0.0])?.place(&ball)?;
 /// let problem = VertexPairs::between(&ball, &other, 0.2)?;
-/// let report = Search::with(engine::build("random")?).seed(1).run(&problem, &Budget::evaluations(200_000))?;
+/// let report = Search::with(engine::Random::default()).seed(1).run(&problem, &Budget::evaluations(200_000))?;
 /// assert!(report.hit_count() <= problem.reference_pairs().len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

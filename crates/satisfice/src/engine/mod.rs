@@ -25,7 +25,7 @@ pub use exact::{BranchAndBound, SplitRule};
 pub use local::{Descent, DescentFlood, Random, RestartedCmaEs, Walk};
 pub use model::{GaussianProcess, Surrogate};
 pub use portfolio::{NeighbourTiming, Omitted, Portfolio};
-pub use registry::{EngineSpec, all, build, default, find};
+pub use registry::{EngineSpec, all, default, find};
 pub use swarm::{
     ALPHA_BOUNDED, BoundedSwarms, LatestHitQpso, NichingPsoDbscan, Pso, Pso1995, PsoInertia, PsoLatestHit,
     Qpso, QpsoDeletion, Spso2011,

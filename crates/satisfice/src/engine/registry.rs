@@ -114,14 +114,6 @@ pub fn find(name: &str) -> Result<&'static EngineSpec, Error> {
         .ok_or_else(|| Error::unknown("engine", name, all().iter().map(|spec| spec.name)))
 }
 
-/// The engine with this name and its default parameters.
-///
-/// # Errors
-/// [`Error::Unknown`] with the nearest name.
-pub fn build<S: Real>(name: &str) -> Result<ConfiguredEngine<S>, Error> {
-    ConfiguredEngine::named(name)
-}
-
 /// The engine of a search that names none: the one that finds most on the problems of
 /// `cargo run --release --example ablation`.
 #[must_use]

@@ -175,7 +175,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// let mut search = Search::named("walk")?.seed(3);
     /// search.run(&problem, &budget)?;
     /// let saved = search.checkpoint();
-    /// let mut resumed = Search::resume(saved, engine::build("walk")?)?;
+    /// let mut resumed = Search::resume(saved, engine::Walk::default())?;
     /// let (one, two) = (search.run(&problem, &budget)?, resumed.run(&problem, &budget)?);
     /// assert!(one.hits().map(|hit| hit.evaluation).eq(two.hits().map(|hit| hit.evaluation)));
     /// # Ok::<(), satisfice::Error>(())

@@ -21,7 +21,7 @@ fn what_does_not_fit_is_refused() {
     let saved = slice.checkpoint();
 
     let with = |settings: &[(&str, &str)]| entry.configure(settings.iter().copied()).unwrap();
-    let walk = engine::build("walk").unwrap();
+    let walk = engine::Walk::default().into();
     assert!(refused(&lattice, saved.clone(), walk).contains("engine is"));
     assert!(refused(&lattice, saved.clone(), with(&[("particles", "31")])).contains("particles=30"));
     let mut other = saved.clone();
@@ -88,7 +88,7 @@ fn between_slices_a_problem_of_another_name_is_refused() {
     search.run(&named, &budget).unwrap();
     let mut saved = search.checkpoint();
     saved.contents.problem.as_mut().unwrap().description.name = "other".to_owned();
-    let mut resumed = Search::resume(saved, engine::build("random").unwrap()).unwrap();
+    let mut resumed = Search::resume(saved, engine::Random::default()).unwrap();
     assert!(
         matches!(resumed.run(&named, &budget), Err(Error::State(why)) if why.contains("problem is other"))
     );

@@ -380,7 +380,7 @@ mod tests {
     fn all_maxima_of_narrow_and_wide_waves_are_found_with_a_few_evaluations() {
         let problem = waves();
         for seed in 0..10 {
-            let mut search = Search::with(engine::build("restarted-cma-es").unwrap()).seed(seed);
+            let mut search = Search::with(engine::RestartedCmaEs::default()).seed(seed);
             let report = search
                 .run(&problem, &Budget::evaluations(40_000).and_hits(25))
                 .unwrap();
