@@ -112,7 +112,7 @@ pub enum Error {
     InBody {
         /// The name of the body.
         body: String,
-        /// What is wrong.
+        /// The reason.
         source: Box<Error>,
     },
     /// What is wrong with a line of a file; lines count from 1.
@@ -120,7 +120,7 @@ pub enum Error {
     AtLine {
         /// Number of the line.
         line: usize,
-        /// What is wrong.
+        /// The reason.
         source: Box<Error>,
     },
     /// What is wrong with a file.
@@ -128,7 +128,7 @@ pub enum Error {
     InFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         source: Box<Error>,
     },
     /// A parameter lies outside what is allowed.

@@ -1,7 +1,4 @@
-//! Mesh collision and self-collision detection: meshes, how they are read, made and moved, exact distances, broad
-//! phases, scenes, and the pairs of vertices, edges and triangles as problems for the search engines of `satisfice`.
-//!
-//! Points are plain `[f64; 3]`. "Size" means the longest extent of the bounding box everywhere.
+#![doc = include_str!("../README.md")]
 
 pub mod broad;
 pub mod continuous;

@@ -85,7 +85,7 @@ fn trees_allocate_nothing() {
     assert_eq!(within, [0; 40]);
 }
 
-/// What a world answers is the caller's: some lists a frame, however long they are.
+/// What a world answers is the caller's: some lists per frame, however long they are.
 #[test]
 fn worlds_allocate_their_answers_only() {
     on_one_thread();
@@ -110,7 +110,7 @@ fn worlds_allocate_their_answers_only() {
             }
             assert!(world.frame().unwrap().contacts.len() > 1000);
         });
-        // now and then a list of neighbours is made anew
+        // now and then a list of neighbours is rebuilt
         let more = counts.iter().filter(|&&count| count > 12).count();
         assert!(more <= 2, "{kind}, rigid: {is_rigid}: {counts:?}");
     }

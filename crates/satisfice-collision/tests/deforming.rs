@@ -1,4 +1,4 @@
-//! Deforming bodies over many frames against brute force over all pairs: nothing that is kept from frame to frame may lose or
+//! Deforming bodies over many frames against brute force over all pairs: data kept from frame to frame must not lose or
 //! invent a contact.
 
 #![allow(clippy::unwrap_used, reason = "a test")]

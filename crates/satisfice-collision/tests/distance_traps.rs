@@ -1,4 +1,4 @@
-//! Known traps with known answers, each of which some library gets wrong.
+//! Traps with known answers, each of which some library gets wrong.
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
 mod stress;

@@ -1,4 +1,4 @@
-//! Worlds at every scale that `f64` holds: the tree and the grid find what deciding every pair finds.
+//! Worlds at every scale of `f64`: the tree and the grid find what a decision of every pair finds.
 #![allow(clippy::unwrap_used)]
 
 use satisfice_collision::broad::Method;

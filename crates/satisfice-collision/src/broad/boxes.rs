@@ -3,7 +3,7 @@
 //! such, in half the memory.
 
 use super::clip::{four, greater, lesser, wide};
-use super::frame::Frame;
+use super::frame::LocalFrame;
 use crate::simd::{Eight, Lanes, Work, dispatch};
 
 /// A box of `f32` coordinates; empty if a lower side lies above its upper one.
@@ -129,7 +129,7 @@ impl BoxTree {
     }
 
     /// The same for a tree of points, in a frame.
-    pub(crate) fn refit_points(&mut self, points: &[[f64; 3]], frame: &Frame, threads: usize) {
+    pub(crate) fn refit_points(&mut self, points: &[[f64; 3]], frame: &LocalFrame, threads: usize) {
         let Some((_, above)) = self.levels.split_first_mut() else {
             return;
         };
@@ -242,11 +242,11 @@ impl BoxTree {
 }
 
 /// What bounds a group of eight.
-trait Bounds: Sync {
+trait Bounded: Sync {
     fn bounds(&self) -> Box32;
 }
 
-impl Bounds for Group {
+impl Bounded for Group {
     #[inline(always)]
     fn bounds(&self) -> Box32 {
         Box32 {
@@ -256,7 +256,7 @@ impl Bounds for Group {
     }
 }
 
-impl Bounds for [Eight; 3] {
+impl Bounded for [Eight; 3] {
     #[inline(always)]
     fn bounds(&self) -> Box32 {
         Box32 {
@@ -293,7 +293,7 @@ fn bound<'g>(mut below: &'g [Group], above: &'g mut [Vec<Group>], threads: usize
     }
 }
 
-fn fill(below: &[impl Bounds], level: &mut [Group], threads: usize) {
+fn fill(below: &[impl Bounded], level: &mut [Group], threads: usize) {
     use rayon::prelude::*;
     if threads < 2 || level.len() < 4096 {
         let groups = level.iter_mut().zip(below.chunks(8));
@@ -304,7 +304,7 @@ fn fill(below: &[impl Bounds], level: &mut [Group], threads: usize) {
     }
 }
 
-fn set_all(group: &mut Group, children: &[impl Bounds]) {
+fn set_all(group: &mut Group, children: &[impl Bounded]) {
     for (lane, child) in children.iter().enumerate() {
         group.set(lane, &child.bounds());
     }
@@ -313,7 +313,7 @@ fn set_all(group: &mut Group, children: &[impl Bounds]) {
 /// Points of a body, put into groups of eight.
 struct PlacePoints<'a> {
     points: &'a [[f64; 3]],
-    frame: &'a Frame,
+    frame: &'a LocalFrame,
     order: &'a [u32],
     groups: &'a mut [[Eight; 3]],
 }

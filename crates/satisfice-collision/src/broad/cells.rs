@@ -156,7 +156,7 @@ fn crowd(parts: &[Part], n: usize, cells: &Cells, sample: &mut Vec<usize>) -> f3
 pub(crate) struct Sorted {
     pub(crate) c: [Vec<f32>; 3],
     pub(crate) id: Vec<u32>,
-    /// One entry a cell and one for the end.
+    /// One entry per cell and one for the end.
     pub(crate) start: Vec<u32>,
     /// The cell of each point in its old order, so that it is computed once.
     cell_of: Vec<u32>,
@@ -182,7 +182,7 @@ impl Sorted {
         self.start[total] = n as u32;
         if n <= ONE_PASS || cells.count[2] == 1 {
             let [x, y, z] = &mut self.c;
-            let mut group = Group {
+            let mut group = CellGroup {
                 x,
                 y,
                 z,
@@ -257,7 +257,7 @@ impl Sorted {
                     points_before(layer + 1) - slab.base,
                 );
                 let cell = (layer - slab.layers.start) * cells.layer();
-                let mut group = Group {
+                let mut group = CellGroup {
                     x: &mut slab.x[from..to],
                     y: &mut slab.y[from..to],
                     z: &mut slab.z[from..to],
@@ -332,7 +332,7 @@ struct Slab<'a> {
 }
 
 /// The slices of the sorted arrays that some consecutive cells own.
-struct Group<'a> {
+struct CellGroup<'a> {
     x: &'a mut [f32],
     y: &'a mut [f32],
     z: &'a mut [f32],
@@ -347,7 +347,7 @@ struct Group<'a> {
     first: usize,
 }
 
-impl Group<'_> {
+impl CellGroup<'_> {
     fn sort<'p, I>(&mut self, segments: I, cells: &Cells)
     where
         I: DoubleEndedIterator<Item = &'p [Placed]> + Clone,

@@ -1,6 +1,6 @@
 //! The part of a body that may be near the other: bounding boxes of blocks of points, and the points inside a region brought into a frame.
 
-use super::frame::Frame;
+use super::frame::LocalFrame;
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Aabb, Error};
 
@@ -25,7 +25,7 @@ impl BlockBounds {
         self.boxes.resize(points.len().div_ceil(RUN), EMPTY);
         let tasks = threads.min(points.len() / 50_000 + 1);
         let finite = if tasks < 2 {
-            dispatch(Measure {
+            dispatch(MeasureBlocks {
                 points,
                 boxes: &mut self.boxes,
             })
@@ -35,7 +35,7 @@ impl BlockBounds {
             self.boxes
                 .par_chunks_mut(runs)
                 .zip(points.par_chunks(runs * RUN))
-                .map(|(boxes, points)| dispatch(Measure { points, boxes }))
+                .map(|(boxes, points)| dispatch(MeasureBlocks { points, boxes }))
                 .reduce(|| true, |a, b| a & b)
         };
         if !finite {
@@ -114,12 +114,12 @@ pub(crate) fn inflate(bounds: &Aabb, delta: f64) -> Aabb {
     }
 }
 
-struct Measure<'a> {
+struct MeasureBlocks<'a> {
     points: &'a [[f64; 3]],
     boxes: &'a mut [Aabb],
 }
 
-impl Work for Measure<'_> {
+impl Work for MeasureBlocks<'_> {
     type Output = bool;
 
     #[inline(always)]
@@ -216,7 +216,7 @@ pub(crate) struct Clip<'a> {
     /// Every run that reaches into the region.
     pub(crate) inside: &'a [u32],
     pub(crate) region: &'a Aabb,
-    pub(crate) frame: &'a Frame,
+    pub(crate) frame: &'a LocalFrame,
 }
 
 impl Clip<'_> {

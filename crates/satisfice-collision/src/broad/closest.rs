@@ -169,7 +169,7 @@ pub(crate) fn find_closest<T: Ord + Copy>(
         let mut first = Vec::new();
         trees.start(&mut first);
         let open = first.into_iter().map(|visit| Open { gap: 0, visit });
-        dispatch(Search {
+        dispatch(ClosestSearch {
             query,
             trees,
             flip,
@@ -296,7 +296,7 @@ impl Gaps {
     }
 }
 
-struct Search<'a, T, K> {
+struct ClosestSearch<'a, T, K> {
     query: &'a PairQuery<'a>,
     trees: Trees<'a>,
     flip: bool,
@@ -307,7 +307,7 @@ struct Search<'a, T, K> {
     watch: &'a Watch<'a>,
 }
 
-impl<T: Ord + Copy, K: Fn(Pair) -> T> Work for Search<'_, T, K> {
+impl<T: Ord + Copy, K: Fn(Pair) -> T> Work for ClosestSearch<'_, T, K> {
     type Output = ();
 
     #[inline(always)]
@@ -336,7 +336,7 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> Work for Search<'_, T, K> {
     }
 }
 
-impl<T: Ord + Copy, K: Fn(Pair) -> T> Search<'_, T, K> {
+impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
     /// Measures the items of two groups, the closest boxes first. Returns the new limit.
     fn measure(&mut self, at: Visit, squares: &[[f64; 8]; 8], mut limit: f64) -> f64 {
         let mut wanted = self.trees.wanted(at);

@@ -3,13 +3,13 @@
 use crate::distance::{Threshold, vertex_vertex};
 
 /// Two bodies (or one twice) and the threshold.
-pub(crate) struct Decide<'a> {
+pub(crate) struct ExactTest<'a> {
     pub(crate) a: &'a [[f64; 3]],
     pub(crate) b: &'a [[f64; 3]],
     pub(crate) threshold: Threshold,
 }
 
-impl Decide<'_> {
+impl ExactTest<'_> {
     /// Whether point `a` of the first and point `b` of the second body are closer than the threshold.
     #[inline(never)]
     #[cold]

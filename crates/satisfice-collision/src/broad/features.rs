@@ -4,20 +4,27 @@ use std::sync::Arc;
 
 use super::boxes::{Box32, BoxTree};
 use super::clip::BlockBounds;
-use super::frame::Frame;
+use super::frame::LocalFrame;
 use super::separating_axis::{self, Directions, Triangles};
 use crate::mesh::{Features, Point, Shape, Topology, Triangle};
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, FeatureKind, Mesh};
 
 /// A box tree over the features of one kind of one body, in the body's own coordinates.
+///
+/// ```
+/// use satisfice_collision::{FeatureKind, broad::FeatureTree, generate};
+/// let tree = FeatureTree::new(&generate::icosphere(1.0, 2)?, FeatureKind::Triangle);
+/// assert_eq!(tree.len(), 320);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct FeatureTree {
     kind: FeatureKind,
     topology: Arc<Topology>,
     vertices: Vec<Point>,
     runs: BlockBounds,
-    pub(crate) frame: Frame,
+    pub(crate) frame: LocalFrame,
     boxes: Vec<Box32>,
     placed: Vec<[f32; 3]>,
     /// Of triangles only.
@@ -96,7 +103,7 @@ impl FeatureTree {
             topology: Arc::clone(mesh.topology()),
             vertices: mesh.vertices().to_vec(),
             runs: BlockBounds::default(),
-            frame: Frame::unit(&bounds),
+            frame: LocalFrame::unit(&bounds),
             boxes: Vec::new(),
             placed: Vec::new(),
             directions: Vec::new(),
@@ -143,7 +150,7 @@ impl FeatureTree {
         }
         self.runs.measure(vertices, 1)?;
         if let Some(bounds) = self.runs.whole() {
-            self.frame = Frame::unit(&bounds);
+            self.frame = LocalFrame::unit(&bounds);
         }
         // first what reads them in the order of the tree, while they are in the cache
         self.measure(vertices);

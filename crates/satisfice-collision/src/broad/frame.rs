@@ -15,7 +15,7 @@ pub(crate) const U: f64 = 1.0 / (1 << 24) as f64;
 
 /// A local frame for points inside one box.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Frame {
+pub(crate) struct LocalFrame {
     pub(crate) origin: [f64; 3],
     /// A power of two.
     pub(crate) scale: f64,
@@ -40,7 +40,7 @@ pub(crate) struct Filter {
     pub(crate) apart: f32,
 }
 
-impl Frame {
+impl LocalFrame {
     /// The frame for points inside `bounds` in which `delta` is between 1 and 2 and the longest axis the last, unless
     /// that would leave the range in which `f32` squares are finite.
     pub(crate) fn for_threshold(bounds: &Aabb, delta: f64) -> Self {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cells::{Cells, Sorted};
 use super::clip::{greater, lesser};
-use super::exact::Decide;
+use super::exact::ExactTest;
 use super::frame::Filter;
 use super::groups::Groups;
 use super::pair::Pair;
@@ -80,7 +80,7 @@ pub(crate) struct Join<'a, const ONE_BODY: bool> {
     pub(crate) b: &'a Sorted,
     pub(crate) cells: &'a Cells,
     pub(crate) filter: &'a Filter,
-    pub(crate) decide: &'a Decide<'a>,
+    pub(crate) decide: &'a ExactTest<'a>,
     /// Of two bodies the points of `a` are known by rank.
     pub(crate) groups: &'a Groups,
     /// Number of this task.

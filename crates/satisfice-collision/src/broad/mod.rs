@@ -38,7 +38,7 @@ pub use points::{PointGrid, PointWork};
 pub(crate) use ray::{FirstHit, Slabs};
 pub(crate) use traverse::Visit;
 pub use trees::{TreeJoin, TreeWork};
-pub(crate) use watch::Watch;
+pub(crate) use watch::{Stop, Watch};
 
 /// How pairs are enumerated. No method changes an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

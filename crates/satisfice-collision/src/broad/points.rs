@@ -2,8 +2,8 @@
 
 use super::cells::{Cells, Fit, Sorted};
 use super::clip::{BlockBounds, Clip, Part, union};
-use super::exact::Decide;
-use super::frame::{Filter, Frame};
+use super::exact::ExactTest;
+use super::frame::{Filter, LocalFrame};
 use super::groups::Groups;
 use super::join::{DenseCell, Join, Scratch};
 use super::occupancy::OccupancyCull;
@@ -49,6 +49,15 @@ pub struct PointWork {
 
 /// Finds all pairs of points within a threshold by a uniform grid that is clipped to the overlap of the two bodies.
 /// Keeps its memory from call to call.
+///
+/// ```
+/// use satisfice_collision::broad::{Pair, PointGrid};
+/// use satisfice_collision::distance::Threshold;
+/// let (a, b) = ([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]], [[0.5, 0.0, 0.0], [9.0, 0.0, 0.0]]);
+/// let mut grid = PointGrid::new();
+/// assert_eq!(grid.between(&a, &b, Threshold::new(1.0)?)?, [Pair { a: 0, b: 0 }]);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct PointGrid {
     threads: usize,
@@ -205,7 +214,7 @@ impl PointGrid {
                 }
             },
         );
-        let decide = Decide { a, b, threshold };
+        let decide = ExactTest { a, b, threshold };
         let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, depth < DEEPEST, watch);
         for task in 0..tasks {
             for dense in std::mem::take(&mut self.tasks[task].dense_cells) {
@@ -234,7 +243,7 @@ impl PointGrid {
         a: &[[f64; 3]],
         b: &[[f64; 3]],
         threshold: Threshold,
-    ) -> Option<Frame> {
+    ) -> Option<LocalFrame> {
         let Self {
             runs: [runs_a, runs_b],
             overlap,
@@ -245,7 +254,7 @@ impl PointGrid {
         } = self;
         if ONE_BODY {
             let region = &runs_a.whole()?;
-            let frame = &Frame::for_threshold(region, threshold.get());
+            let frame = &LocalFrame::for_threshold(region, threshold.get());
             let [inside, _] = &mut overlap.runs;
             runs_a.inside(region, inside);
             Clip {
@@ -260,7 +269,7 @@ impl PointGrid {
         }
         let regions = overlap.find(runs_a, runs_b, threshold.get())?;
         let [inside_a, inside_b] = &overlap.runs;
-        let frame = &Frame::for_threshold(&union(&regions[0], &regions[1]), threshold.get());
+        let frame = &LocalFrame::for_threshold(&union(&regions[0], &regions[1]), threshold.get());
         let clip = |points, runs, inside, region, parts: &mut Vec<Part>| {
             Clip {
                 points,
@@ -285,7 +294,7 @@ impl PointGrid {
         &mut self,
         cells: &Cells,
         filter: &Filter,
-        decide: &Decide<'_>,
+        decide: &ExactTest<'_>,
         split: bool,
         watch: &Watch<'_>,
     ) -> usize {
@@ -334,7 +343,7 @@ impl PointGrid {
     /// Looks at a crowded cell in a frame of its own.
     fn split_dense_cell<const ONE_BODY: bool>(
         &mut self,
-        decide: &Decide<'_>,
+        decide: &ExactTest<'_>,
         task: usize,
         DenseCell { a: own, b: others }: &DenseCell,
         watch: &Watch<'_>,

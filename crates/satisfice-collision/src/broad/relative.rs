@@ -8,7 +8,7 @@
 //! matrix is wrong by no more. h is below 2 unless the body is larger than any power of two can bring there.
 
 use super::boxes::Group;
-use super::frame::{Filter, Frame, U, power_of_two};
+use super::frame::{Filter, LocalFrame, U, power_of_two};
 use super::separating_axis::Directions;
 use crate::Placement;
 use crate::simd::Eight;
@@ -35,7 +35,7 @@ pub(crate) struct Composition {
 
 impl Composition {
     /// From the frame `a` of a body at `pose_a` into the frame `b` of one at `pose_b`. Wants `b.scale <= a.scale`.
-    pub(crate) fn new(a: &Frame, pose_a: &Placement, b: &Frame, pose_b: &Placement) -> Self {
+    pub(crate) fn new(a: &LocalFrame, pose_a: &Placement, b: &LocalFrame, pose_b: &Placement) -> Self {
         let (ra, rb) = (pose_a.rotation(), pose_b.rotation());
         let (ta, tb) = (pose_a.translation(), pose_b.translation());
         let ratio = b.scale / a.scale;
@@ -177,7 +177,7 @@ impl Relative {
         })
     }
 
-    /// Eight points, one a lane; `room` is for the answer, where it differs from the question.
+    /// Eight points, one per lane; `room` is for the answer, where it differs from the question.
     #[inline(always)]
     pub(crate) fn points<'r>(&self, c: &'r [Eight; 3], room: &'r mut [Eight; 3]) -> &'r [Eight; 3] {
         if self.same {

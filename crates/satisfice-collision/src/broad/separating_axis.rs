@@ -1,4 +1,4 @@
-//! Two triangles far apart, by eight candidates for a separating axis, one a lane.
+//! Two triangles far apart, by eight candidates for a separating axis, one per lane.
 //!
 //! For any v with |v| <= 1 + 1e-5, `(min v.a - max v.b) / |v|` is a lower bound of the distance, however v was found. Each
 //! triangle contributes its normal and the normals of its sides inside its plane. Rounding: coordinates wrong by e, dot

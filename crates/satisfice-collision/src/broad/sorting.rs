@@ -22,12 +22,12 @@ pub(crate) struct Sorter {
     dealt: Vec<Dealt>,
     /// Where each bucket ends.
     ends: Vec<usize>,
-    scratch: Scratch,
+    scratch: SortScratch,
 }
 
 /// What sorting a bucket needs room for: pairs, or short keys twice.
 #[derive(Debug, Default)]
-struct Scratch {
+struct SortScratch {
     pairs: Vec<Pair>,
     keys: [Vec<u32>; 2],
 }
@@ -83,7 +83,7 @@ impl Sorter {
             .extend((0..keys.buckets()).map(|at| dealt.iter().map(|dealt| dealt.ends[at]).sum::<usize>()));
         let buckets: Vec<_> = buckets(&self.ends, out).collect();
         buckets.into_par_iter().enumerate().with_min_len(8).for_each_init(
-            Scratch::default,
+            SortScratch::default,
             |scratch, (at, bucket)| {
                 let mut rest = &mut *bucket;
                 for dealt in &*dealt {
@@ -210,7 +210,7 @@ fn starts(counts: &mut [usize]) {
 }
 
 /// Sorts pairs in place.
-fn sort(pairs: &mut [Pair], scratch: &mut Scratch) {
+fn sort(pairs: &mut [Pair], scratch: &mut SortScratch) {
     let n = pairs.len();
     let keys = Keys::of(std::iter::once(&*pairs));
     if n < FEW {

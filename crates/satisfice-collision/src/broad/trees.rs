@@ -25,6 +25,18 @@ pub struct TreeWork {
 }
 
 /// Finds pairs of features of kept trees. Keeps its memory from call to call.
+///
+/// ```
+/// use satisfice_collision::broad::{FeatureTree, TreeJoin};
+/// use satisfice_collision::distance::Threshold;
+/// use satisfice_collision::{FeatureKind, Placement, generate};
+/// let ball = FeatureTree::new(&generate::icosphere(1.0, 2)?, FeatureKind::Triangle);
+/// let beside = Placement::from_translation([2.05, 0.0, 0.0])?;
+/// let mut join = TreeJoin::new();
+/// let near = join.between((&ball, &Placement::IDENTITY), (&ball, &beside), Threshold::new(0.1)?, None)?;
+/// assert!(!near.is_empty());
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct TreeJoin {
     threads: usize,

@@ -1,7 +1,7 @@
 //! The first impact of a step, at any time: best first, between a rising lower and a falling upper bound.
 //!
 //! Pairs of groups of boxes wait in the order of the first time at which their boxes meet, a lower bound of the times of their
-//! impacts. A pair of features is looked at once, which proves it free up to some time, and waits for that time. The first
+//! impacts. A pair of features is examined once, which proves it free up to some time, and waits for that time. The first
 //! impact found so far is an upper bound; a pair whose turn comes is asked about the time before it only. When the least lower
 //! bound is not below the upper one, the answer is proved. So that there is an upper bound early, a pair that is proved free for half as long as
 //! all before it is asked about at once.
@@ -12,7 +12,7 @@ use std::collections::BinaryHeap;
 use super::Separation;
 use super::advance::Goal;
 use super::query::{Impact, free_until, within};
-use super::step::{List, MovingContact, Step};
+use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MIXED, Meetings, MovingBox, MovingTree};
 use crate::Error;
 use crate::distance::PairKind;
@@ -46,13 +46,13 @@ struct Waiting {
     /// When their boxes first meet.
     time: f64,
     kind: u8,
-    a: Node,
-    b: Node,
+    a: GroupOrFeature,
+    b: GroupOrFeature,
 }
 
 /// A group of boxes, or a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Node {
+struct GroupOrFeature {
     level: u8,
     group: u32,
 }
@@ -201,7 +201,7 @@ impl Step {
 impl<'s> Descent<'s> {
     fn start(&mut self, number: u8) -> Result<(), Error> {
         let [a, b] = self.trees(number)?;
-        let root = |tree: &MovingTree| Node {
+        let root = |tree: &MovingTree| GroupOrFeature {
             level: tree.levels.len() as u8 - 1,
             group: 0,
         };
@@ -257,7 +257,7 @@ impl<'s> Descent<'s> {
         Ok(self.best)
     }
 
-    fn wait(&mut self, kind: u8, time: f64, a: Node, b: Node) {
+    fn wait(&mut self, kind: u8, time: f64, a: GroupOrFeature, b: GroupOrFeature) {
         if time < self.best.time[1] && !self.is_one_rigid_body(kind, a, b) {
             self.push(Waiting { time, kind, a, b });
         }
@@ -271,7 +271,7 @@ impl<'s> Descent<'s> {
         }
     }
 
-    fn is_one_rigid_body(&self, kind: u8, a: Node, b: Node) -> bool {
+    fn is_one_rigid_body(&self, kind: u8, a: GroupOrFeature, b: GroupOrFeature) -> bool {
         self.trees(kind).is_ok_and(|[first, second]| {
             let body = first.rigid_body(a.level as usize, a.group);
             body != MIXED && body == second.rigid_body(b.level as usize, b.group)
@@ -301,7 +301,7 @@ impl<'s> Descent<'s> {
     fn open_both(&mut self, of: &Waiting, trees: [&MovingTree; 2], is_one_list: bool) {
         let meetings = self.meetings(of, trees);
         for (lane, mask) in meetings.masks.iter().enumerate() {
-            let child = |node: Node, lane: usize| Node {
+            let child = |node: GroupOrFeature, lane: usize| GroupOrFeature {
                 level: node.level - 1,
                 group: node.group * LANES as u32 + lane as u32,
             };
@@ -323,7 +323,7 @@ impl<'s> Descent<'s> {
     }
 
     /// Looks at the pairs of features of two groups.
-    fn look(&mut self, of: &Waiting, lists: [List; 2], trees: [&MovingTree; 2]) {
+    fn look(&mut self, of: &Waiting, lists: [FeatureList; 2], trees: [&MovingTree; 2]) {
         let is_one_list = lists[0] == lists[1];
         let meetings = self.meetings(of, trees);
         for (lane, mask) in meetings.masks.iter().enumerate() {
@@ -344,7 +344,7 @@ impl<'s> Descent<'s> {
     }
 
     /// Proves a pair free up to some time, and lets it wait for that.
-    fn look_at(&mut self, number: u8, lists: [List; 2], [a, b]: [u32; 2], time: f64) {
+    fn look_at(&mut self, number: u8, lists: [FeatureList; 2], [a, b]: [u32; 2], time: f64) {
         if !self.step.may_pair(lists, a, b) {
             return;
         }
@@ -359,7 +359,7 @@ impl<'s> Descent<'s> {
             self.ask(kind, lists, [a, b], free);
             return;
         }
-        let feature = |number: u32| Node {
+        let feature = |number: u32| GroupOrFeature {
             level: FEATURE,
             group: number,
         };
@@ -372,7 +372,7 @@ impl<'s> Descent<'s> {
     }
 
     /// Asks when a pair first hits, from a time on up to which it is free.
-    fn ask(&mut self, kind: PairKind, lists: [List; 2], [a, b]: [u32; 2], free: f64) {
+    fn ask(&mut self, kind: PairKind, lists: [FeatureList; 2], [a, b]: [u32; 2], free: f64) {
         let goal = Goal {
             from: free,
             until: self.best.time[1],
@@ -406,11 +406,11 @@ fn ones(mut mask: u32) -> impl Iterator<Item = usize> {
 
 /// A group within an opened one, and when its box first meets another box.
 struct Child {
-    node: Node,
+    node: GroupOrFeature,
     time: f64,
 }
 
-fn meeting(tree: &MovingTree, of: Node, other: &MovingBox) -> impl Iterator<Item = Child> {
+fn meeting(tree: &MovingTree, of: GroupOrFeature, other: &MovingBox) -> impl Iterator<Item = Child> {
     let boxes = &tree.levels[of.level as usize][of.group as usize];
     let mut mask = boxes.candidates(other);
     std::iter::from_fn(move || {
@@ -418,7 +418,7 @@ fn meeting(tree: &MovingTree, of: Node, other: &MovingBox) -> impl Iterator<Item
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             if let Some([time, _]) = boxes.lane(lane as usize).meeting(other) {
-                let node = Node {
+                let node = GroupOrFeature {
                     level: of.level - 1,
                     group: of.group * LANES as u32 + lane,
                 };

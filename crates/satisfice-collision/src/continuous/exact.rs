@@ -17,17 +17,17 @@
 use super::divisors::common;
 use super::form::{Form, FormVector, cross, difference, dot};
 use super::hull::{Face, Parts};
-use super::integers::{Differences, Part};
-use super::motion::Motion;
+use super::integers::{Differences, Interval};
+use super::motion::PairMotion;
 use super::system::System;
 
 /// Whether a hit happens during a part of the step: a distance below delta, or 0 for a delta of 0.
 #[cold]
 pub(super) fn is_hit<const M: usize, const N: usize>(
-    motion: &Motion<M, N>,
+    motion: &PairMotion<M, N>,
     delta: f64,
     parts: Parts,
-    during: Part,
+    during: Interval,
 ) -> bool {
     let conditions = Conditions::new(motion, delta, during);
     conditions
@@ -38,10 +38,10 @@ pub(super) fn is_hit<const M: usize, const N: usize>(
 /// The first piece of a part of the step, cut into `2^levels` pieces, that contains the infimum of the hits, by number.
 #[cold]
 pub(super) fn earliest<const M: usize, const N: usize>(
-    motion: &Motion<M, N>,
+    motion: &PairMotion<M, N>,
     delta: f64,
     parts: Parts,
-    during: Part,
+    during: Interval,
     levels: u32,
 ) -> Option<u64> {
     let conditions = Conditions::new(motion, delta, during);
@@ -64,7 +64,7 @@ struct Conditions {
 type Solver<'s> = &'s mut dyn FnMut(&System) -> Option<()>;
 
 impl Conditions {
-    fn new<const M: usize, const N: usize>(motion: &Motion<M, N>, delta: f64, during: Part) -> Self {
+    fn new<const M: usize, const N: usize>(motion: &PairMotion<M, N>, delta: f64, during: Interval) -> Self {
         let differences = Differences::new(motion, delta, during);
         let delta_squared = (!differences.delta.is_zero()).then(|| {
             let squared = &differences.delta * &differences.delta;

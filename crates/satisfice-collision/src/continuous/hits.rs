@@ -6,7 +6,7 @@ use std::sync::mpsc;
 
 use super::advance::Goal;
 use super::query::decide_during;
-use super::step::{List, MovingContact, Step};
+use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MovingBox, MovingTree};
 use super::{Decided, DecidedBy, Separation};
 use crate::Error;
@@ -26,10 +26,10 @@ pub struct Hits {
 }
 
 /// The features of a kind and their trees.
-struct Search<'s> {
+struct PairSearch<'s> {
     step: &'s Step,
     kind: PairKind,
-    lists: [List; 2],
+    lists: [FeatureList; 2],
     trees: [&'s MovingTree; 2],
     separation: Separation,
     margin: f32,
@@ -37,7 +37,7 @@ struct Search<'s> {
 
 /// What a row of groups has found; features by their numbers in the common lists.
 #[derive(Default)]
-struct Found {
+struct FoundPairs {
     pairs: Vec<[u32; 2]>,
     candidates: u64,
     by_integers: u64,
@@ -102,7 +102,7 @@ impl Step {
         visit: &mut dyn FnMut(MovingContact),
     ) -> Result<Hits, Error> {
         let lists = Self::lists(kind)?;
-        let search = Search {
+        let search = PairSearch {
             step: self,
             kind,
             lists,
@@ -114,7 +114,7 @@ impl Step {
     }
 }
 
-impl Search<'_> {
+impl PairSearch<'_> {
     /// Hands out rows to the threads in turn, and what they find to `visit` in the order of the rows.
     fn run(&self, stop: &mut dyn FnMut() -> bool, visit: &mut dyn FnMut(MovingContact)) -> Hits {
         let rows = self.trees[0].order.len().div_ceil(LANES) as u32;
@@ -125,9 +125,9 @@ impl Search<'_> {
         };
         let (sender, receiver) = mpsc::channel();
         let mut hits = Hits::default();
-        let mut early: BTreeMap<u32, Found> = BTreeMap::new();
+        let mut early: BTreeMap<u32, FoundPairs> = BTreeMap::new();
         let mut due = 0;
-        let mut deliver = |part: (u32, Found), hits: &mut Hits| {
+        let mut deliver = |part: (u32, FoundPairs), hits: &mut Hits| {
             early.insert(part.0, part.1);
             while let Some(found) = early.remove(&due) {
                 self.take(hits, &found, visit);
@@ -157,7 +157,7 @@ impl Search<'_> {
         hits
     }
 
-    fn take(&self, hits: &mut Hits, found: &Found, visit: &mut dyn FnMut(MovingContact)) {
+    fn take(&self, hits: &mut Hits, found: &FoundPairs, visit: &mut dyn FnMut(MovingContact)) {
         hits.candidates += found.candidates;
         hits.by_integers += found.by_integers;
         for &[a, b] in &found.pairs {
@@ -183,8 +183,8 @@ impl Search<'_> {
         }
     }
 
-    fn rows(&self, rows: std::ops::Range<u32>) -> Found {
-        let mut found = Found::default();
+    fn rows(&self, rows: std::ops::Range<u32>) -> FoundPairs {
+        let mut found = FoundPairs::default();
         let mut stack = Vec::new();
         for row in rows {
             let around = self.trees[0].box_around(0, row).grown(self.margin);
@@ -205,7 +205,7 @@ impl Search<'_> {
     }
 
     /// The features of a row against those of a group.
-    fn groups(&self, row: u32, lanes: &[MovingBox], group: u32, found: &mut Found) {
+    fn groups(&self, row: u32, lanes: &[MovingBox], group: u32, found: &mut FoundPairs) {
         let boxes = &self.trees[1].levels[0][group as usize];
         for (lane, of) in lanes.iter().enumerate() {
             let mut mask = boxes.candidates(of);
@@ -227,7 +227,7 @@ impl Search<'_> {
     }
 
     /// Decides a pair whose boxes meet during a part of the step.
-    fn pair(&self, a: u32, b: u32, [from, until]: [f64; 2], found: &mut Found) {
+    fn pair(&self, a: u32, b: u32, [from, until]: [f64; 2], found: &mut FoundPairs) {
         let [a, b] = if self.is_one_list() && a > b {
             [b, a]
         } else {

@@ -3,17 +3,18 @@
 use dashu_int::IBig;
 
 use super::form::{Form, FormVector};
-use super::motion::Motion;
+use super::motion::PairMotion;
+use crate::distance::exact::{integer, mantissa};
 
 /// A part of the step, `numerators / 2^shift`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Part {
+pub(super) struct Interval {
     pub(super) from: u64,
     pub(super) to: u64,
     pub(super) shift: u32,
 }
 
-impl Part {
+impl Interval {
     /// The whole step.
     pub(super) const WHOLE: Self = Self {
         from: 0,
@@ -50,7 +51,11 @@ pub(super) struct Differences {
 }
 
 impl Differences {
-    pub(super) fn new<const M: usize, const N: usize>(motion: &Motion<M, N>, delta: f64, part: Part) -> Self {
+    pub(super) fn new<const M: usize, const N: usize>(
+        motion: &PairMotion<M, N>,
+        delta: f64,
+        part: Interval,
+    ) -> Self {
         let unit = motion
             .coordinates()
             .chain([delta])
@@ -74,27 +79,4 @@ impl Differences {
             delta: integer(delta, unit) << part.shift as usize,
         }
     }
-}
-
-/// `x = m * 2^e` with odd `m`, for finite `x` other than 0.
-fn mantissa(x: f64) -> (i64, i32) {
-    let bits = x.to_bits();
-    let field = (bits >> 52 & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (magnitude, exponent) = if field == 0 {
-        (fraction, -1074)
-    } else {
-        (fraction | 1 << 52, field - 1075)
-    };
-    let zeros = magnitude.trailing_zeros();
-    let odd = magnitude >> zeros;
-    (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
-}
-
-fn integer(x: f64, unit: i32) -> IBig {
-    if x == 0.0 {
-        return IBig::ZERO;
-    }
-    let (mantissa, exponent) = mantissa(x);
-    IBig::from(mantissa) << (exponent - unit) as usize
 }

@@ -42,14 +42,14 @@ impl<F: Copy> Moving<F> {
 
 /// The vertices of two moving features.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Motion<const M: usize, const N: usize> {
+pub(super) struct PairMotion<const M: usize, const N: usize> {
     pub(super) from_a: [Point; M],
     pub(super) to_a: [Point; M],
     pub(super) from_b: [Point; N],
     pub(super) to_b: [Point; N],
 }
 
-impl<const M: usize, const N: usize> Motion<M, N> {
+impl<const M: usize, const N: usize> PairMotion<M, N> {
     pub(super) fn coordinates(&self) -> impl Iterator<Item = f64> {
         let points = self
             .from_a

@@ -2,7 +2,7 @@
 
 use super::advance::{Goal, free_until};
 use super::hull::{ParallelogramHull, PointHull, SegmentHull, TriangleHull};
-use super::motion::{Motion, Moving};
+use super::motion::{Moving, PairMotion};
 use super::resolve::{Solved, solve};
 use super::swept::Swept;
 use crate::distance::{
@@ -60,7 +60,7 @@ macro_rules! against {
         impl Solve<$b> for $a {
             #[inline]
             fn solve(a: &Moving<$a>, b: &Moving<$b>, delta: f64, goal: Goal) -> Solved {
-                let motion = Motion {
+                let motion = PairMotion {
                     from_a: $vertices_a(a.from),
                     to_a: $vertices_a(a.to),
                     from_b: $vertices_b(b.from),
@@ -71,7 +71,7 @@ macro_rules! against {
 
             #[inline]
             fn free_until(a: &Moving<$a>, b: &Moving<$b>, delta: f64, from: f64) -> f64 {
-                let motion = Motion {
+                let motion = PairMotion {
                     from_a: $vertices_a(a.from),
                     to_a: $vertices_a(a.to),
                     from_b: $vertices_b(b.from),

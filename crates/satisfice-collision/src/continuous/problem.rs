@@ -5,7 +5,7 @@ use satisfice::{Axis, Bounds, Region, SatisficingProblem, Space};
 
 use super::Separation;
 use super::advance::Goal;
-use super::step::{List, MovingContact, Step};
+use super::step::{FeatureList, MovingContact, Step};
 use super::tree::MovingBox;
 use crate::Error;
 use crate::distance::PairKind;
@@ -47,7 +47,7 @@ const TOLERANCE: f64 = 1e-6;
 pub struct MovingPairs<'s> {
     step: &'s Step,
     kind: PairKind,
-    lists: [List; 2],
+    lists: [FeatureList; 2],
     separation: Separation,
     margin: f32,
     space: Space<f64>,

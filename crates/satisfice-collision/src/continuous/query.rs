@@ -22,7 +22,7 @@ pub struct Impact {
     pub point_a: Point,
     /// The closest point of the second feature.
     pub point_b: Point,
-    /// A vector of length 1 from the second feature towards the first, at about the time of impact; 0 where the features leave it
+    /// A vector of length 1 from the second feature towards the first, at about the time of impact; 0 if the features leave it
     /// open, as where they are at rest on each other.
     pub normal: Point,
     /// Who proved it.

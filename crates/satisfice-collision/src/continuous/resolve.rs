@@ -3,8 +3,8 @@
 use super::advance::{Goal, Reached, advance};
 use super::exact;
 use super::hull::Hull;
-use super::integers::Part;
-use super::motion::Motion;
+use super::integers::Interval;
+use super::motion::PairMotion;
 use super::swept::Swept;
 use crate::distance::DecidedBy;
 
@@ -27,7 +27,7 @@ pub struct Solved {
 /// Whether and when a hull comes near the origin.
 #[inline]
 pub(super) fn solve<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
-    motion: &Motion<M, N>,
+    motion: &PairMotion<M, N>,
     delta: f64,
     goal: Goal,
 ) -> Solved {
@@ -55,17 +55,17 @@ pub(super) fn solve<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
 
 #[cold]
 fn exactly<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
-    motion: &Motion<M, N>,
+    motion: &PairMotion<M, N>,
     delta: f64,
     goal: Goal,
     reached: Reached,
 ) -> Option<[f64; 2]> {
     let end = reached.hit.unwrap_or(goal.until);
-    let part = Part::around(reached.free, end, SHIFT);
+    let part = Interval::around(reached.free, end, SHIFT);
     if goal.tolerance.is_infinite() {
         return exact::is_hit(motion, delta, H::PARTS, part).then(|| [reached.free, part.end()]);
     }
-    if reached.free == 0.0 && exact::is_hit(&motion.at_rest(), delta, H::PARTS, Part::WHOLE) {
+    if reached.free == 0.0 && exact::is_hit(&motion.at_rest(), delta, H::PARTS, Interval::WHOLE) {
         return Some([0.0, 0.0]);
     }
     let length = part.end() - part.start();
@@ -88,12 +88,12 @@ fn exactly<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
 /// lower. The lower one is 0 if there are hits before `2^-LATEST`, as where the distance at the start is delta.
 #[cold]
 fn soon<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
-    motion: &Motion<M, N>,
+    motion: &PairMotion<M, N>,
     delta: f64,
     end: f64,
 ) -> [f64; 2] {
     let is_hit = |shift: u32| {
-        let part = Part {
+        let part = Interval {
             from: 0,
             to: 1,
             shift,

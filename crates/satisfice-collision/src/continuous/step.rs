@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::Moving;
-use super::tree::{Frame, MIXED, MovingBox, MovingTree};
+use super::tree::{BoxFrame, MIXED, MovingBox, MovingTree};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::{Error, Mesh};
 
@@ -27,18 +27,18 @@ use crate::{Error, Mesh};
 /// ```
 #[derive(Debug, Default)]
 pub struct Step {
-    bodies: Vec<Body>,
+    bodies: Vec<FirstFeatures>,
     pub(super) from: Vec<Point>,
     pub(super) to: Vec<Point>,
     pub(super) edges: Vec<[u32; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    frame: OnceLock<Frame>,
+    frame: OnceLock<BoxFrame>,
     trees: [OnceLock<MovingTree>; 3],
 }
 
 /// Where the features of a body begin in the common lists.
 #[derive(Debug, Clone, Copy)]
-struct Body {
+struct FirstFeatures {
     first: [u32; 3],
     collides_with_itself: bool,
 }
@@ -63,7 +63,7 @@ pub struct MovingContact {
 
 /// Which list a feature is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum List {
+pub(super) enum FeatureList {
     Vertices,
     Edges,
     Triangles,
@@ -125,7 +125,7 @@ impl Step {
             self.triangles.len() as u32,
         ];
         let offset = first[0];
-        self.bodies.push(Body {
+        self.bodies.push(FirstFeatures {
             first,
             collides_with_itself,
         });
@@ -171,7 +171,7 @@ impl Step {
     }
 
     /// The body and the number within it of a feature of a list.
-    pub(super) fn feature(&self, list: List, number: u32) -> FeatureOf {
+    pub(super) fn feature(&self, list: FeatureList, number: u32) -> FeatureOf {
         let body = self
             .bodies
             .partition_point(|body| body.first[list as usize] <= number)
@@ -183,12 +183,12 @@ impl Step {
     }
 
     /// The numbers of two features in the common lists, or `None` if there are none such.
-    pub(super) fn numbers(&self, lists: [List; 2], contact: &MovingContact) -> Option<[u32; 2]> {
-        let number = |list: List, feature: FeatureOf| {
+    pub(super) fn numbers(&self, lists: [FeatureList; 2], contact: &MovingContact) -> Option<[u32; 2]> {
+        let number = |list: FeatureList, feature: FeatureOf| {
             let count = match list {
-                List::Vertices => self.from.len(),
-                List::Edges => self.edges.len(),
-                List::Triangles => self.triangles.len(),
+                FeatureList::Vertices => self.from.len(),
+                FeatureList::Edges => self.edges.len(),
+                FeatureList::Triangles => self.triangles.len(),
             };
             let end = self
                 .bodies
@@ -205,12 +205,12 @@ impl Step {
     ///
     /// # Errors
     /// [`Error::Parameter`] for kinds whose motion is not decided: edge-triangle and triangle-triangle.
-    pub(super) fn lists(kind: PairKind) -> Result<[List; 2], Error> {
+    pub(super) fn lists(kind: PairKind) -> Result<[FeatureList; 2], Error> {
         match kind {
-            PairKind::VertexVertex => Ok([List::Vertices, List::Vertices]),
-            PairKind::VertexEdge => Ok([List::Vertices, List::Edges]),
-            PairKind::VertexTriangle => Ok([List::Vertices, List::Triangles]),
-            PairKind::EdgeEdge => Ok([List::Edges, List::Edges]),
+            PairKind::VertexVertex => Ok([FeatureList::Vertices, FeatureList::Vertices]),
+            PairKind::VertexEdge => Ok([FeatureList::Vertices, FeatureList::Edges]),
+            PairKind::VertexTriangle => Ok([FeatureList::Vertices, FeatureList::Triangles]),
+            PairKind::EdgeEdge => Ok([FeatureList::Edges, FeatureList::Edges]),
             PairKind::EdgeTriangle | PairKind::TriangleTriangle => Err(Error::parameter(
                 "pairs",
                 kind,
@@ -221,7 +221,7 @@ impl Step {
 
     /// Whether two features, of different bodies or of one that collides with itself, can be a pair: they share no vertex,
     /// and two vertices are not joined by an edge.
-    pub(super) fn may_pair(&self, lists: [List; 2], a: u32, b: u32) -> bool {
+    pub(super) fn may_pair(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
         if self.is_one_deforming_body() {
             return !self.share_a_vertex(lists, a, b);
         }
@@ -232,11 +232,11 @@ impl Step {
         self.bodies[body_a as usize].collides_with_itself && !self.share_a_vertex(lists, a, b)
     }
 
-    fn share_a_vertex(&self, lists: [List; 2], a: u32, b: u32) -> bool {
+    fn share_a_vertex(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
         match lists {
-            [List::Vertices, List::Triangles] => self.triangles[b as usize].contains(&a),
-            [List::Vertices, List::Edges] => self.edges[b as usize].contains(&a),
-            [List::Edges, List::Edges] => {
+            [FeatureList::Vertices, FeatureList::Triangles] => self.triangles[b as usize].contains(&a),
+            [FeatureList::Vertices, FeatureList::Edges] => self.edges[b as usize].contains(&a),
+            [FeatureList::Edges, FeatureList::Edges] => {
                 let [p, q] = self.edges[a as usize];
                 let [r, s] = self.edges[b as usize];
                 p == r || p == s || q == r || q == s
@@ -253,12 +253,12 @@ impl Step {
         matches!(self.bodies.as_slice(), [body] if body.collides_with_itself)
     }
 
-    fn frame(&self) -> &Frame {
-        self.frame.get_or_init(|| Frame::around(&self.from, &self.to))
+    fn frame(&self) -> &BoxFrame {
+        self.frame.get_or_init(|| BoxFrame::around(&self.from, &self.to))
     }
 
     /// The tree over the features of a list; built when it is first asked for.
-    pub(super) fn tree(&self, list: List) -> &MovingTree {
+    pub(super) fn tree(&self, list: FeatureList) -> &MovingTree {
         self.trees[list as usize].get_or_init(|| {
             let frame = self.frame();
             let body = |number: u32| {
@@ -270,9 +270,9 @@ impl Step {
             let around =
                 |corners: &[u32]| MovingBox::around(corners.iter().map(|&corner| &vertices[corner as usize]));
             let boxes = match list {
-                List::Vertices => vertices,
-                List::Edges => self.edges.iter().map(|edge| around(edge)).collect(),
-                List::Triangles => self.triangles.iter().map(|triangle| around(triangle)).collect(),
+                FeatureList::Vertices => vertices,
+                FeatureList::Edges => self.edges.iter().map(|edge| around(edge)).collect(),
+                FeatureList::Triangles => self.triangles.iter().map(|triangle| around(triangle)).collect(),
             };
             MovingTree::new(&boxes, body)
         })

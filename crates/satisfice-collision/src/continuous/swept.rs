@@ -25,7 +25,7 @@
 
 use super::cubic::Volumes;
 use super::hull::{Face, Hull};
-use super::motion::Motion;
+use super::motion::PairMotion;
 use super::nearest::Nearest;
 use super::vector::{along, cross, dot, largest, sub};
 use crate::distance::Point;
@@ -36,7 +36,7 @@ const U: f64 = f64::EPSILON / 2.0;
 const TINY: f64 = 1e-300;
 /// Sizes outside `[1 / RANGE, RANGE]` are left to integers.
 const RANGE: f64 = 1e250;
-/// How far on each side of a computed root of the volume its sign is looked at.
+/// How far on each side of a computed root of the volume its sign is examined.
 const WIDTHS: [f64; 7] = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 
 /// The differences of a pair at both ends of the step, and delta, in one unit.
@@ -57,7 +57,7 @@ pub(super) struct Swept<const K: usize> {
 impl<const K: usize> Swept<K> {
     /// `None` if a coordinate is not finite, or if the differences are all 0, huge or tiny.
     #[inline(always)]
-    pub(super) fn new<const M: usize, const N: usize>(motion: &Motion<M, N>, delta: f64) -> Option<Self> {
+    pub(super) fn new<const M: usize, const N: usize>(motion: &PairMotion<M, N>, delta: f64) -> Option<Self> {
         let mut from = [[0.0; 3]; K];
         let mut to = [[0.0; 3]; K];
         let (mut size, mut sum) = (0.0_f64, 0.0);

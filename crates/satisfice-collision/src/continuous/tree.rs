@@ -19,7 +19,7 @@ const BITS: u32 = 16;
 
 /// Where the frame of the boxes lies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct BoxFrame {
     centre: Point,
     scale: f64,
 }
@@ -34,7 +34,7 @@ pub(super) struct MovingBox {
 
 /// Eight boxes, a lane each. Unused lanes are empty boxes, apart from all others.
 #[derive(Debug, Clone)]
-pub(super) struct Group {
+pub(super) struct MovingGroup {
     min: [[Lanes; 3]; 2],
     max: [[Lanes; 3]; 2],
 }
@@ -45,7 +45,7 @@ pub(super) struct MovingTree {
     /// The features in the order of the lowest level's lanes.
     pub(super) order: Vec<u32>,
     /// From the groups of features to the root. A group's number is the number of its box one level higher.
-    pub(super) levels: Vec<Vec<Group>>,
+    pub(super) levels: Vec<Vec<MovingGroup>>,
     /// For every group the rigid body that all its features belong to, or [`MIXED`].
     rigid: Vec<Vec<u32>>,
 }
@@ -53,7 +53,7 @@ pub(super) struct MovingTree {
 /// No rigid body: features of several bodies, or of one that collides with itself.
 pub(super) const MIXED: u32 = u32::MAX;
 
-impl Frame {
+impl BoxFrame {
     pub(super) fn around(from: &[Point], to: &[Point]) -> Self {
         let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for p in from.iter().chain(to) {
@@ -190,10 +190,10 @@ pub(super) struct Meetings {
     pub(super) first: [Lanes; LANES],
 }
 
-/// The work of [`Group::meetings`].
+/// The work of [`MovingGroup::meetings`].
 struct Meet<'g> {
-    a: &'g Group,
-    b: &'g Group,
+    a: &'g MovingGroup,
+    b: &'g MovingGroup,
     lanes: usize,
     margin: f32,
 }
@@ -245,7 +245,7 @@ impl simd::Work for Meet<'_> {
     }
 }
 
-impl Group {
+impl MovingGroup {
     /// When each of the first `lanes` boxes of this group, grown by a margin, meets the boxes of another group.
     #[inline]
     pub(super) fn meetings(&self, lanes: usize, margin: f32, other: &Self) -> Meetings {
@@ -332,7 +332,7 @@ impl MovingTree {
         let sorted = order.iter().map(|&feature| boxes[feature as usize]);
         let mut levels = vec![groups(sorted)];
         while levels[levels.len() - 1].len() > 1 {
-            let next = groups(levels[levels.len() - 1].iter().map(Group::union));
+            let next = groups(levels[levels.len() - 1].iter().map(MovingGroup::union));
             levels.push(next);
             rigid.push(common(rigid[rigid.len() - 1].iter().copied()));
         }
@@ -429,18 +429,18 @@ fn common(bodies: impl Iterator<Item = u32>) -> Vec<u32> {
     bodies.chunks(LANES).map(of_eight).collect()
 }
 
-fn groups(boxes: impl Iterator<Item = MovingBox>) -> Vec<Group> {
+fn groups(boxes: impl Iterator<Item = MovingBox>) -> Vec<MovingGroup> {
     let mut groups = Vec::new();
     for (number, of) in boxes.enumerate() {
         if number % LANES == 0 {
-            groups.push(Group::EMPTY);
+            groups.push(MovingGroup::EMPTY);
         }
         if let Some(group) = groups.last_mut() {
             group.set(number % LANES, &of);
         }
     }
     if groups.is_empty() {
-        groups.push(Group::EMPTY);
+        groups.push(MovingGroup::EMPTY);
     }
     groups
 }

@@ -1,25 +1,7 @@
 //! Arithmetic on `[f64; 3]` in the order that the error bounds of this module assume: no fused operations.
 
 use crate::distance::Point;
-
-#[inline(always)]
-pub(super) fn sub(p: Point, q: Point) -> Point {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-#[inline(always)]
-pub(super) fn dot(p: Point, q: Point) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-#[inline(always)]
-pub(super) fn cross(p: Point, q: Point) -> Point {
-    [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
-}
+pub(super) use crate::distance::vector::{cross, dot, sub};
 
 /// `p + s d`.
 #[inline(always)]

@@ -4,7 +4,7 @@
 //! between 1 and 2. It leaves open only the few pairs that are very close to delta. Pairs that are too large or too small for
 //! it go through the same filter in double precision. Pairs that remain open are decided one by one.
 
-use super::kernel::{Kernel, Limits, Vector, Verdicts};
+use super::kernel::{Kernel, KernelLimits, LaneVector, Verdicts};
 use super::vector::{exponent, ldexp};
 use super::{DecidedBy, Decision, Threshold, Triangle, triangle_triangle};
 use crate::simd::{Floats as _, Lanes, Work, dispatch};
@@ -124,7 +124,7 @@ struct Scaled {
     /// The power of two is `first * scale`; `first` is 1 unless no single factor is enough.
     first: f64,
     scale: f64,
-    limits: Limits,
+    limits: KernelLimits,
 }
 
 impl Scaled {
@@ -133,7 +133,7 @@ impl Scaled {
         let second = wanted.clamp(-LARGEST_SHIFT, LARGEST_SHIFT);
         let (first, scale) = (ldexp(1.0, wanted - second), ldexp(1.0, second));
         let delta = threshold.get() * first * scale;
-        let limits = Limits {
+        let limits = KernelLimits {
             below: f64::from((delta as f32).next_down()),
             squared_above: f64::from(((delta * delta).next_up() as f32).next_up()),
         };
@@ -171,7 +171,7 @@ impl Work for InSingle<'_> {
                 }
             }
         }
-        let point = |of: &[[f32; LANES]; 3]| -> Vector<L::Single> {
+        let point = |of: &[[f32; LANES]; 3]| -> LaneVector<L::Single> {
             [unit.load(&of[0]), unit.load(&of[1]), unit.load(&of[2])]
         };
         let triangle = |of: &[[[f32; LANES]; 3]; 3]| [point(&of[0]), point(&of[1]), point(&of[2])];
@@ -193,13 +193,13 @@ impl Work for InDouble<'_> {
     fn run<L: Lanes>(self, lanes: L) -> Verdicts {
         let unit = lanes.double();
         let mut all = Verdicts::default();
-        let limits = Limits {
+        let limits = KernelLimits {
             below: self.threshold.get(),
             squared_above: self.threshold.squared_above(),
         };
         for half in 0..LANES / 4 {
             let kernel = Kernel { unit };
-            let load = |of: &[Triangle; LANES], vertex: usize| -> Vector<L::Double> {
+            let load = |of: &[Triangle; LANES], vertex: usize| -> LaneVector<L::Double> {
                 let axis = |axis: usize| {
                     let lane = |lane: usize| of[4 * half + lane][vertex][axis];
                     unit.load(&[lane(0), lane(1), lane(2), lane(3)])

@@ -1,6 +1,6 @@
 //! Edge against edge: two segments.
 
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::resolve::{self, Hulls};
 use super::{Decision, FeaturePair, PairKind, Proximity, Segment, Threshold, closest, measure};
 
@@ -10,7 +10,7 @@ pub struct EdgeEdge;
 
 impl Hulls<2, 2> for EdgeEdge {
     #[inline(always)]
-    fn filter(frame: &Frame<2, 2>, limits: &Limits) -> Verdict {
+    fn filter(frame: &PairFrame<2, 2>, limits: &Limits) -> Verdict {
         let (s, t) = closest::of_segments(&frame.a, &frame.b);
         frame.judge(frame.difference(&[1.0 - s, s], &[1.0 - t, t]), limits)
     }

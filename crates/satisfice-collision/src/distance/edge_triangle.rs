@@ -1,6 +1,6 @@
-//! Edge against triangle: a segment and a triangle, 0 where the segment meets the triangle.
+//! Edge against triangle: a segment and a triangle, 0 if the segment meets the triangle.
 
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::gjk;
 use super::resolve::{self, Hulls};
 use super::{Decision, FeaturePair, PairKind, Proximity, Segment, Threshold, Triangle, measure};
@@ -11,7 +11,7 @@ pub struct EdgeTriangle;
 
 impl Hulls<2, 3> for EdgeTriangle {
     #[inline(always)]
-    fn filter(frame: &Frame<2, 3>, limits: &Limits) -> Verdict {
+    fn filter(frame: &PairFrame<2, 3>, limits: &Limits) -> Verdict {
         gjk::filter(frame, limits)
     }
 }

@@ -19,14 +19,14 @@ pub(super) type Vector = [IBig; 3];
 
 /// The closest pair of points.
 #[derive(Debug, Clone)]
-pub(super) struct Nearest {
+pub(super) struct ClosestPoints {
     pub(super) distance: f64,
     pub(super) weights_a: [f64; 3],
     pub(super) weights_b: [f64; 3],
 }
 
 /// Vertex numbers of a part.
-type Part<'p> = &'p [usize];
+type Corners<'p> = &'p [usize];
 
 /// A critical pair of parts: its squared distance `numerator / denominator`, and the weights `steps[k] / step_unit` of all but
 /// the first vertex of each part.
@@ -55,7 +55,7 @@ pub(super) fn is_within(a: &[Point], b: &[Point], delta: f64) -> bool {
 
 /// The distance, rounded (within one unit in the last place), and the weights of nearest points. Coordinates are finite.
 #[cold]
-pub(super) fn nearest(a: &[Point], b: &[Point]) -> Nearest {
+pub(super) fn nearest(a: &[Point], b: &[Point]) -> ClosestPoints {
     let unit = common_unit(a.iter().chain(b).flatten().copied());
     let (a, b) = (integers(a, unit), integers(b, unit));
     let mut least: Option<Critical> = None;
@@ -80,14 +80,14 @@ pub(super) fn nearest(a: &[Point], b: &[Point]) -> Nearest {
     let distance = least.map_or(0.0, |least| {
         root_of_ratio(least.numerator, least.denominator, unit)
     });
-    Nearest {
+    ClosestPoints {
         distance,
         weights_a,
         weights_b,
     }
 }
 
-type Visitor<'v> = &'v mut dyn FnMut(Part<'_>, Part<'_>, Critical) -> ControlFlow<()>;
+type Visitor<'v> = &'v mut dyn FnMut(Corners<'_>, Corners<'_>, Critical) -> ControlFlow<()>;
 
 /// Calls `visitor` for every critical pair of parts, lower dimensions first.
 fn visit(a: &[Vector], b: &[Vector], visitor: Visitor<'_>) -> ControlFlow<()> {
@@ -137,8 +137,8 @@ fn visit(a: &[Vector], b: &[Vector], visitor: Visitor<'_>) -> ControlFlow<()> {
 fn try_parts(
     a: &[Vector],
     b: &[Vector],
-    part_a: Part<'_>,
-    part_b: Part<'_>,
+    part_a: Corners<'_>,
+    part_b: Corners<'_>,
     visitor: Visitor<'_>,
 ) -> ControlFlow<()> {
     let w = sub(&a[part_a[0]], &b[part_b[0]]);
@@ -246,7 +246,7 @@ pub(super) fn common_unit(numbers: impl Iterator<Item = f64>) -> i32 {
 }
 
 /// `x = m * 2^e` with odd `m`, for finite `x` other than 0.
-fn mantissa(x: f64) -> (i64, i32) {
+pub(crate) fn mantissa(x: f64) -> (i64, i32) {
     let exponent = exponent(x).max(-1022) - 52;
     let bits = x.to_bits() & ((1 << 52) - 1);
     let magnitude = if x.abs() < f64::MIN_POSITIVE {
@@ -259,7 +259,8 @@ fn mantissa(x: f64) -> (i64, i32) {
     (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
 }
 
-fn integer(x: f64, unit: i32) -> IBig {
+/// `x / 2^unit`, a whole number.
+pub(crate) fn integer(x: f64, unit: i32) -> IBig {
     if x == 0.0 {
         return IBig::ZERO;
     }
@@ -272,7 +273,7 @@ pub(super) fn integers(points: &[Point], unit: i32) -> Vec<Vector> {
 }
 
 /// Weights of a part's vertices, rounded.
-fn weights(part: Part<'_>, steps: &[IBig], unit: &IBig) -> [f64; 3] {
+fn weights(part: Corners<'_>, steps: &[IBig], unit: &IBig) -> [f64; 3] {
     let mut weights = [0.0; 3];
     let mut rest = unit.clone();
     for (&k, step) in part[1..].iter().zip(steps) {

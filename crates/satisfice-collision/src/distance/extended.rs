@@ -15,7 +15,7 @@
 //! Underflow adds absolute errors near 2^-1074 in a frame with rho >= 2^-100, which the factors of 6 and more contain.
 
 use super::candidates::Guess;
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::vector::{ldexp, scale};
 use super::{Point, frame};
 
@@ -26,24 +26,24 @@ const SPAN_ERROR: f64 = 1024.0 * UNIT_SQUARED;
 
 /// The sum of two doubles, the second below half a unit in the last place of the first.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Double(f64, f64);
+pub(super) struct DoubleDouble(f64, f64);
 
-type Vector = [Double; 3];
+type DoubleVector = [DoubleDouble; 3];
 
-fn two_sum(x: f64, y: f64) -> Double {
+fn two_sum(x: f64, y: f64) -> DoubleDouble {
     let sum = x + y;
     let from_y = sum - x;
     let from_x = sum - from_y;
-    Double(sum, (x - from_x) + (y - from_y))
+    DoubleDouble(sum, (x - from_x) + (y - from_y))
 }
 
-fn fast_two_sum(x: f64, y: f64) -> Double {
+fn fast_two_sum(x: f64, y: f64) -> DoubleDouble {
     let sum = x + y;
-    Double(sum, y - (sum - x))
+    DoubleDouble(sum, y - (sum - x))
 }
 
 /// Dekker's product. Without a fused multiply-add in the target, `f64::mul_add` would be a library call.
-fn two_product(x: f64, y: f64) -> Double {
+fn two_product(x: f64, y: f64) -> DoubleDouble {
     let split = |x: f64| {
         let c = 134_217_729.0 * x;
         let high = c - (c - x);
@@ -51,10 +51,10 @@ fn two_product(x: f64, y: f64) -> Double {
     };
     let product = x * y;
     let ((xh, xl), (yh, yl)) = (split(x), split(y));
-    Double(product, ((xh * yh - product) + xh * yl + xl * yh) + xl * yl)
+    DoubleDouble(product, ((xh * yh - product) + xh * yl + xl * yh) + xl * yl)
 }
 
-impl Double {
+impl DoubleDouble {
     fn from_f64(x: f64) -> Self {
         Self(x, 0.0)
     }
@@ -92,35 +92,35 @@ impl Double {
     }
 }
 
-fn sub(p: Vector, q: Vector) -> Vector {
+fn sub(p: DoubleVector, q: DoubleVector) -> DoubleVector {
     [p[0].minus(q[0]), p[1].minus(q[1]), p[2].minus(q[2])]
 }
 
-fn dot(p: Vector, q: Vector) -> Double {
+fn dot(p: DoubleVector, q: DoubleVector) -> DoubleDouble {
     p[0].times(q[0]).plus(p[1].times(q[1])).plus(p[2].times(q[2]))
 }
 
-fn plus_scaled(p: Vector, s: Double, q: Vector) -> Vector {
+fn plus_scaled(p: DoubleVector, s: DoubleDouble, q: DoubleVector) -> DoubleVector {
     [0, 1, 2].map(|k| p[k].plus(s.times(q[k])))
 }
 
 /// A pair of points of the features and what it proves.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
-    v: Vector,
-    squared: Double,
-    gap: Double,
+pub(super) struct PointPair {
+    v: DoubleVector,
+    squared: DoubleDouble,
+    gap: DoubleDouble,
     rho: f64,
     pub(super) weights_a: [f64; 3],
     pub(super) weights_b: [f64; 3],
 }
 
-impl Pair {
+impl PointPair {
     /// The nearest points of the affine hulls of the parts that `guess` uses. `None` if they fall outside the parts.
     pub(super) fn new<const M: usize, const N: usize>(
         a: &[Point; M],
         b: &[Point; N],
-        frame: &Frame<M, N>,
+        frame: &PairFrame<M, N>,
         guess: &Guess,
     ) -> Option<Self> {
         let (local_a, local_b) = exact_differences(a, b, frame.exponent);
@@ -140,11 +140,11 @@ impl Pair {
             count += 1;
         }
         let (v, steps) = match count {
-            0 => (w, [Double(0.0, 0.0); 2]),
+            0 => (w, [DoubleDouble(0.0, 0.0); 2]),
             1 => {
                 let x = moves[0];
                 let s = dot(w, x).negated().over(dot(x, x));
-                (plus_scaled(w, s, x), [s, Double(0.0, 0.0)])
+                (plus_scaled(w, s, x), [s, DoubleDouble(0.0, 0.0)])
             }
             2 => {
                 let [x, y, ..] = moves;
@@ -159,7 +159,7 @@ impl Pair {
         let (mut weights_a, mut weights_b) = ([0.0; 3], [0.0; 3]);
         let (steps_a, steps_b) = steps[..count].split_at(on_a.len() - 1);
         for (weights, on, steps) in [(&mut weights_a, on_a, steps_a), (&mut weights_b, on_b, steps_b)] {
-            let mut rest = Double::from_f64(1.0);
+            let mut rest = DoubleDouble::from_f64(1.0);
             for (&k, &step) in on[1..].iter().zip(steps) {
                 if step.0.is_nan() || step.is_negative() {
                     return None;
@@ -172,13 +172,13 @@ impl Pair {
             }
             weights[on[0]] = rest.0;
         }
-        let lowest = |points: &[Vector], v: Vector| {
+        let lowest = |points: &[DoubleVector], v: DoubleVector| {
             points
                 .iter()
                 .map(|&p| dot(v, p))
                 .reduce(|x, y| if y.minus(x).is_negative() { y } else { x })
         };
-        let against = v.map(Double::negated);
+        let against = v.map(DoubleDouble::negated);
         let gap = lowest(&local_a, v)?.plus(lowest(&local_b, against)?);
         Some(Self {
             v,
@@ -196,17 +196,18 @@ impl Pair {
     }
 
     /// A proved lower bound of the gap.
-    fn safe_gap(&self) -> Double {
+    fn safe_gap(&self) -> DoubleDouble {
         self.gap
-            .minus(Double::from_f64(GAP_ERROR * self.rho * self.taxicab()))
+            .minus(DoubleDouble::from_f64(GAP_ERROR * self.rho * self.taxicab()))
     }
 
     /// Compares with delta. Squares and products here are wrong by less than 40u^2 of themselves, 128u^2 is granted.
     pub(super) fn judge(&self, limits: &Limits) -> Verdict {
-        let exceeds = |x: Double, y: Double| x.minus(y).0 > 128.0 * UNIT_SQUARED * x.0;
-        let margin = Double::from_f64(limits.below).minus(Double::from_f64(SPAN_ERROR * self.rho));
+        let exceeds = |x: DoubleDouble, y: DoubleDouble| x.minus(y).0 > 128.0 * UNIT_SQUARED * x.0;
+        let margin =
+            DoubleDouble::from_f64(limits.below).minus(DoubleDouble::from_f64(SPAN_ERROR * self.rho));
         let gap = self.safe_gap();
-        let above = Double::from_f64(limits.above);
+        let above = DoubleDouble::from_f64(limits.above);
         // Outside these ends a square could overflow or lose its low part to underflow.
         let in_range = |x: f64| x > frame::LEAST_GAP && x < 1.0 / frame::LEAST_GAP;
         if in_range(margin.0) && exceeds(margin.times(margin), self.squared) {
@@ -235,7 +236,7 @@ impl Pair {
 }
 
 /// The square root of a double-double, rounded once.
-fn sqrt(x: Double) -> f64 {
+fn sqrt(x: DoubleDouble) -> f64 {
     let root = x.0.sqrt();
     let rest = x.minus(two_product(root, root)).0;
     root + rest / (2.0 * root)
@@ -259,7 +260,7 @@ fn exact_differences<const M: usize, const N: usize>(
     a: &[Point; M],
     b: &[Point; N],
     exponent: i32,
-) -> ([Vector; M], [Vector; N]) {
+) -> ([DoubleVector; M], [DoubleVector; N]) {
     // Quarters of numbers near f64::MAX, as in the frame; otherwise the numbers as they are.
     let quarter = exponent >= 900;
     let prepared = |p: Point| if quarter { scale(p, 0.25) } else { p };
@@ -272,7 +273,7 @@ fn exact_differences<const M: usize, const N: usize>(
             if shift == 0 {
                 difference
             } else {
-                Double(ldexp(difference.0, shift), ldexp(difference.1, shift))
+                DoubleDouble(ldexp(difference.0, shift), ldexp(difference.1, shift))
             }
         })
     };

@@ -18,17 +18,17 @@ pub(crate) struct FirstPoint {
     /// The part lies between these.
     low: f64,
     high: f64,
-    exact: Option<Part>,
+    exact: Option<Fraction>,
 }
 
 /// `numerator / denominator` in `0..=1`; the denominator is above 0.
 #[derive(Debug, Clone)]
-struct Part {
+struct Fraction {
     numerator: IBig,
     denominator: IBig,
 }
 
-impl Part {
+impl Fraction {
     fn new(numerator: IBig, denominator: IBig) -> Option<Self> {
         let (numerator, denominator) = if denominator < IBig::ZERO {
             (-numerator, -denominator)
@@ -67,13 +67,13 @@ impl FirstPoint {
     /// is, and so does a segment without length.
     pub(crate) fn find(segment: &Segment, triangle: &Triangle) -> Option<Self> {
         match filter(segment, triangle) {
-            Verdict::Apart => None,
-            Verdict::Between(low, high) => Some(Self {
+            Meeting::Apart => None,
+            Meeting::Between(low, high) => Some(Self {
                 low,
                 high,
                 exact: None,
             }),
-            Verdict::Unknown => {
+            Meeting::Unknown => {
                 let part = exactly(segment, triangle)?;
                 let value = part.value();
                 Some(Self {
@@ -110,13 +110,13 @@ impl FirstPoint {
         self.part(segment, triangle).value()
     }
 
-    fn part(&mut self, segment: &Segment, triangle: &Triangle) -> &Part {
+    fn part(&mut self, segment: &Segment, triangle: &Triangle) -> &Fraction {
         self.exact
-            .get_or_insert_with(|| exactly(segment, triangle).unwrap_or_else(Part::start))
+            .get_or_insert_with(|| exactly(segment, triangle).unwrap_or_else(Fraction::start))
     }
 }
 
-enum Verdict {
+enum Meeting {
     Apart,
     /// They meet, at a part of the way between these.
     Between(f64, f64),
@@ -157,7 +157,7 @@ impl Volume {
     }
 }
 
-fn filter([from, to]: &Segment, triangle: &Triangle) -> Verdict {
+fn filter([from, to]: &Segment, triangle: &Triangle) -> Meeting {
     let [a, b, c] = triangle.map(|p| vector::sub(p, *from));
     let way = vector::sub(*to, *from);
     let around = [
@@ -167,13 +167,13 @@ fn filter([from, to]: &Segment, triangle: &Triangle) -> Verdict {
     ];
     let signs = around.map(Volume::sign);
     if signs.contains(&1) && signs.contains(&-1) {
-        return Verdict::Apart;
+        return Meeting::Apart;
     }
     let start = Volume::new(a, b, c);
     let [a, b, c] = triangle.map(|p| vector::sub(p, *to));
     let end = Volume::new(a, b, c);
     match start.sign() * end.sign() {
-        1 => Verdict::Apart,
+        1 => Meeting::Apart,
         -1 if signs == [1; 3] || signs == [-1; 3] => {
             let [(least, most), (least_end, most_end)] = [start, end].map(|volume| {
                 (
@@ -183,14 +183,14 @@ fn filter([from, to]: &Segment, triangle: &Triangle) -> Verdict {
             });
             let low = least / (least + most_end) * (1.0 - 4.0 * f64::EPSILON);
             let high = most / (most + least_end) * (1.0 + 4.0 * f64::EPSILON);
-            Verdict::Between(low, high)
+            Meeting::Between(low, high)
         }
-        _ => Verdict::Unknown,
+        _ => Meeting::Unknown,
     }
 }
 
 #[cold]
-fn exactly(segment: &Segment, triangle: &Triangle) -> Option<Part> {
+fn exactly(segment: &Segment, triangle: &Triangle) -> Option<Fraction> {
     let unit = common_unit(segment.iter().chain(triangle).flatten().copied());
     let (ends, corners) = (integers(segment, unit), integers(triangle, unit));
     let way = sub(&ends[1], &ends[0]);
@@ -211,7 +211,7 @@ fn exactly(segment: &Segment, triangle: &Triangle) -> Option<Part> {
             None
         };
     }
-    let part = Part::new(height, speed)?;
+    let part = Fraction::new(height, speed)?;
     let [a, b, c] = [0, 1, 2].map(|k| sub(&corners[k], &ends[0]));
     let around = [(&a, &b), (&b, &c), (&c, &a)].map(|(p, q)| dot(&way, &cross(p, q)));
     let inside = around.iter().all(|volume| *volume >= IBig::ZERO)
@@ -220,8 +220,8 @@ fn exactly(segment: &Segment, triangle: &Triangle) -> Option<Part> {
 }
 
 /// Of a segment in the plane of a triangle (Cyrus and Beck 1978, doi:10.1016/0097-8493(78)90021-3).
-fn in_plane(ends: &[Vector], corners: &[Vector], normal: &Vector) -> Option<Part> {
-    let (mut enter, mut leave) = (Part::start(), Part::new(IBig::ONE, IBig::ONE)?);
+fn in_plane(ends: &[Vector], corners: &[Vector], normal: &Vector) -> Option<Fraction> {
+    let (mut enter, mut leave) = (Fraction::start(), Fraction::new(IBig::ONE, IBig::ONE)?);
     for [i, j] in [[0, 1], [1, 2], [2, 0]] {
         let inward = cross(normal, &sub(&corners[j], &corners[i]));
         let [start, end] = [0, 1].map(|k| dot(&inward, &sub(&ends[k], &corners[i])));
@@ -229,7 +229,7 @@ fn in_plane(ends: &[Vector], corners: &[Vector], normal: &Vector) -> Option<Part
             (true, true) => return None,
             (false, false) => {}
             (outside, _) => {
-                let crossing = Part::new(start.clone(), start - end)?;
+                let crossing = Fraction::new(start.clone(), start - end)?;
                 if outside && crossing.cmp(&enter).is_gt() {
                     enter = crossing;
                 } else if !outside && crossing.cmp(&leave).is_lt() {
@@ -242,7 +242,7 @@ fn in_plane(ends: &[Vector], corners: &[Vector], normal: &Vector) -> Option<Part
 }
 
 /// Where `from + t way` first meets the segment from `p` to `q`.
-fn on_side(from: &Vector, way: &Vector, p: &Vector, q: &Vector) -> Option<Part> {
+fn on_side(from: &Vector, way: &Vector, p: &Vector, q: &Vector) -> Option<Fraction> {
     let (side, w) = (sub(q, p), sub(p, from));
     let across = cross(way, &side);
     let is_zero = |v: &Vector| v.iter().all(IBig::is_zero);
@@ -251,14 +251,14 @@ fn on_side(from: &Vector, way: &Vector, p: &Vector, q: &Vector) -> Option<Part> 
             return None;
         }
         let square = dot(&across, &across);
-        Part::new(dot(&cross(&w, way), &across), square.clone())?;
-        return Part::new(dot(&cross(&w, &side), &across), square);
+        Fraction::new(dot(&cross(&w, way), &across), square.clone())?;
+        return Fraction::new(dot(&cross(&w, &side), &across), square);
     }
     if is_zero(way) {
         let (along, square) = (-dot(&w, &side), dot(&side, &side));
         let on = is_zero(&cross(&w, &side)) && along >= IBig::ZERO && along <= square;
         let is_here = if is_zero(&side) { is_zero(&w) } else { on };
-        return is_here.then(Part::start);
+        return is_here.then(Fraction::start);
     }
     if !is_zero(&cross(&w, way)) {
         return None;
@@ -269,7 +269,7 @@ fn on_side(from: &Vector, way: &Vector, p: &Vector, q: &Vector) -> Option<Part> 
     if last < IBig::ZERO || first > square {
         return None;
     }
-    Part::new(first.max(IBig::ZERO), square)
+    Fraction::new(first.max(IBig::ZERO), square)
 }
 
 /// The point at a part of the way.

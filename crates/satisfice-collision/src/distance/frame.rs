@@ -58,7 +58,7 @@ pub(super) enum Verdict {
 
 /// Two features in local coordinates: `local = (posed - a_0) * 2^-exponent`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame<const M: usize, const N: usize> {
+pub(super) struct PairFrame<const M: usize, const N: usize> {
     pub(super) a: [Point; M],
     pub(super) b: [Point; N],
     /// Largest component, in absolute value.
@@ -87,7 +87,7 @@ pub(super) enum NoFrame {
     NotFinite,
 }
 
-impl<const M: usize, const N: usize> Frame<M, N> {
+impl<const M: usize, const N: usize> PairFrame<M, N> {
     #[inline(always)]
     pub(super) fn new(a: &[Point; M], b: &[Point; N]) -> Result<Self, NoFrame> {
         let frame = Self::centred(a, b);

@@ -5,7 +5,7 @@
 //! step: then no certificate holds, and the slower stages decide.
 
 use super::candidates::Guess;
-use super::frame::{self, Frame, Limits, Verdict};
+use super::frame::{self, Limits, PairFrame, Verdict};
 use super::vector::{add, cross, dot, scale, sub};
 use super::{Point, closest};
 
@@ -13,7 +13,7 @@ use super::{Point, closest};
 const STEPS: usize = 12;
 
 #[inline(always)]
-pub(super) fn filter<const M: usize, const N: usize>(frame: &Frame<M, N>, limits: &Limits) -> Verdict {
+pub(super) fn filter<const M: usize, const N: usize>(frame: &PairFrame<M, N>, limits: &Limits) -> Verdict {
     // Start: the difference of the centroids.
     let mut v = frame.difference(&[1.0 / M as f64; M], &[1.0 / N as f64; N]);
     let mut squared = dot(v, v);
@@ -45,7 +45,10 @@ pub(super) fn filter<const M: usize, const N: usize>(frame: &Frame<M, N>, limits
 
 /// The distance in the frame's unit, wrong by at most `accuracy` of itself: the upper bound `|v| + E` and the lower bound
 /// `gap / |v|` agree that far. `None` if they never do.
-pub(super) fn distance<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) -> Option<f64> {
+pub(super) fn distance<const M: usize, const N: usize>(
+    frame: &PairFrame<M, N>,
+    accuracy: f64,
+) -> Option<f64> {
     let (squared, _) = converge(frame, accuracy)?;
     let distance = squared.sqrt();
     (frame::SPAN_ERROR * frame.rho <= accuracy * distance).then_some(distance)
@@ -53,7 +56,7 @@ pub(super) fn distance<const M: usize, const N: usize>(frame: &Frame<M, N>, accu
 
 /// The vertices whose hulls contain the closest points of two disjoint features, each with an arbitrary positive weight.
 /// `None` if the iteration does not find them.
-pub(super) fn parts<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Option<Guess> {
+pub(super) fn parts<const M: usize, const N: usize>(frame: &PairFrame<M, N>) -> Option<Guess> {
     // So close that further steps would rarely change the parts; `extended` proves whether they are right.
     const NEAR: f64 = 1e-12;
     let (_, simplex) = converge(frame, NEAR)?;
@@ -68,7 +71,10 @@ pub(super) fn parts<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Opti
 
 /// The difference nearest to 0, squared, and the differences whose hull it lies in.
 #[inline(always)]
-fn converge<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) -> Option<(f64, Simplex)> {
+fn converge<const M: usize, const N: usize>(
+    frame: &PairFrame<M, N>,
+    accuracy: f64,
+) -> Option<(f64, Simplex)> {
     let mut v = frame.difference(&[1.0 / M as f64; M], &[1.0 / N as f64; N]);
     let mut squared = dot(v, v);
     let mut simplex = Simplex { w: [v; 4], len: 1 };
@@ -95,7 +101,7 @@ fn converge<const M: usize, const N: usize>(frame: &Frame<M, N>, accuracy: f64) 
 
 /// The gap in direction `v` and the difference `a_i - b_j` that is lowest in it.
 #[inline(always)]
-fn support<const M: usize, const N: usize>(frame: &Frame<M, N>, v: Point) -> (f64, Point) {
+fn support<const M: usize, const N: usize>(frame: &PairFrame<M, N>, v: Point) -> (f64, Point) {
     let (mut a, mut height_a) = (frame.a[0], dot(v, frame.a[0]));
     for &p in &frame.a[1..] {
         let height = dot(v, p);

@@ -14,7 +14,7 @@
 //! of them and their difference, `2 * 6.1 + 2.02`: 15. A foot `x f + y g + z h` with x, y, z >= 0 and x = fl(fl(1 - y) - z), a sum
 //! of weights within 2u of 1: data 1, products and sums 3.03, the weights 2.01; with the vertex and the difference, 10.
 
-use super::precision::{Bounds, Precision};
+use super::precision::{ErrorBounds, Precision};
 use crate::simd::Floats;
 
 /// Steps of the method; the error bound allows 8.
@@ -26,11 +26,11 @@ pub(super) struct Kernel<U> {
 }
 
 /// Points of as many pairs as a unit has lanes, in registers.
-pub(super) type Vector<U> = [<U as Floats>::Number; 3];
+pub(super) type LaneVector<U> = [<U as Floats>::Number; 3];
 
 /// Delta in the unit of the coordinates, in the precision of a unit.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct KernelLimits {
     /// At most delta.
     pub(super) below: f64,
     /// At least delta squared.
@@ -49,7 +49,7 @@ pub(super) struct Verdicts {
 }
 
 impl<U: Floats<Scalar: Precision>> Kernel<U> {
-    const BOUNDS: Bounds = <U::Scalar as Precision>::BOUNDS;
+    const BOUNDS: ErrorBounds = <U::Scalar as Precision>::BOUNDS;
 
     #[inline(always)]
     fn splat(&self, x: f64) -> U::Number {
@@ -57,7 +57,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     }
 
     #[inline(always)]
-    pub(super) fn sub(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
+    pub(super) fn sub(&self, p: LaneVector<U>, q: LaneVector<U>) -> LaneVector<U> {
         let u = self.unit;
         [u.sub(p[0], q[0]), u.sub(p[1], q[1]), u.sub(p[2], q[2])]
     }
@@ -75,13 +75,13 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     }
 
     #[inline(always)]
-    fn dot(&self, p: Vector<U>, q: Vector<U>) -> U::Number {
+    fn dot(&self, p: LaneVector<U>, q: LaneVector<U>) -> U::Number {
         let u = self.unit;
         u.add(u.add(u.mul(p[0], q[0]), u.mul(p[1], q[1])), u.mul(p[2], q[2]))
     }
 
     #[inline(always)]
-    fn third(&self, p: Vector<U>, q: Vector<U>, r: Vector<U>) -> Vector<U> {
+    fn third(&self, p: LaneVector<U>, q: LaneVector<U>, r: LaneVector<U>) -> LaneVector<U> {
         let u = self.unit;
         let third = self.splat(1.0 / 3.0);
         let mean = |k: usize| u.add(u.add(u.mul(p[k], third), u.mul(q[k], third)), u.mul(r[k], third));
@@ -90,14 +90,14 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
 
     /// The greatest component, in absolute value, of a point and `rho`.
     #[inline(always)]
-    fn extent(&self, rho: U::Number, p: Vector<U>) -> U::Number {
+    fn extent(&self, rho: U::Number, p: LaneVector<U>) -> U::Number {
         let u = self.unit;
         u.max(u.max(u.abs(p[0]), u.abs(p[1])), u.max(u.abs(p[2]), rho))
     }
 
     /// The first of three points whose height is `height`.
     #[inline(always)]
-    fn at(&self, height: U::Number, heights: [U::Number; 2], points: [Vector<U>; 3]) -> Vector<U> {
+    fn at(&self, height: U::Number, heights: [U::Number; 2], points: [LaneVector<U>; 3]) -> LaneVector<U> {
         let u = self.unit;
         let pick = |k: usize| {
             let rest = u.if_equal(heights[1], height, points[1][k], points[2][k]);
@@ -110,9 +110,9 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     #[inline(always)]
     pub(super) fn filter(
         &self,
-        [a0, a1, a2]: [Vector<U>; 3],
-        [b0, b1, b2]: [Vector<U>; 3],
-        limits: Limits,
+        [a0, a1, a2]: [LaneVector<U>; 3],
+        [b0, b1, b2]: [LaneVector<U>; 3],
+        limits: KernelLimits,
     ) -> Verdicts {
         let u = self.unit;
         let zero = self.splat(0.0);
@@ -204,7 +204,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     /// The difference of the closest points of two edges. Where rounding misleads, as for parallel edges, it is the difference
     /// of some two points of them.
     #[inline(always)]
-    fn edges(&self, [p, p1]: [Vector<U>; 2], [q, q1]: [Vector<U>; 2]) -> Vector<U> {
+    fn edges(&self, [p, p1]: [LaneVector<U>; 2], [q, q1]: [LaneVector<U>; 2]) -> LaneVector<U> {
         let u = self.unit;
         let (d, e, r) = (self.sub(p1, p), self.sub(q1, q), self.sub(p, q));
         let (dd, ee, de) = (self.dot(d, d), self.dot(e, e), self.dot(d, e));
@@ -215,7 +215,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         );
         let t = self.share(u.add(u.mul(de, s), er), ee);
         let s = self.share(u.sub(u.mul(de, t), dr), dd);
-        let along = |from: Vector<U>, by: Vector<U>, share: U::Number| {
+        let along = |from: LaneVector<U>, by: LaneVector<U>, share: U::Number| {
             let to = |k: usize| u.add(from[k], u.mul(share, by[k]));
             [to(0), to(1), to(2)]
         };
@@ -233,9 +233,9 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     #[inline(always)]
     fn faces(
         &self,
-        face: [Vector<U>; 3],
-        points: [Vector<U>; 3],
-        n: Vector<U>,
+        face: [LaneVector<U>; 3],
+        points: [LaneVector<U>; 3],
+        n: LaneVector<U>,
         zero: U::Number,
         reach: U::Number,
     ) -> u32 {
@@ -263,7 +263,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     #[inline(always)]
     fn apart(
         &self,
-        v: Vector<U>,
+        v: LaneVector<U>,
         squared: U::Number,
         gap: U::Number,
         gap_error: U::Number,
@@ -277,7 +277,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     }
 
     #[inline(always)]
-    fn cross(&self, p: Vector<U>, q: Vector<U>) -> Vector<U> {
+    fn cross(&self, p: LaneVector<U>, q: LaneVector<U>) -> LaneVector<U> {
         let u = self.unit;
         let minor = |k: usize, l: usize| u.sub(u.mul(p[k], q[l]), u.mul(p[l], q[k]));
         [minor(1, 2), minor(2, 0), minor(0, 1)]

@@ -1,6 +1,6 @@
 //! A distance to ten digits, for a search that asks for millions of them.
 
-use super::frame::Frame;
+use super::frame::PairFrame;
 use super::vector::ldexp;
 use super::{Point, gjk, resolve};
 
@@ -13,7 +13,7 @@ pub(super) fn hulls<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; 
 }
 
 fn fast<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Option<f64> {
-    let frame: Frame<M, N> = resolve::frame(a, b)?;
+    let frame: PairFrame<M, N> = resolve::frame(a, b)?;
     let distance = gjk::distance(&frame, ACCURACY / 4.0)?;
     Some(if frame.exponent == 0 {
         distance

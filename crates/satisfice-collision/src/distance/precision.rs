@@ -3,7 +3,7 @@
 use super::frame::{ABOVE_ONE, GAP_ERROR, GREATEST_RHO, LEAST_GAP, LEAST_RHO, SPAN_ERROR};
 
 /// The constants of the certificates in one precision with unit roundoff u.
-pub(super) struct Bounds {
+pub(super) struct ErrorBounds {
     /// 1 + 8u.
     pub(super) above_one: f64,
     /// 16u: the error of a gap in units of `rho |v|_1`.
@@ -19,14 +19,14 @@ pub(super) struct Bounds {
 
 /// A precision with proved bounds.
 pub(super) trait Precision: Copy {
-    const BOUNDS: Bounds;
+    const BOUNDS: ErrorBounds;
     /// `x`, rounded where this precision does not hold it, for example 1/3.
     fn round(x: f64) -> Self;
 }
 
 /// The bounds of `frame`.
 impl Precision for f64 {
-    const BOUNDS: Bounds = Bounds {
+    const BOUNDS: ErrorBounds = ErrorBounds {
         above_one: ABOVE_ONE,
         gap_error: GAP_ERROR,
         span_error: SPAN_ERROR,
@@ -49,7 +49,7 @@ const U_SINGLE: f64 = 1.0 / (1_u64 << 24) as f64;
 /// along it below 2^43, so that no square overflows. Underflow in `v^.v^` moves `|v^|` by less than 2^-73; the slack, `13 u rho`
 /// where `kernel` has used up 51 of 64, is at least 2^-41. Delta is between 1 and 2.
 impl Precision for f32 {
-    const BOUNDS: Bounds = Bounds {
+    const BOUNDS: ErrorBounds = ErrorBounds {
         above_one: 1.0 + 8.0 * U_SINGLE,
         gap_error: 16.0 * U_SINGLE,
         span_error: 64.0 * U_SINGLE,

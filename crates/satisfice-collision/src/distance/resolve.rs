@@ -1,14 +1,14 @@
 //! The stages of a decision (filter, extended precision, integers), and a proximity from what they proved.
 
 use super::candidates::{self, edges};
-use super::extended::Pair;
-use super::frame::{self, Frame, Limits, NoFrame, Verdict};
+use super::extended::PointPair;
+use super::frame::{self, Limits, NoFrame, PairFrame, Verdict};
 use super::vector::{add, ldexp, scale, sub};
 use super::{DecidedBy, Decision, Feature, Point, Proximity, Threshold, exact, gjk};
 
 /// A kind of pair as convex hulls of `M` and `N` points, with its own fast filter.
 pub(super) trait Hulls<const M: usize, const N: usize> {
-    fn filter(frame: &Frame<M, N>, limits: &Limits) -> Verdict;
+    fn filter(frame: &PairFrame<M, N>, limits: &Limits) -> Verdict;
 }
 
 #[inline(always)]
@@ -17,7 +17,7 @@ pub(super) fn decide<H: Hulls<M, N>, const M: usize, const N: usize>(
     b: &[Point; N],
     threshold: Threshold,
 ) -> Decision {
-    let frame = match Frame::new(a, b) {
+    let frame = match PairFrame::new(a, b) {
         Ok(frame) => frame,
         Err(NoFrame::Coincident) => {
             return Decision {
@@ -51,7 +51,7 @@ pub(super) fn decide<H: Hulls<M, N>, const M: usize, const N: usize>(
 fn decide_in_band<const M: usize, const N: usize>(
     a: &[Point; M],
     b: &[Point; N],
-    frame: &Frame<M, N>,
+    frame: &PairFrame<M, N>,
     limits: &Limits,
     threshold: Threshold,
 ) -> Decision {
@@ -68,7 +68,7 @@ fn decide_in_band<const M: usize, const N: usize>(
         };
     }
     let guess = candidates::nearest(&frame.a, &frame.b);
-    let verdict = Pair::new(a, b, frame, &guess).map_or(Verdict::Unknown, |pair| pair.judge(limits));
+    let verdict = PointPair::new(a, b, frame, &guess).map_or(Verdict::Unknown, |pair| pair.judge(limits));
     match verdict {
         Verdict::Within => Decision {
             within: true,
@@ -85,13 +85,16 @@ fn decide_in_band<const M: usize, const N: usize>(
     }
 }
 
-/// The frame of a pair; `None` where all points coincide or one is not finite.
-pub(super) fn frame<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Option<Frame<M, N>> {
-    Frame::new(a, b).ok()
+/// The frame of a pair; `None` if all points coincide or one is not finite.
+pub(super) fn frame<const M: usize, const N: usize>(
+    a: &[Point; M],
+    b: &[Point; N],
+) -> Option<PairFrame<M, N>> {
+    PairFrame::new(a, b).ok()
 }
 
 pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Point; N]) -> Proximity {
-    let frame = match Frame::new(a, b) {
+    let frame = match PairFrame::new(a, b) {
         Ok(frame) if frame.has_nan() => Err(NoFrame::NotFinite),
         other => other,
     };
@@ -139,10 +142,10 @@ pub(super) fn proximity<const M: usize, const N: usize>(a: &[Point; M], b: &[Poi
 fn proved<const M: usize, const N: usize>(
     a: &[Point; M],
     b: &[Point; N],
-    frame: &Frame<M, N>,
+    frame: &PairFrame<M, N>,
     guess: &candidates::Guess,
 ) -> Option<Proximity> {
-    let pair = Pair::new(a, b, frame, guess)?;
+    let pair = PointPair::new(a, b, frame, guess)?;
     let distance = ldexp(pair.distance()?, frame.exponent);
     let (weights_a, weights_b) = (pair.weights_a, pair.weights_b);
     Some(assemble(
@@ -156,7 +159,7 @@ fn proved<const M: usize, const N: usize>(
 }
 
 /// Weights of a common point, if an edge of one provably passes through the face of the other.
-fn pierced<const M: usize, const N: usize>(frame: &Frame<M, N>) -> Option<([f64; 3], [f64; 3])> {
+fn pierced<const M: usize, const N: usize>(frame: &PairFrame<M, N>) -> Option<([f64; 3], [f64; 3])> {
     if let Ok(face) = <&[Point; 3]>::try_from(&frame.b[..])
         && let Some([i, k]) = frame::piercing(&frame.a, edges(M), face, frame.rho)
     {

@@ -1,6 +1,6 @@
-//! Triangle against triangle, 0 where they meet.
+//! Triangle against triangle, 0 if they meet.
 
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::gjk;
 use super::resolve::{self, Hulls};
 use super::{Decision, FeaturePair, PairKind, Proximity, Threshold, Triangle, measure};
@@ -11,7 +11,7 @@ pub struct TriangleTriangle;
 
 impl Hulls<3, 3> for TriangleTriangle {
     #[inline(always)]
-    fn filter(frame: &Frame<3, 3>, limits: &Limits) -> Verdict {
+    fn filter(frame: &PairFrame<3, 3>, limits: &Limits) -> Verdict {
         gjk::filter(frame, limits)
     }
 }

@@ -3,7 +3,7 @@
 use super::Point;
 
 #[inline(always)]
-pub(super) fn sub(p: Point, q: Point) -> Point {
+pub(crate) fn sub(p: Point, q: Point) -> Point {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
@@ -18,12 +18,12 @@ pub(super) fn scale(p: Point, s: f64) -> Point {
 }
 
 #[inline(always)]
-pub(super) fn dot(p: Point, q: Point) -> f64 {
+pub(crate) fn dot(p: Point, q: Point) -> f64 {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
 #[inline(always)]
-pub(super) fn cross(p: Point, q: Point) -> Point {
+pub(crate) fn cross(p: Point, q: Point) -> Point {
     [
         p[1] * q[2] - p[2] * q[1],
         p[2] * q[0] - p[0] * q[2],

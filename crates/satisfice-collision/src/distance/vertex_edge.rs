@@ -1,6 +1,6 @@
 //! Vertex against edge: a point and a segment.
 
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::resolve::{self, Hulls};
 use super::vector::sub;
 use super::{Decision, FeaturePair, PairKind, Point, Proximity, Segment, Threshold, closest, measure};
@@ -11,7 +11,7 @@ pub struct VertexEdge;
 
 impl Hulls<1, 2> for VertexEdge {
     #[inline(always)]
-    fn filter(frame: &Frame<1, 2>, limits: &Limits) -> Verdict {
+    fn filter(frame: &PairFrame<1, 2>, limits: &Limits) -> Verdict {
         let [q, r] = frame.b;
         let t = closest::on_segment(frame.a[0], q, sub(r, q));
         frame.judge(frame.difference(&[1.0], &[1.0 - t, t]), limits)

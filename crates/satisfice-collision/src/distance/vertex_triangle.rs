@@ -1,6 +1,6 @@
 //! Vertex against triangle.
 
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::resolve::{self, Hulls};
 use super::{Decision, FeaturePair, PairKind, Point, Proximity, Threshold, Triangle, closest, measure};
 
@@ -10,7 +10,7 @@ pub struct VertexTriangle;
 
 impl Hulls<1, 3> for VertexTriangle {
     #[inline(always)]
-    fn filter(frame: &Frame<1, 3>, limits: &Limits) -> Verdict {
+    fn filter(frame: &PairFrame<1, 3>, limits: &Limits) -> Verdict {
         frame.judge(
             frame.difference(&[1.0], &closest::on_triangle(frame.a[0], &frame.b)),
             limits,

@@ -1,6 +1,6 @@
 //! Vertex against vertex.
 
-use super::frame::{Frame, Limits, Verdict};
+use super::frame::{Limits, PairFrame, Verdict};
 use super::resolve::{self, Hulls};
 use super::vector::{dot, sub};
 use super::{DecidedBy, Decision, FeaturePair, PairKind, Point, Proximity, Threshold, measure};
@@ -49,7 +49,7 @@ pub fn proximity(a: &Point, b: &Point) -> Proximity {
 
 impl Hulls<1, 1> for VertexVertex {
     #[inline(always)]
-    fn filter(frame: &Frame<1, 1>, limits: &Limits) -> Verdict {
+    fn filter(frame: &PairFrame<1, 1>, limits: &Limits) -> Verdict {
         frame.judge(sub(frame.a[0], frame.b[0]), limits)
     }
 }

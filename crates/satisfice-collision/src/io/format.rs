@@ -1,11 +1,9 @@
-//! The formats: one line for each.
+//! A format of meshes or scenes.
 
 use std::fmt;
-use std::path::Path;
 
 use super::scene::PlacedMesh;
 use super::source::Folder;
-use super::{gltf, list, obj, off, ply, stl};
 use crate::error::Error;
 use crate::mesh::Mesh;
 
@@ -35,59 +33,6 @@ pub(super) enum Reader {
 }
 
 impl Format {
-    /// All formats.
-    pub const ALL: [Self; 7] = [
-        obj::FORMAT,
-        ply::FORMAT,
-        stl::FORMAT,
-        off::FORMAT,
-        gltf::FORMAT,
-        list::JSON,
-        list::TOML,
-    ];
-
-    /// The format that the extension of `path` names, in letters of either case. An extension `.gz` is skipped.
-    ///
-    /// # Errors
-    /// [`Error::UnknownFormat`], which lists the known extensions.
-    pub fn of_path(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
-        let is_gz = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"));
-        let name = if is_gz {
-            path.file_stem().map(Path::new)
-        } else {
-            Some(path)
-        };
-        let extension = name
-            .and_then(Path::extension)
-            .and_then(|e| e.to_str())
-            .map(str::to_ascii_lowercase);
-        extension
-            .and_then(|e| {
-                Self::ALL
-                    .into_iter()
-                    .find(|format| format.extensions.contains(&e.as_str()))
-            })
-            .ok_or_else(|| Error::UnknownFormat {
-                path: path.to_owned(),
-                known: known_extensions(),
-            })
-    }
-
-    /// The format of this [name](Self::name) or extension.
-    ///
-    /// # Errors
-    /// [`Error::UnknownFormat`], which lists the known extensions.
-    pub fn named(name: &str) -> Result<Self, Error> {
-        Self::ALL
-            .into_iter()
-            .find(|format| format.name == name || format.extensions.contains(&name))
-            .ok_or_else(|| Error::UnknownFormat {
-                path: name.into(),
-                known: known_extensions(),
-            })
-    }
-
     /// The name, e.g. `obj`.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -111,15 +56,6 @@ impl Format {
     pub fn is_scene(&self) -> bool {
         matches!(self.reader, Reader::Scene(_))
     }
-}
-
-fn known_extensions() -> String {
-    let all: Vec<&str> = Format::ALL
-        .iter()
-        .flat_map(|format| format.extensions)
-        .copied()
-        .collect();
-    format!("{}, each also with .gz", all.join(", "))
 }
 
 impl PartialEq for Format {

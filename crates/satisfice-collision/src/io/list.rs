@@ -32,14 +32,14 @@ pub(super) const TOML: Format = Format {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct List {
-    bodies: Vec<Entry>,
+struct MeshList {
+    bodies: Vec<ListedMesh>,
 }
 
 /// A mesh and its place: first scaled about its origin, then turned, then moved.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct ListedMesh {
     /// A file, relative to the folder of the list.
     mesh: String,
     name: Option<String>,
@@ -72,7 +72,7 @@ fn toml(bytes: &[u8], folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
     bodies(&list, folder)
 }
 
-fn bodies(list: &List, folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
+fn bodies(list: &MeshList, folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
     let mut files: BTreeMap<PathBuf, Vec<PlacedMesh>> = BTreeMap::new();
     let mut instances = Instances::default();
     let mut bodies = Vec::new();
@@ -90,7 +90,7 @@ fn bodies(list: &List, folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
     Ok(bodies)
 }
 
-impl Entry {
+impl ListedMesh {
     /// A body of the file of this entry, in its place.
     fn place(
         &self,

@@ -1,7 +1,7 @@
 //! Files of meshes and scenes. A file is read whole or refused with the reason and, in text, the line.
 //!
 //! [`read`] takes one body, [`read_scene`] all of a scene with names and placements; [`Format::ALL`] lists the formats.
-//! Files may be compressed by gzip. Coordinates are `f64`. A new format is a file here and a line in `format.rs`.
+//! Files may be compressed by gzip. Coordinates are `f64`. A new format is a file here and a line in `registry.rs`.
 
 mod faces;
 mod format;
@@ -10,6 +10,7 @@ mod list;
 mod obj;
 mod off;
 mod ply;
+mod registry;
 mod scene;
 mod source;
 mod stl;

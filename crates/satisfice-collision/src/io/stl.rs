@@ -132,7 +132,7 @@ fn ascii(text: &[u8]) -> Result<Vec<[f64; 3]>, Error> {
     }
 }
 
-/// Takes a statement; which one is expected next. Names of solids and normals are not looked at.
+/// Takes a statement; which one is expected next. Names of solids and normals are not examined.
 fn statement(
     keyword: &[u8],
     mut words: Words<'_>,

@@ -262,7 +262,7 @@ impl FeaturePairs {
 
 fn space(a: &Side, b: &Side) -> Result<Space<f64>, Error> {
     let axes = [a, b].map(|side| Axis::integer(0, side.len() as i64 - 1));
-    Space::new(axes).map_err(|error| Error::parameter("number of features", error, "at least one a body"))
+    Space::new(axes).map_err(|error| Error::parameter("number of features", error, "at least one per body"))
 }
 
 impl SatisficingProblem for FeaturePairs {

@@ -78,7 +78,7 @@ impl Recipe for TwoTeapots {
         Parameter::real("delta", "threshold of the distance, in sizes", 0.02, 1e-12, 1e3),
         Parameter::choice(
             "order",
-            "vertex order: which serial number a vertex gets",
+            "vertex order: which index a vertex gets",
             "hilbert",
             &VertexOrder::NAMES,
         ),

@@ -1,6 +1,6 @@
 //! How many contacts there are, without keeping them.
 
-use super::filter::Filter;
+use super::filter::PairFilter;
 use super::query::{Stop, VISITS, completeness};
 use super::{Completeness, World};
 use crate::Error;
@@ -40,7 +40,7 @@ impl World {
             }
             self.ensure_trees(bodies)?;
             let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
-            let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
+            let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
             let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
             let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) else {
                 continue;

@@ -6,14 +6,14 @@ use crate::{Adjacency, Error, FeatureKind, Mesh};
 
 /// How the vertices move to the next frame.
 #[derive(Default, Clone, Copy)]
-struct Step {
+struct Displacement {
     /// How many of them do.
     count: usize,
     /// The square of the longest way.
     square: f64,
 }
 
-impl Step {
+impl Displacement {
     fn between(old: &[Point], new: &[Point]) -> Self {
         let mut step = Self::default();
         for (old, new) in old.iter().zip(new) {
@@ -40,7 +40,7 @@ pub(super) struct Deforming {
     /// Counts the frames in which a vertex moved.
     version: u64,
     next: Vec<Point>,
-    step: Step,
+    step: Displacement,
     /// The boxes of the vertices, block by block, if they have been measured.
     blocks: Option<BlockBounds>,
     /// Those of the next vertices, and room to measure others that may be refused.
@@ -65,7 +65,7 @@ impl Deforming {
             vertices: mesh.vertices().to_vec(),
             version: 0,
             next: Vec::new(),
-            step: Step::default(),
+            step: Displacement::default(),
             blocks: None,
             next_blocks: Default::default(),
             trees: [const { None }; 3],
@@ -95,7 +95,7 @@ impl Deforming {
         std::mem::swap(next, room);
         self.next.clear();
         self.next.extend_from_slice(vertices);
-        self.step = Step::between(&self.vertices, vertices);
+        self.step = Displacement::between(&self.vertices, vertices);
         Ok(())
     }
 

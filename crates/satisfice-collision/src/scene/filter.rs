@@ -9,7 +9,7 @@ use crate::broad::Pair;
 use crate::distance::PairKind;
 
 /// Two bodies, or one twice, and the near pairs of their features that were left out.
-pub(super) struct Filter<'a> {
+pub(super) struct PairFilter<'a> {
     kind: PairKind,
     a: &'a State,
     b: &'a State,
@@ -19,7 +19,7 @@ pub(super) struct Filter<'a> {
     filtered: AtomicU64,
 }
 
-impl<'a> Filter<'a> {
+impl<'a> PairFilter<'a> {
     pub(super) fn new(kind: PairKind, a: &'a State, b: &'a State, one_body: bool) -> Self {
         Self {
             kind,

@@ -66,6 +66,22 @@ use state::State;
 ///
 /// Changes of bodies take effect at the next query: [`World::update`] brings the contacts up to date, and costs nothing for what
 /// did not change.
+///
+/// ```
+/// use satisfice_collision::scene::{Body, World};
+/// use satisfice_collision::{Placement, distance::{PairKind, Threshold}, generate};
+/// let ball = generate::icosphere(1.0, 2)?;
+/// let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.1)?);
+/// world.add(Body::fixed(ball.clone()))?;
+/// let moving = world.add(Body::rigid(ball))?;
+/// world.place(moving, Placement::from_translation([3.0, 0.0, 0.0])?)?;
+/// world.update()?;
+/// assert_eq!(world.contacts().count(), 0);
+/// world.place(moving, Placement::from_translation([2.05, 0.0, 0.0])?)?;
+/// world.update()?;
+/// assert!(world.contacts().count() > 0);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 pub struct World {
     kind: PairKind,
     threshold: Threshold,

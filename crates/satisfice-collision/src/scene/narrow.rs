@@ -1,6 +1,6 @@
 //! The pairs of features of two bodies, or of one with itself, by a plan.
 
-use super::filter::Filter;
+use super::filter::PairFilter;
 use super::pairs::{Record, Status};
 use super::plan::{FRAMES, Plan, Situation};
 use super::state::State;
@@ -183,7 +183,7 @@ impl World {
         } else {
             grid.between_until(points, posed_b.points(b, two), self.threshold, watch)?
         };
-        let filter = Filter::new(self.kind, one, two, a == b);
+        let filter = PairFilter::new(self.kind, one, two, a == b);
         let mut kept = Vec::new();
         let sparse = pairs.len() < one.vertices().len();
         if filter.is_needed() {
@@ -220,7 +220,7 @@ impl World {
         let [a, b] = record.bodies;
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
-        let filter = Filter::new(self.kind, one, two, a == b);
+        let filter = PairFilter::new(self.kind, one, two, a == b);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let Some(mut query) = self.pair_query(record.bodies, threshold, &filter, &keep) else {
             return Ok(Vec::new());
@@ -262,7 +262,7 @@ impl World {
         &'a self,
         [a, b]: [u32; 2],
         threshold: Threshold,
-        filter: &Filter<'_>,
+        filter: &PairFilter<'_>,
         keep: &'a (dyn Fn(u32, u32) -> bool + Sync),
     ) -> Option<PairQuery<'a>> {
         let (one, two) = (self.state(a), self.state(b));

@@ -1,6 +1,6 @@
 //! A frame under a budget: the likeliest pairs first, and an exact resume.
 
-use super::filter::Filter;
+use super::filter::PairFilter;
 use super::pairs::Status;
 use super::{Completeness, Contact, Frame, Skips, World};
 use crate::Error;
@@ -324,7 +324,7 @@ impl World {
                     link.verified = verified;
                 }
                 let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
-                let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
+                let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
                 let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
                 if let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) {
                     if !*started {

@@ -10,11 +10,11 @@ pub(super) struct Document {
     pub(super) asset: Asset,
     pub(super) scene: Option<usize>,
     #[serde(default)]
-    pub(super) scenes: Vec<Scene>,
+    pub(super) scenes: Vec<SceneObject>,
     #[serde(default)]
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<NodeObject>,
     #[serde(default)]
-    pub(super) meshes: Vec<Mesh>,
+    pub(super) meshes: Vec<MeshObject>,
     #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
@@ -33,13 +33,13 @@ pub(super) struct Asset {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Scene {
+pub(super) struct SceneObject {
     #[serde(default)]
     pub(super) nodes: Vec<usize>,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Node {
+pub(super) struct NodeObject {
     pub(super) name: Option<String>,
     pub(super) mesh: Option<usize>,
     pub(super) skin: Option<usize>,
@@ -56,7 +56,7 @@ pub(super) struct Node {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Mesh {
+pub(super) struct MeshObject {
     pub(super) name: Option<String>,
     pub(super) primitives: Vec<Primitive>,
     #[serde(default)]

@@ -1,6 +1,6 @@
 //! The nodes of a glTF document: which are in the scene, and where.
 
-use super::document::{Document, Node};
+use super::document::{Document, NodeObject};
 use super::malformed;
 use crate::error::Error;
 use crate::io::transform::Transform;
@@ -77,7 +77,7 @@ fn roots(document: &Document) -> Result<Vec<usize>, Error> {
 }
 
 /// Every node must have at most one parent, and none may be its own ancestor.
-fn check_forest(nodes: &[Node]) -> Result<(), Error> {
+fn check_forest(nodes: &[NodeObject]) -> Result<(), Error> {
     let mut parent = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for &child in &node.children {
@@ -105,7 +105,7 @@ fn no_node(index: usize) -> Error {
     malformed(format!("there is no node {index}"))
 }
 
-fn local(node: &Node) -> Result<Transform, Error> {
+fn local(node: &NodeObject) -> Result<Transform, Error> {
     let Some(m) = node.matrix else {
         let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         return Transform::new(

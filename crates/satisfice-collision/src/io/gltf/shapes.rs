@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 
 /// All primitives of a mesh as one body, or `None` if there is no vertex. Primitives that name the same positions share
 /// vertices.
-pub(super) fn body(mesh: &document::Mesh, buffers: &mut Buffers<'_>) -> Result<Option<Mesh>, Error> {
+pub(super) fn body(mesh: &document::MeshObject, buffers: &mut Buffers<'_>) -> Result<Option<Mesh>, Error> {
     let mut vertices = Vec::new();
     let mut faces = Faces::default();
     // Accessor, first vertex and number of vertices.

@@ -38,10 +38,10 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
 }
 
 /// An element, and which of its numbers are wanted.
-struct Plan<'a> {
+struct ElementPlan<'a> {
     definition: &'a Definition,
     role: Role,
-    steps: Vec<Step>,
+    steps: Vec<PropertyStep>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -54,7 +54,7 @@ enum Role {
 
 /// What is done with a property.
 #[derive(Clone, Copy)]
-enum Step {
+enum PropertyStep {
     /// Read as coordinate `axis`.
     Coordinate {
         axis: usize,
@@ -77,34 +77,34 @@ enum Step {
 ///
 /// # Errors
 /// [`Error::Malformed`] if a property that is needed is missing or of another type.
-fn elements(header: &Header) -> Result<Vec<Plan<'_>>, Error> {
+fn elements(header: &Header) -> Result<Vec<ElementPlan<'_>>, Error> {
     header.elements.iter().map(plan).collect()
 }
 
-fn plan(definition: &Definition) -> Result<Plan<'_>, Error> {
-    let steps: Vec<Step> = definition
+fn plan(definition: &Definition) -> Result<ElementPlan<'_>, Error> {
+    let steps: Vec<PropertyStep> = definition
         .properties
         .iter()
         .map(|property| step(&definition.name, &property.name, property.kind))
         .collect();
-    let count = |wanted: fn(&Step) -> bool| steps.iter().filter(|step| wanted(step)).count();
+    let count = |wanted: fn(&PropertyStep) -> bool| steps.iter().filter(|step| wanted(step)).count();
     let refuse = |reason: String| Err(Error::malformed(NAME, reason));
     let role = match definition.name.as_str() {
         "vertex" => {
             for (axis, name) in AXES.into_iter().enumerate() {
-                let is_axis = |step: &Step| matches!(step, Step::Coordinate { axis: a, .. } if *a == axis);
+                let is_axis = |step: &PropertyStep| matches!(step, PropertyStep::Coordinate { axis: a, .. } if *a == axis);
                 if !steps.iter().any(is_axis) {
                     return refuse(format!("its vertices have no number {name}"));
                 }
             }
             Role::Vertex
         }
-        "face" => match count(|step| matches!(step, Step::Corners { .. })) {
+        "face" => match count(|step| matches!(step, PropertyStep::Corners { .. })) {
             0 => return refuse("its faces have no list vertex_indices of whole numbers".to_owned()),
             1 => Role::Face,
             _ => return refuse("its faces have two lists of vertices".to_owned()),
         },
-        "edge" if count(|step| matches!(step, Step::End { .. })) < 2 => {
+        "edge" if count(|step| matches!(step, PropertyStep::End { .. })) < 2 => {
             return refuse("its edges have no whole numbers vertex1 and vertex2".to_owned());
         }
         "edge" => Role::Edge,
@@ -116,32 +116,39 @@ fn plan(definition: &Definition) -> Result<Plan<'_>, Error> {
         }
         _ => Role::Other,
     };
-    Ok(Plan {
+    Ok(ElementPlan {
         definition,
         role,
         steps,
     })
 }
 
-fn step(element: &str, name: &str, kind: Kind) -> Step {
+fn step(element: &str, name: &str, kind: Kind) -> PropertyStep {
     match (element, kind) {
-        ("vertex", Kind::Scalar(number)) => AXES
-            .iter()
-            .position(|axis| *axis == name)
-            .map_or(Step::Pass(kind), |axis| Step::Coordinate { axis, number }),
+        ("vertex", Kind::Scalar(number)) => {
+            AXES.iter()
+                .position(|axis| *axis == name)
+                .map_or(PropertyStep::Pass(kind), |axis| PropertyStep::Coordinate {
+                    axis,
+                    number,
+                })
+        }
         ("face", Kind::List { count, item }) if CORNERS.contains(&name) && item.is_whole() => {
-            Step::Corners { count, item }
+            PropertyStep::Corners { count, item }
         }
         ("edge", Kind::Scalar(number)) if number.is_whole() => ENDS
             .iter()
             .position(|end| *end == name)
-            .map_or(Step::Pass(kind), |which| Step::End { which, number }),
-        _ => Step::Pass(kind),
+            .map_or(PropertyStep::Pass(kind), |which| PropertyStep::End {
+                which,
+                number,
+            }),
+        _ => PropertyStep::Pass(kind),
     }
 }
 
-fn read(elements: &[Plan<'_>], numbers: impl Numbers) -> Result<Mesh, Error> {
-    let mut body = Body {
+fn read(elements: &[ElementPlan<'_>], numbers: impl Numbers) -> Result<Mesh, Error> {
+    let mut body = MeshContents {
         numbers,
         vertex_count: elements
             .iter()
@@ -162,7 +169,7 @@ fn read(elements: &[Plan<'_>], numbers: impl Numbers) -> Result<Mesh, Error> {
     Mesh::new(body.vertices, body.faces.lines, body.faces.triangles)
 }
 
-struct Body<N> {
+struct MeshContents<N> {
     numbers: N,
     /// How many vertices the header announces.
     vertex_count: usize,
@@ -173,8 +180,8 @@ struct Body<N> {
     corners: Vec<u32>,
 }
 
-impl<N: Numbers> Body<N> {
-    fn element(&mut self, plan: &Plan<'_>) -> Result<(), Error> {
+impl<N: Numbers> MeshContents<N> {
+    fn element(&mut self, plan: &ElementPlan<'_>) -> Result<(), Error> {
         let Definition {
             name,
             count,
@@ -205,21 +212,21 @@ impl<N: Numbers> Body<N> {
         Ok(())
     }
 
-    fn member(&mut self, plan: &Plan<'_>) -> Result<(), Error> {
+    fn member(&mut self, plan: &ElementPlan<'_>) -> Result<(), Error> {
         let mut point = [0.0; 3];
         let mut ends = [0; 2];
         for step in &plan.steps {
             match *step {
-                Step::Coordinate { axis, number } => point[axis] = self.numbers.real(number)?,
-                Step::End { which, number } => {
+                PropertyStep::Coordinate { axis, number } => point[axis] = self.numbers.real(number)?,
+                PropertyStep::End { which, number } => {
                     let vertex = self.numbers.whole(number)?;
                     ends[which] = checked_index(Element::Edge, self.edges, vertex, self.vertex_count)?;
                 }
-                Step::Corners { count, item } => self.corners(count, item)?,
-                Step::Pass(Kind::Scalar(number)) => {
+                PropertyStep::Corners { count, item } => self.corners(count, item)?,
+                PropertyStep::Pass(Kind::Scalar(number)) => {
                     self.numbers.real(number)?;
                 }
-                Step::Pass(Kind::List { count, item }) => {
+                PropertyStep::Pass(Kind::List { count, item }) => {
                     for _ in 0..self.length(count)? {
                         self.numbers.real(item)?;
                     }

@@ -3,7 +3,7 @@
 use super::{Stop, completeness};
 use crate::broad::{Closest, Dirty, FeatureTree, Pair, PairQuery, Watch, find_closest};
 use crate::distance::{self, Point, Proximity, Threshold};
-use crate::scene::filter::Filter;
+use crate::scene::filter::PairFilter;
 use crate::scene::{BodyId, Completeness, Contact, World};
 use crate::{Aabb, Error, FeatureKind, Mesh, Placement, Shape};
 
@@ -271,7 +271,7 @@ impl World {
     ) -> Result<(), Error> {
         self.ensure_trees(bodies)?;
         let [one, two] = bodies.map(|slot| self.state(slot));
-        let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
+        let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         if let Some(query) = self.pair_query(bodies, Threshold::LARGEST, &filter, &keep) {
             find_closest(&query, closest, |pair| (bodies, pair), watch);

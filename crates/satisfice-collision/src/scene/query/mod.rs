@@ -10,19 +10,17 @@ pub use ray::RayHit;
 
 use std::collections::BTreeSet;
 
-use super::filter::Filter;
+use super::filter::PairFilter;
 use super::pairs::Status;
 use super::{BodyId, Completeness, Contact, World};
 use crate::Error;
+pub(super) use crate::broad::Stop;
 use crate::broad::{Pair, Watch};
 
 /// Visits of a tree between two looks at the watch.
 pub(super) const VISITS: usize = 4096;
 /// Contacts of an earlier frame that are tried before a search.
 const LIKELY: usize = 64;
-
-/// Told how many there are by now; says whether to stop.
-pub(super) type Stop<'a> = &'a (dyn Fn(usize) -> bool + Sync);
 
 pub(super) fn completeness(watch: &Watch<'_>) -> Completeness {
     if watch.stopped() {
@@ -145,7 +143,7 @@ impl World {
         }
         self.ensure_trees(bodies)?;
         let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
-        let filter = Filter::new(self.kind, one, two, bodies[0] == bodies[1]);
+        let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let mut found = Vec::new();
         if let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) {
