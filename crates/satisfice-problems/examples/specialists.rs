@@ -97,8 +97,8 @@ where
 {
     let problem: P = make(settings)?;
     row(&problem, settings, "branch and bound, proved", || {
-        let report = Search::with(engine::BranchAndBound::default())
-            .run(&problem, &Budget::evaluations(UNLIMITED))?;
+        let report =
+            Search::with(engine::BranchAndBound::default()).run(&problem, &Budget::evaluations(UNLIMITED))?;
         if report.completeness != Completeness::Proved {
             return Err("not proved".into());
         }

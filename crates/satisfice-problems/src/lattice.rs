@@ -1,10 +1,10 @@
-//! What problems on a lattice of cells share: the space, decoding, range minima, enumeration.
+//! Shared by problems on a lattice of cells: the space, decoding, range minima, enumeration.
 
 use satisfice::catalogue::Description;
 use satisfice::{Axis, Error, SatisficingProblem, Space};
 use satisfice::{Encoding, Neighbourhood};
 
-/// Up to so many keys are ranked by comparing each with each, without allocating.
+/// Up to this many keys are ranked by comparing all pairs, without allocating.
 const FEW_KEYS: usize = 64;
 
 /// The lattice `[0, m_1) x ... x [0, m_D)`; a solution is the vector of its cell indices. Or the random keys of a
@@ -52,7 +52,7 @@ impl Lattice {
         &self.space
     }
 
-    /// Whether these are cells of this lattice, or ranks: solutions may come from outside, from a report for instance.
+    /// Whether these are cells of this lattice, or ranks: solutions may come from outside, for example from a report.
     #[inline]
     pub(crate) fn holds(&self, cells: &[u32]) -> bool {
         let axes = self.space.axes();
@@ -137,7 +137,7 @@ impl Encoding<f64, Vec<u32>> for Lattice {
     }
 }
 
-/// Solutions that differ in one variable, or, of permutations, by one exchange.
+/// Solutions that differ in one variable; for permutations, by one exchange.
 impl Neighbourhood<Vec<u32>> for Lattice {
     fn count(&self, _: &Vec<u32>) -> usize {
         let n = self.space.dimension();
@@ -165,7 +165,7 @@ impl Neighbourhood<Vec<u32>> for Lattice {
     }
 }
 
-/// The methods of `SatisficingProblem` that are alike on every lattice, for a type with the fields `lattice`, `threshold`
+/// The methods of `SatisficingProblem` that are the same on every lattice, for a type with the fields `lattice`, `threshold`
 /// and `description`.
 macro_rules! lattice_methods {
     () => {
@@ -197,7 +197,7 @@ macro_rules! lattice_methods {
 }
 pub(crate) use lattice_methods;
 
-/// Name and parameters, as they were resolved.
+/// Name and resolved parameters.
 pub(crate) fn description<const N: usize>(name: &str, parameters: [(&str, String); N]) -> Description {
     Description {
         name: name.to_owned(),
@@ -215,7 +215,7 @@ pub(crate) fn centres(m: usize, lower: f64, upper: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Size, cells and threshold of a row that was published, and its number of hits.
+/// Size, cells and threshold of a published row, and its number of hits.
 pub(crate) type Published = (usize, usize, f64, u64);
 
 /// `cells` and `threshold` for a size, where 0 cells and a threshold below 0 mean the published ones.
@@ -264,11 +264,11 @@ pub(crate) fn reference<P: SatisficingProblem<Scalar = f64>>(
         .or_else(|| count_hits(problem, ENUMERABLE))
 }
 
-/// Lattices of at most this many points are enumerated for their reference count: some seconds.
+/// Lattices of at most this many points are enumerated for their reference count, in a few seconds.
 pub const ENUMERABLE: f64 = 2e7;
 
-/// The number of lattice points with F < delta, by visiting every one; `None` where the space has a continuous axis or
-/// more than `limit` points. Cost: one decoding and one fitness a point.
+/// The number of lattice points with F < delta, by visiting every one; `None` if the space has a continuous axis or
+/// more than `limit` points. Cost: one decoding and one fitness per point.
 ///
 /// ```
 /// use satisfice::catalogue::Catalogued;
@@ -325,7 +325,7 @@ impl RangeMinimum {
         &self.levels[0]
     }
 
-    /// The minimum over the indices `from..=to`, clipped to the table; infinite where none is left.
+    /// The minimum over the indices `from..=to`, clipped to the table; infinite if none is left.
     pub(crate) fn minimum(&self, from: f64, to: f64) -> f64 {
         let last = self.table().len() - 1;
         let (from, to) = (from.ceil().max(0.0), to.floor().min(last as f64));

@@ -11,9 +11,9 @@
 //! | smooth functions of few variables | [`Branin`], [`Hartmann6`] |
 //! | niching | [`Cec2013`] (20 functions) |
 //!
-//! What counts as distinct: a cell on a lattice, a root where the space is continuous (hits are polished by Newton's
-//! method). Long enumerations are kept as constants; `cargo run --release -p satisfice-problems --example enumerate`
-//! makes them again.
+//! On a lattice, different cells are distinct hits. Where roots are sought, hits are polished by Newton's method and different
+//! roots are distinct. Counts that take long to enumerate are constants; `cargo run --release -p satisfice-problems --example
+//! enumerate` recomputes them.
 //!
 //! [`SatisficingProblem`]: satisfice::SatisficingProblem
 //! [`Catalogued`]: satisfice::catalogue::Catalogued
@@ -29,15 +29,12 @@ pub mod number;
 mod roots;
 mod surfaces;
 
-pub use cec2013::{Cec2013, Score, SuiteData, peak_ratio};
-pub use constraints::{
-    Backtracking, Costas, Encoding, Extendable, Formula, Graph, GraphColouring, Langford, LatinSquare,
-    MagicSquare, Queens, Sat, backtrack,
-};
-pub use design::{Parts, SallenKey, Window};
-pub use falsification::{Falsification, Specification, Trace, Transmission};
-pub use kinematics::{Arm, Puma, SevenJoints};
+pub use cec2013::*;
+pub use constraints::*;
+pub use design::*;
+pub use falsification::*;
+pub use kinematics::*;
 pub use lattice::{ENUMERABLE, count_hits};
-pub use level_sets::{Cec2006, DiscPacking, Islands, Needles, Rastrigin, Shell};
-pub use roots::{Himmelblau, Roots, System};
-pub use surfaces::{Branin, Hartmann6};
+pub use level_sets::*;
+pub use roots::*;
+pub use surfaces::*;

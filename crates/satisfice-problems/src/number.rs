@@ -1,14 +1,14 @@
-//! The arithmetic in which a system is written once: real numbers, intervals, derivatives of both.
+//! One arithmetic for real numbers, intervals and derivatives, so that a system is written once.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use satisfice::interval::{EnclosureOps, Interval, IntervalOps, widened};
 
-/// Units in the last place by which the standard library's elementary functions may be off.
+/// Error bound of the standard library's elementary functions, in units in the last place.
 const LIBRARY_ERROR: u32 = 2;
 
-/// What equations are written in. A system that is generic over this trait is evaluated in `f64`, bounded in
-/// [`Interval`] and differentiated in [`Dual`] without being written again.
+/// The numbers of equations. A system that is generic over this trait is evaluated in `f64`, bounded in [`Interval`] and
+/// differentiated in [`Dual`].
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -96,6 +96,12 @@ impl Number for Interval {
 }
 
 /// A value with its derivative along one direction: forward differentiation. Over [`Interval`] it bounds both.
+///
+/// ```
+/// use satisfice_problems::number::{Dual, Number};
+/// let x = Dual { value: 3.0, slope: 1.0 };
+/// assert_eq!(x.square().slope, 6.0); // d/dx x^2 = 2 x
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<N> {
     /// The value.

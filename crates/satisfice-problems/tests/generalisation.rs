@@ -1,5 +1,5 @@
-//! Does the paper's rule serve other problems? The latest-hit swarm against QPSO attracted to the best and against uniform
-//! sampling, on problems whose hits cluster and on one whose hits do not.
+//! Whether the paper's rule helps on other problems: the latest-hit swarm against QPSO attracted to the best and against
+//! uniform sampling, on problems whose hits cluster and on one whose hits do not.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use satisfice::catalogue::{Catalogued, Params};

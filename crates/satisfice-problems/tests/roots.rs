@@ -1,4 +1,4 @@
-//! Root problems: every root is found from the threshold, none is found that is not one, bounds are sound.
+//! Root problems: every root is found from the threshold, and nothing else; bounds are sound.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use satisfice::catalogue::{Catalogued, Params};

@@ -1,4 +1,4 @@
-//! The systems of the literature: counts proved by interval branch and bound, and found in other ways where there are any.
+//! The systems of the literature: counts proved by interval branch and bound, and by other methods where there are any.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::f64::consts::PI;

@@ -8,8 +8,9 @@ const WEIERSTRASS: usize = 21;
 /// Weierstrass's function, sum over the coordinates of sum_k a^k (cos(2 pi b^k (x + 1/2)) - cos(pi b^k)).
 ///
 /// b = 3 triples the angle from term to term, so that one sine and one cosine give all terms:
-/// sin 3t = (3 - 4 sin^2 t) sin t and cos 3t = (1 - 4 sin^2 t) cos t. An error in the angle grows threefold a term, as it does if
-/// each term is computed by itself, while the terms halve. Calls of the cosine would take most of a composition's time.
+/// sin 3t = (3 - 4 sin^2 t) sin t and cos 3t = (1 - 4 sin^2 t) cos t. An error in the angle triples from
+/// term to term, as it does when each term is computed on its own, while the terms halve. A call of the cosine per term would take
+/// most of a composition's time.
 #[derive(Debug, Clone)]
 pub(super) struct Weierstrass {
     /// a^k.
@@ -29,7 +30,7 @@ impl Weierstrass {
     }
 
     fn wave(&self, x: f64) -> f64 {
-        // The half turn is a change of sign, without the rounding of x + 1/2; whole turns are taken away exactly.
+        // Half a turn changes the sign, without rounding x + 1/2; whole turns are subtracted exactly.
         let (sine, cosine) = (TAU * (x - x.round())).sin_cos();
         let (mut sine, mut cosine) = (-sine, -cosine);
         let mut sum = 0.0;

@@ -7,7 +7,7 @@ pub(super) const DIMENSION: usize = 20;
 /// Height to which every basic function is scaled at the corner (5, ..., 5).
 const HEIGHT: f64 = 2000.0;
 
-/// Which basic function.
+/// A basic function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Basic {
     Sphere,
@@ -139,7 +139,7 @@ impl Composition {
             } else {
                 weight / sum
             };
-            // What has no weight is not evaluated: far from its shift, most parts have none.
+            // Parts without weight are not evaluated: far from its shift, a part has none.
             if share > 0.0 {
                 value += share * part.scale * part.value(x, &self.weierstrass);
             }

@@ -1,4 +1,4 @@
-//! The suite's own data: shifts and rotations of the composition functions, from the folder that the user names.
+//! The suite's own data: shifts and rotations of the composition functions, from a folder given by the user.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Where the global optima of F1 to F8 are, for scoring by place.
+//! The positions of the global optima of F1 to F8, for scoring by place.
 
 use core::f64::consts::PI;
 
@@ -32,7 +32,7 @@ pub(super) fn uneven_decreasing_maxima() -> Vec<Vec<f64>> {
     vec![vec![best]]
 }
 
-/// F4: the roots of Himmelblau's equations by Newton's method from their neighbourhood.
+/// F4: the roots of Himmelblau's equations by Newton's method from points near them.
 pub(super) fn himmelblau() -> Vec<Vec<f64>> {
     let near = [(3.0, 2.0), (-2.8, 3.1), (-3.8, -3.3), (3.6, -1.8)];
     let polish = |(mut x, mut y): (f64, f64)| {

@@ -10,7 +10,7 @@ use super::data::SuiteData;
 use super::optima;
 use crate::lattice::description;
 
-/// Looser than this, points round one optimum would count as several.
+/// With a looser accuracy, points around one optimum would count as several.
 const LOOSEST: f64 = 1e-3;
 
 /// A row of the suite's table.
@@ -106,8 +106,8 @@ pub struct Cec2013 {
 }
 
 impl Cec2013 {
-    /// Problem `problem` of 1 to 20, hits being points within `accuracy` of the peak. `data` is the folder of the suite's data,
-    /// which problems up to 10 do not need.
+    /// Problem `problem`, 1 to 20. A hit is a point whose f is within `accuracy` of the peak. `data` is the folder of the suite's
+    /// data; problems 1 to 10 need none.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a number or accuracy out of range, and for data that is missing or malformed.
@@ -117,7 +117,7 @@ impl Cec2013 {
         })
     }
 
-    /// The same with other shifts and rotations than the suite's own, of problems 11 to 20.
+    /// One of problems 11 to 20 with your own shifts and rotations.
     ///
     /// # Errors
     /// As [`Cec2013::new`].
@@ -213,13 +213,13 @@ impl Cec2013 {
         TABLE[self.index].radius
     }
 
-    /// The evaluations that the competition allows a run, `MaxFEs`.
+    /// The evaluations that the competition allows per run, `MaxFEs`.
     #[must_use]
     pub fn max_evaluations(&self) -> u64 {
         TABLE[self.index].max_evaluations
     }
 
-    /// Where the global optima are, for scoring. Of compositions these are the shifts.
+    /// The positions of the global optima, for scoring; for compositions, the shifts.
     #[must_use]
     pub fn optima(&self) -> Vec<Vec<f64>> {
         let dimension = self.space.dimension();
@@ -304,7 +304,7 @@ impl Catalogued for Cec2013 {
         )
     }
 
-    /// The number of global optima, up to the accuracy 1e-3; looser ones make several hits of one optimum.
+    /// The number of global optima, up to the accuracy 1e-3; with a looser one, an optimum gives several hits.
     fn reference_hits(&self) -> Option<u64> {
         (self.accuracy <= LOOSEST).then(|| self.optima().len() as u64)
     }

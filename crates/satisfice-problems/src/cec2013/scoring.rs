@@ -1,8 +1,8 @@
-//! How the suite scores a run, and how that is made proof against points crowded round one optimum.
+//! The suite's score of a run, and a score that points crowded around one optimum cannot inflate.
 
 use super::problem::Cec2013;
 
-/// What a set of submitted points is worth.
+/// The score of a set of submitted points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Score {
     /// Optima found by the suite's rule: sorted by value, a point is a seed if it is farther than the niche radius from every
@@ -26,10 +26,10 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Cec2013 {
-    /// Scores submitted points at an accuracy, one of 1e-1 ... 1e-5 in the suite. At 1e-1 the suite's rule counts points round
-    /// a single optimum as several on problems 4, 11 and 14 to 20: headline 1e-4 and 1e-5 only, by place.
+    /// Scores submitted points at an accuracy, one of 1e-1 ... 1e-5 in the suite. At 1e-1 the suite's rule counts points
+    /// around one optimum as several on problems 4, 11 and 14 to 20: report 1e-4 and 1e-5, by place.
     ///
-    /// Points with a wrong number of coordinates or a coordinate that is not finite count as submitted and as nothing else.
+    /// Points with a wrong number of coordinates or a coordinate that is not finite count as submitted but never as found.
     /// Cost: O(n log n) and O(n m) for n points near the peak and m seeds.
     #[must_use]
     pub fn score(&self, submitted: &[Vec<f64>], accuracy: f64) -> Score {
@@ -41,7 +41,7 @@ impl Cec2013 {
         let mut seeds: Vec<&Vec<f64>> = Vec::new();
         let mut found = vec![false; optima.len()];
         for (height, x) in points {
-            // Sorted: nothing after the first point too low can count.
+            // Points are sorted: after the first that is too low, none counts.
             if (height - self.peak()).abs() > accuracy {
                 if height < self.peak() {
                     break;

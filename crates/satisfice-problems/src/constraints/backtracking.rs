@@ -1,25 +1,25 @@
-//! Chronological backtracking: the exact rival of every engine on constraint problems.
+//! Chronological backtracking: the exact method that engines are compared with on constraint problems.
 
-/// A problem whose variables can be given values one after the other, with a check at each step.
+/// A problem whose variables can be assigned in order, with a check after each.
 pub trait Extendable {
-    /// How many values variable `variable` has, `None` behind the last variable.
+    /// The number of values of a variable; `None` past the last variable.
     fn values(&self, variable: usize) -> Option<u32>;
-    /// Whether the last value of `partial` violates nothing together with those before it.
+    /// Whether the last value of `partial` is consistent with those before it.
     fn extends(&self, partial: &[u32]) -> bool;
 }
 
-/// What [`backtrack`] did.
+/// The outcome of [`backtrack`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Backtracking {
     /// Solutions visited.
     pub solutions: u64,
     /// Nodes of the search tree: consistent partial assignments, the empty one included.
     pub nodes: u64,
-    /// Whether the whole tree was searched, so that there are no other solutions.
+    /// Whether the whole tree was searched: then there are no other solutions.
     pub complete: bool,
 }
 
-/// Visits the solutions in lexicographic order, until all are found or `limit` nodes were visited.
+/// Visits the solutions in lexicographic order, until all are found or `limit` nodes have been visited.
 ///
 /// ```
 /// use satisfice_problems::{Queens, backtrack};

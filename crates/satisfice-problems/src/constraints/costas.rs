@@ -7,7 +7,7 @@ use super::{ENCODINGS, Encoding, Extendable, Violations, constraint_bounds, cons
 use crate::lattice::{Lattice, description};
 
 const LARGEST: usize = 64;
-/// Numbers of arrays of order 1, 2, ...: beyond what backtracking counts in seconds.
+/// Numbers of arrays of order 1, 2, ..., beyond those that backtracking counts in seconds.
 const PUBLISHED: [u64; 20] = [
     1, 2, 4, 12, 40, 116, 200, 444, 760, 2_160, 4_368, 7_852, 12_828, 17_252, 19_612, 21_104, 18_276, 15_096,
     10_240, 6_464,
@@ -17,9 +17,16 @@ const PUBLISHED: [u64; 20] = [
 /// all different.
 ///
 /// F counts pairs of equal differences at one distance, and pairs of equal values; a hit is F < 1. Every array counts,
-/// symmetric ones too. A neighbour has one value changed, or two exchanged under random keys.
+/// symmetric ones too. A neighbour has one value changed, or, under random keys, two exchanged.
 ///
 /// Source: Costas 1984, doi 10.1109/PROC.1984.12967; counts: OEIS A008404, checked by backtracking to order 9.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::{Costas, Encoding};
+/// assert_eq!(Costas::new(6, Encoding::Integer)?.reference_hits(), Some(116));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Costas {
     lattice: Lattice,

@@ -2,10 +2,10 @@
 
 use satisfice::Error;
 
-/// Formulas and graphs above this size are refused: the search could not hold a point of them.
+/// Larger formulas and graphs are refused: a point of them would not fit in memory.
 const LARGEST: usize = 100_000;
 
-/// Reads `path`; an error is about the parameter `file`.
+/// Reads `path`; errors name the parameter `file`.
 pub(super) fn read(path: &str) -> Result<String, Error> {
     std::fs::read_to_string(path)
         .map_err(|error| Error::parameter("file", path, format!("a readable file ({error})")))

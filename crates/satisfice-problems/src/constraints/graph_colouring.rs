@@ -25,6 +25,13 @@ const NAMES: &[&str] = &[
 ];
 
 /// A graph: number of vertices, and edges between vertices counted from 0.
+///
+/// ```
+/// use satisfice_problems::Graph;
+/// let petersen = Graph::petersen(5, 2)?;
+/// assert_eq!((petersen.vertices, petersen.edges.len()), (10, 15));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Graph {
     /// Number of vertices.
@@ -55,7 +62,7 @@ impl Graph {
     /// The graph of a DIMACS `edge` file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] about the parameter `file` where it cannot be read or is not in that format.
+    /// [`Error::Parameter`] for the parameter `file` if it cannot be read or is malformed.
     pub fn read_dimacs(path: &str) -> Result<Self, Error> {
         let (vertices, edges) = dimacs::edges(path, &dimacs::read(path)?)?;
         Ok(Self { vertices, edges })
@@ -64,10 +71,17 @@ impl Graph {
 
 /// All proper colourings of a graph with k colours.
 ///
-/// F is the number of edges between vertices of one colour, a hit is F < 1. Colourings that differ by an exchange of colours
-/// count as different: 120 of the Petersen graph with 3 colours. A neighbour has one vertex recoloured.
+/// F is the number of edges between vertices of the same colour; a hit is F < 1. Colourings that differ by a permutation of the
+/// colours count as different: the Petersen graph has 120 with 3 colours. A neighbour has one vertex recoloured.
 ///
 /// Source: the value at k of the chromatic polynomial, Birkhoff 1912, doi 10.2307/1967597; counts by backtracking.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::{Graph, GraphColouring};
+/// assert_eq!(GraphColouring::new(Graph::petersen(5, 2)?, 3)?.reference_hits(), Some(120));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct GraphColouring {
     lattice: Lattice,
@@ -83,7 +97,7 @@ impl GraphColouring {
     /// The colourings of `graph` with `colours` colours.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where an edge has an end that is no vertex, or both ends at one; [`Error::Bounds`] for 0 colours.
+    /// [`Error::Parameter`] for an edge with an end that is not a vertex, or with equal ends; [`Error::Bounds`] for 0 colours.
     pub fn new(graph: Graph, colours: u32) -> Result<Self, Error> {
         Self::described("", graph, colours)
     }
@@ -112,7 +126,7 @@ impl GraphColouring {
 }
 
 impl Violations for GraphColouring {
-    /// Cost: one step an edge.
+    /// Cost: one step per edge.
     #[inline]
     fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32 {
         let same = |&&[a, b]: &&[usize; 2]| value(a).is_some() && value(a) == value(b);

@@ -14,10 +14,17 @@ const PUBLISHED: [(usize, u64); 4] = [(11, 17_792), (12, 108_144), (15, 39_809_6
 /// others.
 ///
 /// Variable k - 1 is the place of the first k. F counts pairs of numbers that claim the same place, once for each such place;
-/// a hit is F < 1. A pairing and its reversal count as two: 52 for n = 7, 300 for n = 8, none unless n mod 4 is 0 or 3.
+/// a hit is F < 1. A pairing and its reversal are two hits: 52 for n = 7, 300 for n = 8, none unless n mod 4 is 0 or 3.
 /// A neighbour has one pair moved.
 ///
 /// Source: Langford 1958, Mathematical Gazette 42:228; counts: OEIS A014552 times 2, and by backtracking.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::Langford;
+/// assert_eq!(Langford::new(7)?.reference_hits(), Some(52));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Langford {
     lattice: Lattice,
@@ -39,7 +46,7 @@ impl Langford {
                 format!("a whole number from 1 to {LARGEST}"),
             ));
         }
-        // For n = 1 the pair has no place apart; one place is left, and both 1 claim places 0 and 2 of two.
+        // For n = 1 the pair does not fit in the row; a single place is left, and the two 1s claim places 0 and 2.
         Ok(Self {
             lattice: Lattice::new((1..=n).map(|k| (2 * n - k - 1).max(1)))?,
             threshold: 1.0,
@@ -48,7 +55,7 @@ impl Langford {
         })
     }
 
-    /// The row of numbers of a solution; `None` where it is none.
+    /// The row of numbers of a solution; `None` if it is not a pairing.
     #[must_use]
     pub fn row(&self, solution: &[u32]) -> Option<Vec<usize>> {
         let hit = self.lattice.holds(solution) && self.fitness(&solution.to_vec()) < self.threshold;
@@ -75,7 +82,7 @@ impl Violations for Langford {
     /// Cost: O(n^2).
     #[inline]
     fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32 {
-        // Only the single pair of n = 1 has no room at all.
+        // Only the pair of n = 1 does not fit.
         let mut violations = u32::from(self.n == 1);
         for k in 1..=self.n {
             let Some(place) = value(k - 1) else { continue };

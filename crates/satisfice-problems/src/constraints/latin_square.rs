@@ -12,10 +12,17 @@ const PUBLISHED: [u64; 7] = [1, 2, 12, 576, 161_280, 812_851_200, 61_479_419_904
 
 /// All Latin squares of order n: n symbols in n x n cells, each once in every row and every column.
 ///
-/// F is the number of pairs of equal symbols in a row or column, a hit is F < 1. The solution is the symbol of each cell, row
+/// F is the number of pairs of equal symbols in a row or column; a hit is F < 1. The solution is the symbol of each cell, row
 /// by row; every square counts, reduced or not. A neighbour has one symbol changed.
 ///
 /// Source: Euler 1782; counts: McKay, Wanless 2005, doi 10.1007/s00026-005-0261-7, and by backtracking to order 5.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::LatinSquare;
+/// assert_eq!(LatinSquare::new(4)?.reference_hits(), Some(576));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LatinSquare {
     lattice: Lattice,

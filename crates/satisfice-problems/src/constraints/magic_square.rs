@@ -13,10 +13,17 @@ const LARGEST: usize = 16;
 /// n (n^2 + 1) / 2.
 ///
 /// F is the sum over these lines of |sum - wanted|, plus the number of pairs of equal numbers; a hit is F < 1. The solution
-/// is, row by row, each number less one. Squares that differ by a symmetry count as different: 8 for n = 3, 7,040 for
+/// is, row by row, each number minus one. Squares that differ by a symmetry count as different: 8 for n = 3, 7,040 for
 /// n = 4. A neighbour has one number changed, or two exchanged under random keys.
 ///
 /// Source: Lo Shu; counts: Frénicle 1693, OEIS A006052 times 8, and by backtracking.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::{Encoding, MagicSquare};
+/// assert_eq!(MagicSquare::new(3, Encoding::Integer)?.reference_hits(), Some(8));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MagicSquare {
     lattice: Lattice,
@@ -25,7 +32,7 @@ pub struct MagicSquare {
     n: usize,
     /// The cells of each line.
     lines: Vec<Vec<usize>>,
-    /// What n numbers less one have to sum to.
+    /// The sum of each line, with each number reduced by one.
     sum: u32,
 }
 
@@ -109,7 +116,7 @@ impl SatisficingProblem for MagicSquare {
 }
 
 impl Bounds<f64> for MagicSquare {
-    /// How far the range of each line's sum is from the wanted one; sums of whole numbers are exact.
+    /// The distance of each line's range of sums from the required sum; sums of integers are exact.
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let cells = self.n * self.n;
         if region.lower.len() != cells || region.upper.len() != cells {

@@ -1,7 +1,7 @@
 //! Constraint satisfaction: F counts violated constraints, a hit violates none.
 //!
-//! The solver one would otherwise pick is an exact one: a constraint solver with enumeration of all solutions (CP-SAT,
-//! Gecode) or, on these sizes, plain [`backtrack`], whose solutions and nodes stand beside every problem here.
+//! The alternative to a search is an exact method: a constraint solver that enumerates all solutions (CP-SAT, Gecode) or, for
+//! these sizes, [`backtrack`].
 
 mod backtracking;
 mod costas;

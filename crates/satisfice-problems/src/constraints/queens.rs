@@ -8,13 +8,20 @@ use crate::lattice::{Lattice, description};
 
 const LARGEST: usize = 1000;
 
-/// All ways to put n queens on an n x n board, one a column, such that none attacks another.
+/// All ways to put n queens on an n x n board, one per column, so that none attacks another.
 ///
-/// The solution is the row of each column's queen. F is the number of pairs that share a row or a diagonal, a hit is
+/// The solution is the row of each column's queen. F is the number of pairs that share a row or a diagonal; a hit is
 /// F < 1. Boards that differ by a symmetry count as different: 92 for n = 8. A neighbour has one queen moved along its
 /// column, or two columns exchanged under random keys. [`backtrack`](crate::backtrack) finds all 92 in 2,057 nodes.
 ///
 /// Source: Bezzel 1848; counts: Bell, Stevens 2009, doi 10.1016/j.disc.2007.12.043, and by backtracking.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::Queens;
+/// assert_eq!(Queens::new(8)?.reference_hits(), Some(92));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Queens {
     lattice: Lattice,
@@ -57,7 +64,7 @@ impl Queens {
 }
 
 impl Violations for Queens {
-    /// Cost: O(n^2), which on small boards is faster than counting along lines.
+    /// Cost: O(n^2); on small boards, faster than counting along lines.
     #[inline]
     fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32 {
         let mut attacks = 0;

@@ -9,6 +9,14 @@ use super::{Extendable, Violations, constraint_bounds, constraint_methods, count
 use crate::lattice::{Lattice, description};
 
 /// A formula in conjunctive normal form.
+///
+/// ```
+/// use satisfice_problems::Formula;
+/// let formula = Formula::random(20, 85, 1)?;
+/// assert_eq!((formula.variables, formula.clauses.len()), (20, 85));
+/// assert!(formula.dimacs().starts_with("p cnf 20 85"));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Formula {
     /// Number of variables, n.
@@ -19,7 +27,7 @@ pub struct Formula {
 
 impl Formula {
     /// A uniform random 3-SAT formula: each clause has three different variables, each negated with probability 1/2.
-    /// Satisfiable and unsatisfiable formulas are equally likely at 4.267 clauses a variable (Mézard, Parisi, Zecchina
+    /// Satisfiable and unsatisfiable formulas are equally likely at 4.267 clauses per variable (Mézard, Parisi, Zecchina
     /// 2002, doi 10.1126/science.1073287), for many variables.
     ///
     /// # Errors
@@ -53,7 +61,7 @@ impl Formula {
     /// The formula of a DIMACS `cnf` file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] about the parameter `file` where it cannot be read or is not in that format.
+    /// [`Error::Parameter`] for the parameter `file` if it cannot be read or is malformed.
     pub fn read_dimacs(path: &str) -> Result<Self, Error> {
         let (variables, clauses) = dimacs::clauses(path, &dimacs::read(path)?)?;
         Ok(Self { variables, clauses })
@@ -76,10 +84,20 @@ impl Formula {
 
 /// All models of a formula in conjunctive normal form: random 3-SAT near the threshold by default, or a DIMACS file.
 ///
-/// F is the number of clauses that are not satisfied, a hit is F < 1. A solution is 0 or 1 for each variable; a neighbour has
+/// F is the number of unsatisfied clauses; a hit is F < 1. A solution is 0 or 1 for each variable; a neighbour has
 /// one flipped. Reference counts are by backtracking over the variables with a check of every clause that is complete.
 ///
 /// Source: Cook 1971, doi 10.1145/800157.805047; the random family: Mitchell, Selman, Levesque 1992.
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::{Formula, Sat};
+/// // (x1 or not x2) and (x2 or x3)
+/// let problem = Sat::new(Formula { variables: 3, clauses: vec![vec![1, -2], vec![2, 3]] })?;
+/// assert_eq!(problem.fitness(&vec![1, 1, 0]), 0.0);
+/// assert_eq!(problem.fitness(&vec![0, 1, 0]), 1.0);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Sat {
     lattice: Lattice,
@@ -96,7 +114,7 @@ impl Sat {
     /// The models of `formula`.
     ///
     /// # Errors
-    /// [`Error::NoAxis`] without a variable, [`Error::Parameter`] for a literal that is none.
+    /// [`Error::NoAxis`] without variables, [`Error::Parameter`] for a literal of no variable.
     pub fn new(formula: Formula) -> Result<Self, Error> {
         Self::described([("variables", formula.variables.to_string())], formula)
     }
@@ -132,7 +150,7 @@ fn wanted(literal: i32) -> (usize, u32) {
 }
 
 impl Violations for Sat {
-    /// Cost: one step a literal.
+    /// Cost: one step per literal.
     #[inline]
     fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32 {
         let falsified = |clause: &&Vec<i32>| {
@@ -174,7 +192,7 @@ impl Catalogued for Sat {
         Parameter::integer("variables", "number of variables, n", 20, 3, 10_000),
         Parameter::real(
             "ratio",
-            "clauses a variable; half of all formulas are satisfiable near 4.267",
+            "clauses per variable; half of all formulas are satisfiable near 4.267",
             4.267,
             0.0,
             100.0,

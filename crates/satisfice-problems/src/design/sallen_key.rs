@@ -1,4 +1,4 @@
-//! A filter from parts that can be bought.
+//! A filter made of standard parts.
 
 use core::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ const E24: [f64; 24] = [
     7.5, 8.2, 9.1,
 ];
 const E12: [f64; 12] = [1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 3.9, 4.7, 5.6, 6.8, 8.2];
-/// The quality as it was published, four digits of 1 / sqrt 2.
+/// The published quality, four digits of 1 / sqrt 2.
 #[expect(
     clippy::approx_constant,
     reason = "the published window has these four digits"
@@ -33,6 +33,16 @@ const PUBLISHED_HITS: u64 = 138;
 /// 72^2 x 36^2 lattice points in the order of the parts' values. A hit is a choice of parts.
 ///
 /// Source: Sallen, Key 1955, doi 10.1109/TCT.1955.6500159; part series: IEC 60063.
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::{SallenKey, Window};
+/// let problem = SallenKey::new(Window::default())?;
+/// let parts = problem.parts(&[0, 0, 0, 0]).unwrap();
+/// assert_eq!((parts.resistances, parts.capacitances), ([1e3; 2], [1e-9; 2]));
+/// assert!(problem.fitness(&vec![0, 0, 0, 0]) > 1.0); // 159 kHz instead of 1 kHz
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SallenKey {
     lattice: Lattice,
@@ -43,7 +53,14 @@ pub struct SallenKey {
     capacitors: Vec<f64>,
 }
 
-/// What a [`SallenKey`] filter shall be.
+/// The specification of a [`SallenKey`] filter.
+///
+/// ```
+/// use satisfice_problems::Window;
+/// let audio = Window { frequency: 20e3, ..Window::default() };
+/// assert_eq!(audio.quality, 0.7071);
+/// # let _ = audio;
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// Corner frequency in Hz, f.
@@ -98,7 +115,7 @@ impl SallenKey {
     /// The designs inside `window`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a number of the window is not positive and finite.
+    /// [`Error::Parameter`] if a number of the window is not positive and finite.
     pub fn new(window: Window) -> Result<Self, Error> {
         let parameters = [
             ("frequency", window.frequency),
@@ -135,7 +152,7 @@ impl SallenKey {
         })
     }
 
-    /// The parts of a solution (R1, R2, C1, C2); `None` where the cells are none of this problem.
+    /// The parts of a solution (R1, R2, C1, C2); `None` if they are not cells of this problem.
     #[must_use]
     pub fn parts(&self, cells: &[u32]) -> Option<Parts> {
         let &[r1, r2, c1, c2] = cells else { return None };

@@ -10,7 +10,7 @@ const PUBLISHED: &[Published] = &[(INPUTS, 20, 0.0, 8_662)];
 const PUBLISHED_LIMIT: f64 = 2.25;
 
 const INPUTS: usize = 5;
-/// Steps under one input, and their length.
+/// Steps per input, and their length.
 const STEPS: usize = 20;
 const STEP: f64 = 0.08;
 
@@ -20,9 +20,16 @@ const STEP: f64 = 0.08;
 ///
 /// u is constant on five equal parts of the 100 steps of 0.08, each at the centre of one of 20 equal cells of [-1, 1].
 /// Steps are semi-implicit Euler (v += h x'', x += h v). The fitness is the robustness of the specification,
-/// F = limit - max_t |x(t)|, and a hit is F < 0. What counts as distinct is the cell of inputs.
+/// F = limit - max_t |x(t)|, and a hit is F < 0. Hits in different cells of inputs are distinct.
 ///
 /// Source of the setting: Annpureddy, Liu, Fainekos, Sankaranarayanan 2011, doi 10.1007/978-3-642-19835-9_21.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::Falsification;
+/// assert_eq!(Falsification::new(20, 2.25)?.reference_hits(), Some(8_662));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Falsification {
     lattice: Lattice,
@@ -53,7 +60,7 @@ impl Falsification {
         })
     }
 
-    /// The positions x after each step under the inputs of a solution; empty where the cells are none of this problem.
+    /// The positions x after each step under the inputs of a solution; empty if they are not cells of this problem.
     #[must_use]
     pub fn trajectory(&self, cells: &[u32]) -> Vec<f64> {
         let mut trajectory = Vec::with_capacity(INPUTS * STEPS);
@@ -97,7 +104,7 @@ impl Catalogued for Falsification {
     const SOURCE: &'static str =
         "after Annpureddy et al. 2011, doi 10.1007/978-3-642-19835-9_21; count by enumeration";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::integer("levels", "levels an input", 20, 1, 10_000),
+        Parameter::integer("levels", "levels per input", 20, 1, 10_000),
         Parameter::real("limit", "what |x| must not exceed", PUBLISHED_LIMIT, 0.0, 100.0),
     ];
 

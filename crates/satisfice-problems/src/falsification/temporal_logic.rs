@@ -6,6 +6,14 @@ use std::collections::VecDeque;
 use satisfice::Error;
 
 /// Signals sampled at the same times.
+///
+/// ```
+/// use satisfice_problems::Trace;
+/// let trace = Trace::new(vec![vec![0.0, 1.5, 0.8], vec![1.0, 1.0, 2.0]])?; // two signals, three samples
+/// assert_eq!(trace.signals()[1][2], 2.0);
+/// assert!(Trace::new(vec![vec![0.0], vec![1.0, 2.0]]).is_err());
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     signals: Vec<Vec<f64>>,
@@ -16,7 +24,7 @@ impl Trace {
     /// A trace of these signals, each a list of samples.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where there is no signal, no sample, or another number of samples than in the first signal.
+    /// [`Error::Parameter`] if there is no signal or no sample, or if signals differ in length.
     pub fn new(signals: Vec<Vec<f64>>) -> Result<Self, Error> {
         let length = signals.first().map_or(0, Vec::len);
         if length == 0 {
@@ -47,8 +55,8 @@ impl Trace {
 ///
 /// [`robustness`](Specification::robustness) is the quantitative semantics (Donzé, Maler 2010, doi 10.1007/978-3-642-15297-9_9):
 /// positive where the trace satisfies the formula, negative where it falsifies it. Intervals are in samples, relative to
-/// the present one; what lies behind the end of the trace is left out, so that `always` over nothing holds (plus infinity)
-/// and `eventually` over nothing fails (minus infinity).
+/// the present one; samples past the end of the trace are left out: `always` over no sample holds (plus infinity),
+/// `eventually` over no sample fails (minus infinity).
 ///
 /// ```
 /// use satisfice_problems::{Specification, Trace};
@@ -97,18 +105,18 @@ impl Specification {
             factor: -1.0,
         })
     }
-    /// Not this: the negative.
+    /// The negation: minus the robustness.
     #[must_use]
     #[expect(clippy::should_implement_trait, reason = "reads like the other connectives")]
     pub fn not(self) -> Self {
         Self(Node::Not(Box::new(self.0)))
     }
-    /// Both: the minimum.
+    /// The conjunction: the minimum.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self(Node::And(Box::new(self.0), Box::new(other.0)))
     }
-    /// One of both: the maximum.
+    /// The disjunction: the maximum.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self(Node::Or(Box::new(self.0), Box::new(other.0)))
@@ -128,15 +136,15 @@ impl Specification {
     pub fn eventually(self, steps: RangeInclusive<usize>) -> Self {
         Self(Node::Eventually(Box::new(self.0), steps))
     }
-    /// `other` at one of these samples, and this at all samples from now until before it.
+    /// `other` at one of these samples, and this at every sample before it from now on.
     #[must_use]
     pub fn until(self, other: Self, steps: RangeInclusive<usize>) -> Self {
         Self(Node::Until(Box::new(self.0), Box::new(other.0), steps))
     }
 
-    /// The robustness at the first sample; NaN where the formula names a signal that the trace does not have.
+    /// The robustness at the first sample; NaN if the formula names a signal that the trace lacks.
     ///
-    /// Cost: O(n) a connective for n samples, O(n w) for `until` over w of them.
+    /// Cost: O(n) per connective for n samples; O(n w) for `until` over w samples.
     #[must_use]
     pub fn robustness(&self, trace: &Trace) -> f64 {
         self.0.robustness(trace).map_or(f64::NAN, |all| all[0])

@@ -31,17 +31,25 @@ const SPECIFICATIONS: &[&str] = &["speed", "engine", "calm-start", "late-gear"];
 /// Inputs are the throttle on 4 equal parts of 30 s, at m levels from shut to full, and the brake on 2 parts, at 4 levels from
 /// none to full. Signals are speed v in km/h, engine speed w in 1/min and gear. The torque of the engine at throttle u is
 /// 200 u (1 - (w / 6500)^2) N m. The gear goes up above w = 2600 + 2200 u, down below 1100 + 900 u, and by one gear a second
-/// at most. Drag, rolling resistance and brake work against it. Steps are those of Euler, of 0.1 s. Specifications:
+/// at most. Drag, rolling resistance and brake oppose it. Euler steps of 0.1 s. Specifications:
 ///
 /// - `speed`: always v < 110,
 /// - `engine`: always w < 4780,
 /// - `calm-start`: if always w < 3200, then always in the first 8 s v < 40,
 /// - `late-gear`: gear < 4 until, within 20 s, v > 100, or never gear 4.
 ///
-/// F is the robustness, in the units of the signals; a hit is F < 0. What counts as distinct is the cell of inputs.
+/// F is the robustness, in the units of the signals; a hit is F < 0. Hits in different cells of inputs are distinct.
 ///
 /// Source: after Hoxha, Abbas, Fainekos 2014, Benchmarks for temporal logic requirements for automotive systems (ARCH), with
 /// a simpler engine; counts by enumeration.
+///
+/// ```
+/// use satisfice_problems::Transmission;
+/// let problem = Transmission::new("speed", 5)?;
+/// let coasting = problem.trace(&[0; 6]).unwrap(); // throttle shut, brake off
+/// assert!(coasting.signals()[0].iter().all(|&v| v < 110.0));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Transmission {
     lattice: Lattice,
@@ -55,7 +63,7 @@ impl Transmission {
     /// Manoeuvres with `levels` levels of the throttle that falsify the specification of this name.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a name that is none, [`Error::Parameter`] for fewer than 2 levels.
+    /// [`Error::Unknown`] for an unknown name, [`Error::Parameter`] for fewer than 2 levels.
     pub fn new(specification: &str, levels: usize) -> Result<Self, Error> {
         if !(2..=1000).contains(&levels) {
             return Err(Error::parameter(
@@ -102,7 +110,7 @@ impl Transmission {
         })
     }
 
-    /// Speed, engine speed and gear after each step; `None` where the cells are none of this problem.
+    /// Speed, engine speed and gear after each step; `None` if they are not cells of this problem.
     #[must_use]
     pub fn trace(&self, cells: &[u32]) -> Option<Trace> {
         if !self.lattice.holds(cells) {

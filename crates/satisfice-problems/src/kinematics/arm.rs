@@ -7,7 +7,7 @@ use satisfice::{Error, SatisficingProblem};
 
 use crate::lattice::{Lattice, Published, as_published, description, lattice_methods, reference};
 
-/// Links, cells an angle, threshold, hits. The hits are those of `--example enumerate`.
+/// Links, cells per angle, threshold, hits. The hits are those of `--example enumerate`.
 const PUBLISHED: &[Published] = &[(3, 100, 0.01, 128), (4, 50, 0.015, 2_724), (5, 24, 0.03, 11_667)];
 
 const GOAL: [f64; 2] = [0.45, 0.2];
@@ -18,21 +18,30 @@ const GOAL: [f64; 2] = [0.45, 0.2];
 ///
 /// Each relative angle q_k is the centre of one of m equal cells of [-pi, pi]; a hit is a cell. Three links leave one
 /// degree of freedom, five leave three.
+///
+/// ```
+/// use satisfice_problems::Arm;
+/// let arm = Arm::new(3, 60, 0.05)?;
+/// let joints = arm.joints(&[30, 30, 30]); // nearly straight
+/// assert_eq!(joints.len(), 4);
+/// assert!(joints[3][0] > 0.98);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Arm {
     lattice: Lattice,
     threshold: f64,
     description: Description,
     cells: usize,
-    /// (cos, sin) of the multiples of pi / m, over one turn: all that sums of cell centres can be.
+    /// (cos, sin) of the multiples of pi / m over one turn: every sum of cell centres is one of them.
     directions: Vec<[f64; 2]>,
 }
 
 impl Arm {
-    /// An arm of `links` links with `cells` cells an angle; `threshold` in units of the arm's length.
+    /// An arm of `links` links with `cells` cells per angle; `threshold` in units of the arm's length.
     ///
     /// # Errors
-    /// [`Error::NoAxis`], [`Error::Bounds`] where a number is 0; [`Error::Threshold`] for NaN.
+    /// [`Error::NoAxis`] or [`Error::Bounds`] for a number that is 0; [`Error::Threshold`] for NaN.
     pub fn new(links: usize, cells: usize, threshold: f64) -> Result<Self, Error> {
         if threshold.is_nan() {
             return Err(Error::Threshold);
@@ -57,7 +66,7 @@ impl Arm {
         })
     }
 
-    /// The joints of a posture from the base (0, 0) to the tip; empty where the cells are none of this arm.
+    /// The joints of a posture from the base (0, 0) to the tip; empty if they are not cells of this arm.
     #[must_use]
     pub fn joints(&self, cells: &[u32]) -> Vec<[f64; 2]> {
         if !self.lattice.holds(cells) {
@@ -68,7 +77,7 @@ impl Arm {
         joints
     }
 
-    /// Where the tip has to be.
+    /// The goal of the tip.
     #[must_use]
     pub fn goal(&self) -> [f64; 2] {
         GOAL
@@ -113,7 +122,7 @@ impl Catalogued for Arm {
         Parameter::integer("links", "number of links, n", 3, 1, 64),
         Parameter::integer(
             "cells",
-            "cells an angle, m; 0 = as published for this number of links",
+            "cells per angle, m; 0 = as published for this number of links",
             0,
             0,
             1_000_000,

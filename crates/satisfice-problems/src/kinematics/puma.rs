@@ -19,19 +19,26 @@ const LINKS: [(f64, f64, f64, f64); JOINTS] = [
     (0.0, 0.0, 0.0, -1.0),
     (0.0, 0.0, 1.0, 0.0),
 ];
-/// A posture of the wanted pose; the others have to be found.
+/// One posture of the pose; the others are to be found.
 const POSTURE: [f64; JOINTS] = [0.4, 0.6, -0.5, 0.9, 0.8, -0.6];
 const LARGEST_THRESHOLD: f64 = 0.02;
 const LARGEST_SEPARATION: f64 = 0.1;
 
 /// The eight postures of a PUMA 560 that bring its hand to one pose.
 ///
-/// The unknowns are the six joint angles in [-pi, pi], limits aside. F is the sum of the squared errors of the place (in m^2)
-/// and of the nine entries of the rotation; a hit, F < 0.02, is polished by Gauss's and Newton's method, and is distinct
-/// beyond 0.1 rad. The pose is that of the angles (0.4, 0.6, -0.5, 0.9, 0.8, -0.6). Left or right shoulder, elbow up or
+/// The unknowns are the six joint angles in [-pi, pi], without the limits of the joints. F is the sum of the squared errors of the position
+/// (in m^2) and of the nine entries of the rotation. A hit, F < 0.02, is polished by the Gauss-Newton method; hits more than 0.1
+/// rad apart are distinct. The pose is that of the angles (0.4, 0.6, -0.5, 0.9, 0.8, -0.6). Left or right shoulder, elbow up or
 /// down, wrist flipped or not: eight isolated postures.
 ///
 /// Source: Pieper 1968; Lee 1982, doi 10.1109/MC.1982.1653917; parameters after Corke, Armstrong-Hélouvry 1994.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::Puma;
+/// assert_eq!(Puma::new(0.02, 0.1)?.reference_hits(), Some(8));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Puma {
     equations: Equations,
@@ -42,7 +49,7 @@ impl Puma {
     /// The postures with F below `threshold`, farther apart than `separation`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a number is not positive and finite.
+    /// [`Error::Parameter`] if a number is not positive and finite.
     pub fn new(threshold: f64, separation: f64) -> Result<Self, Error> {
         let mut equations = Equations::new(functions!(errors), [(-PI, PI); JOINTS], threshold, separation)?;
         equations.residuals = 12;
@@ -60,7 +67,7 @@ impl Puma {
     }
 }
 
-/// Rotation and place of the hand: three rows of four.
+/// Rotation and position of the hand: three rows of four.
 fn pose<N: Number>(angles: &[N]) -> [[N; 4]; 3] {
     let constant = N::constant;
     let mut pose = core::array::from_fn(|row| {

@@ -28,10 +28,18 @@ type Frame = [Vector; 3];
 ///
 /// The arm has the proportions of the KUKA LBR iiwa 7: joints turn about z, y, z, -y, z, y, z of the links, within 170, 120,
 /// 170, 120, 170, 120, 175 degrees to both sides; lengths 0.34, 0.4, 0.4, 0.126 m; the tool stands 0.1 m sideways. Three
-/// equations leave a self-motion of four dimensions. Each angle is the centre of one of m equal cells between its limits,
+/// equations leave a self-motion of four dimensions. Each angle is the centre of one of m equal cells between its limits;
 /// a hit is a cell.
 ///
 /// Source: Kuhlemann et al. 2016 (the proportions); count by enumeration.
+///
+/// ```
+/// use satisfice_problems::SevenJoints;
+/// let arm = SevenJoints::new(10, 0.03)?;
+/// assert_eq!(arm.angles(&[5; 7]).len(), 7);
+/// assert_eq!(arm.joints(&[5; 7]).len(), 5); // shoulder, elbow, wrist, flange, tool
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SevenJoints {
     lattice: Lattice,
@@ -43,7 +51,7 @@ pub struct SevenJoints {
 }
 
 impl SevenJoints {
-    /// Postures with `cells` cells an angle; `threshold` in metres.
+    /// Postures with `cells` cells per angle; `threshold` in metres.
     ///
     /// # Errors
     /// [`Error::Bounds`] for 0 cells, [`Error::Threshold`] for NaN.
@@ -67,7 +75,7 @@ impl SevenJoints {
         })
     }
 
-    /// The angles of a solution in radians; empty where the cells are none of this arm.
+    /// The angles of a solution in radians; empty if they are not cells of this arm.
     #[must_use]
     pub fn angles(&self, cells: &[u32]) -> Vec<f64> {
         if !self.lattice.holds(cells) {
@@ -80,7 +88,7 @@ impl SevenJoints {
             .collect()
     }
 
-    /// Shoulder, elbow, wrist, flange and tool of a solution; empty where the cells are none of this arm.
+    /// Shoulder, elbow, wrist, flange and tool of a solution; empty if they are not cells of this arm.
     #[must_use]
     pub fn joints(&self, cells: &[u32]) -> Vec<Vector> {
         if !self.lattice.holds(cells) {
@@ -153,7 +161,7 @@ impl Catalogued for SevenJoints {
         "postures of an arm with seven joints and their limits whose tool is at a goal";
     const SOURCE: &'static str = "proportions of the KUKA LBR iiwa 7; count by enumeration";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::integer("cells", "cells an angle, m", 10, 1, 100_000),
+        Parameter::integer("cells", "cells per angle, m", 10, 1, 100_000),
         Parameter::real(
             "threshold",
             "distance of the tool, delta, in metres",

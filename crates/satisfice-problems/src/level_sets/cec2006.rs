@@ -88,13 +88,22 @@ const SETS: [Set; 7] = [
 ///
 /// F(x) = max_i g_i(x) < delta, 0 by default.
 ///
-/// Of the 24 problems those without equalities whose feasible sets differ in kind: g01 (13 unknowns, linear), g04 (27 % of
+/// Those of the 24 problems that have no equalities and whose feasible sets differ in kind: g01 (13 unknowns, linear), g04 (27 % of
 /// the box), g06 (a thin crescent, 0.0066 % of the box), g08 (0.86 %), g09 (7 unknowns, 0.51 %), g12 (729 balls, 4.8 %), g24
-/// (two parts, 44 %). These are the shares of Table 3 of the report but for g04 and g24: there it has 52.1230 % and 79.6556 %,
-/// which its own inequalities do not give. A hit is a cell; counts are by enumeration where the lattice has at most 2e7 cells.
+/// (two parts, 44 %). The shares are those of Table 3 of the report, except for g04 and g24, for which it gives 52.1230 % and 79.6556 %,
+/// against its own inequalities. A hit is a cell; counts are by enumeration where the lattice has at most 2e7 cells.
 ///
 /// Source: Liang et al. 2006, Problem definitions and evaluation criteria for the CEC 2006 special session on constrained
 /// real-parameter optimization.
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::Cec2006;
+/// let crescent = Cec2006::new("g06", 100, 0.0)?;
+/// assert_eq!(crescent.centre(&[0, 0]).len(), 2);
+/// assert!(crescent.fitness(&vec![0, 0]) > 0.0);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Cec2006 {
     lattice: Lattice,
@@ -105,10 +114,10 @@ pub struct Cec2006 {
 }
 
 impl Cec2006 {
-    /// The feasible set of `problem` with `cells` cells an axis, 0 for the default of that problem.
+    /// The feasible set of `problem` with `cells` cells per axis, 0 for the default of that problem.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a name that is none, [`Error::Threshold`] for NaN.
+    /// [`Error::Unknown`] for an unknown name, [`Error::Threshold`] for NaN.
     pub fn new(problem: &str, cells: usize, threshold: f64) -> Result<Self, Error> {
         let index = SETS.iter().position(|set| set.name == problem);
         let index = index.ok_or_else(|| Error::unknown("problem", problem, NAMES.iter().copied()))?;
@@ -132,7 +141,7 @@ impl Cec2006 {
         })
     }
 
-    /// The centre of a cell; empty where it is none of this problem.
+    /// The centre of a cell; empty if it is not a cell of this problem.
     #[must_use]
     pub fn centre(&self, cells: &[u32]) -> Vec<f64> {
         if !self.lattice.holds(cells) {
@@ -182,7 +191,7 @@ impl Catalogued for Cec2006 {
         Parameter::choice("problem", "which problem", "g06", NAMES),
         Parameter::integer(
             "cells",
-            "cells an axis, m; 0 = 2000, 1000, 200, 20 or 10 by dimension",
+            "cells per axis, m; 0 = 2000, 1000, 200, 20 or 10 by dimension",
             0,
             0,
             1_000_000,

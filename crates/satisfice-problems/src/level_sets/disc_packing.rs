@@ -10,12 +10,21 @@ use crate::lattice::description;
 /// All ways to put n points on an m x m grid of the unit square with mutual distances above d: n equal discs of diameter d
 /// packed into a square of edge 1 + d.
 ///
-/// F = d - min_(i < j) |p_i - p_j|, a hit is F < 0. Discs are alike: the solution is the ascending list of grid cells, row by
-/// row, and an arrangement counts once. Axes are x and y of each point. For n = 3 no distance above sqrt 6 - sqrt 2 = 1.035
-/// is possible; at the default 0.95 what is left are a few narrow families of arrangements. The reference count is by
+/// F = d - min_(i < j) |p_i - p_j|, a hit is F < 0. Discs are interchangeable: the solution is the ascending list of grid cells,
+/// row by row, and an arrangement counts once. Axes are x and y of each point. For n = 3 no distance above sqrt 6 - sqrt 2 = 1.035
+/// is possible; at the default 0.95 a few narrow families of arrangements are left. The reference count is by
 /// backtracking over ascending cells.
 ///
 /// Source: Schaer 1965, doi 10.4153/CMB-1965-018-9 (the packing of points in a square).
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::DiscPacking;
+/// let problem = DiscPacking::new(2, 3, 1.2)?;
+/// assert!(problem.fitness(&vec![0, 8]) < 0.0); // opposite corners
+/// assert!(problem.fitness(&vec![0, 2]) > 0.0); // an edge of the square
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct DiscPacking {
     space: Space<f64>,

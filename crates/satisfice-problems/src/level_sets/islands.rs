@@ -20,14 +20,23 @@ const CENTRES: [[bool; DIMENSION]; 8] = [
     [true, true, false, false],
     [true, true, true, true],
 ];
-/// Dimension, cells an axis, threshold, hits: 8 times 1,312. The hits are those of `--example enumerate`.
+/// Dimension, cells per axis, threshold, hits: 8 times 1,312. The hits are those of `--example enumerate`.
 const PUBLISHED: &[Published] = &[(DIMENSION, 40, 0.1, 10_496)];
 
 /// All cells of a lattice on [0, 1]^4 whose centre lies near one of eight points:
 ///
 /// F(x) = min_k |x - c_k| < delta, c_k in {0.25, 0.75}^4 with an even number of coordinates 0.75.
 ///
-/// Centres are 0.71 apart, so that balls of radius 0.1 are islands far from each other. A hit is a cell.
+/// Centres are 0.71 apart, and balls of radius 0.1 are islands far from each other. A hit is a cell.
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::Islands;
+/// let problem = Islands::new(40, 0.1)?;
+/// assert!(problem.fitness(&vec![10, 10, 10, 10]) < 0.1); // next to the centre (0.25, 0.25, 0.25, 0.25)
+/// assert!(problem.fitness(&vec![20, 20, 20, 20]) > 0.1);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Islands {
     lattice: Lattice,
@@ -39,7 +48,7 @@ pub struct Islands {
 }
 
 impl Islands {
-    /// Islands of radius `threshold` with `cells` cells an axis.
+    /// Islands of radius `threshold` with `cells` cells per axis.
     ///
     /// # Errors
     /// [`Error::Bounds`] for 0 cells; [`Error::Threshold`] for NaN.
@@ -105,7 +114,7 @@ impl Catalogued for Islands {
     const SUMMARY: &'static str = "cells of [0, 1]^4 inside one of eight balls far from each other";
     const SOURCE: &'static str = "a standard test set; counts by enumeration";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::integer("cells", "cells an axis, m", 40, 1, 10_000),
+        Parameter::integer("cells", "cells per axis, m", 40, 1, 10_000),
         Parameter::real("threshold", "radius of the balls, delta", 0.1, 0.0, 2.0),
     ];
 

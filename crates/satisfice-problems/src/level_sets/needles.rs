@@ -7,9 +7,17 @@ use crate::lattice::{ENUMERABLE, Lattice, count_hits, description, lattice_metho
 
 /// All cells (i, j) of an m x m lattice with F(i, j) = hash(i, j) < delta, where the hash is uniform in [0, 1).
 ///
-/// Nothing about F at one cell says anything about another: no engine can be better than uniform sampling. The hash is
-/// the output function of `SplitMix64` (Steele, Lea, Flood 2014, doi 10.1145/2714064.2660195) on the number of the cell
+/// F at one cell says nothing about F at another: no engine can beat uniform sampling. The hash is
+/// the output function of `SplitMix64` (Steele, Lea, Flood 2014, doi 10.1145/2714064.2660195) on the cell's number
 /// plus the seed times an odd constant.
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::Needles;
+/// let problem = Needles::new(100, 0.01, 7)?;
+/// assert!((0.0..1.0).contains(&problem.fitness(&vec![3, 4])));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Needles {
     lattice: Lattice,
@@ -73,7 +81,7 @@ impl Catalogued for Needles {
     const SOURCE: &'static str =
         "SplitMix64: Steele, Lea, Flood 2014, doi 10.1145/2714064.2660195; counts by enumeration";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::integer("cells", "cells an axis, m", 1000, 1, 1_000_000),
+        Parameter::integer("cells", "cells per axis, m", 1000, 1, 1_000_000),
         Parameter::real(
             "threshold",
             "share of the cells that are hits, delta",
@@ -99,7 +107,7 @@ impl Catalogued for Needles {
 
 #[cfg(test)]
 mod tests {
-    /// The first outputs for state 0 of the authors' code: the hash names the problem, so it must never change.
+    /// The first outputs for state 0 of the authors' code: the hash defines the problem, so it must never change.
     #[test]
     fn the_hash_is_splitmix64() {
         assert_eq!(super::splitmix64(0), 0xe220_a839_7b1d_cdaf);

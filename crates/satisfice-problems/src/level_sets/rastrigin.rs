@@ -10,7 +10,7 @@ use crate::lattice::{
     Lattice, Published, RangeMinimum, as_published, centres, description, lattice_methods, reference,
 };
 
-/// Dimension, cells an axis, threshold, hits. The hits are those of `--example enumerate`.
+/// Dimension, cells per axis, threshold, hits. The hits are those of `--example enumerate`.
 const PUBLISHED: &[Published] = &[
     (2, 1000, 4.0, 15_136),
     (3, 100, 6.0, 3_184),
@@ -45,10 +45,10 @@ pub struct Rastrigin {
 }
 
 impl Rastrigin {
-    /// The level set below `threshold` in `dimension` dimensions with `cells` cells an axis.
+    /// The level set below `threshold` in `dimension` dimensions with `cells` cells per axis.
     ///
     /// # Errors
-    /// [`Error::NoAxis`], [`Error::Bounds`] where a number is 0; [`Error::Threshold`] for NaN.
+    /// [`Error::NoAxis`] or [`Error::Bounds`] for a number that is 0; [`Error::Threshold`] for NaN.
     pub fn new(dimension: usize, cells: usize, threshold: f64) -> Result<Self, Error> {
         if threshold.is_nan() {
             return Err(Error::Threshold);
@@ -106,7 +106,7 @@ impl Catalogued for Rastrigin {
         Parameter::integer("dimension", "number of axes, D", 5, 1, 64),
         Parameter::integer(
             "cells",
-            "cells an axis, m; 0 = as published for this dimension",
+            "cells per axis, m; 0 = as published for this dimension",
             0,
             0,
             1_000_000,

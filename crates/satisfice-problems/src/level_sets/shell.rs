@@ -8,7 +8,7 @@ use crate::lattice::{
     Lattice, Published, RangeMinimum, as_published, centres, description, lattice_methods, reference,
 };
 
-/// Dimension, cells an axis, threshold, hits. The hits are those of `--example enumerate`.
+/// Dimension, cells per axis, threshold, hits. The hits are those of `--example enumerate`.
 const PUBLISHED: &[Published] = &[
     (2, 1000, 0.003, 6_636),
     (4, 40, 0.02, 47_360),
@@ -22,6 +22,15 @@ const RADIUS: f64 = 0.7;
 /// F(x) = | |x| - 0.7 | < delta,
 ///
 /// one connected set without an interior. A hit is a cell.
+///
+/// ```
+/// use satisfice::SatisficingProblem;
+/// use satisfice_problems::Shell;
+/// let problem = Shell::new(2, 1000, 0.01)?;
+/// assert!(problem.fitness(&vec![850, 500]) < 0.01); // x = (0.7, 0)
+/// assert!(problem.fitness(&vec![500, 500]) > 0.69); // the centre
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Shell {
     lattice: Lattice,
@@ -33,10 +42,10 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// The shell of half-width `threshold` in `dimension` dimensions with `cells` cells an axis.
+    /// The shell of half-width `threshold` in `dimension` dimensions with `cells` cells per axis.
     ///
     /// # Errors
-    /// [`Error::NoAxis`], [`Error::Bounds`] where a number is 0; [`Error::Threshold`] for NaN.
+    /// [`Error::NoAxis`] or [`Error::Bounds`] for a number that is 0; [`Error::Threshold`] for NaN.
     pub fn new(dimension: usize, cells: usize, threshold: f64) -> Result<Self, Error> {
         if threshold.is_nan() {
             return Err(Error::Threshold);
@@ -99,7 +108,7 @@ impl Catalogued for Shell {
         Parameter::integer("dimension", "number of axes, D", 4, 1, 64),
         Parameter::integer(
             "cells",
-            "cells an axis, m; 0 = as published for this dimension",
+            "cells per axis, m; 0 = as published for this dimension",
             0,
             0,
             1_000_000,

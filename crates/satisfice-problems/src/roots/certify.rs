@@ -7,7 +7,7 @@ use crate::number::Dual;
 
 type Box<const N: usize = UNKNOWNS> = [Interval; N];
 
-/// Boxes are tested a little inflated, so that roots on their faces are inside one.
+/// Boxes are inflated a little before a test, so that a root on a face is inside one of them.
 const INFLATION: f64 = 0.05;
 /// The whole space is searched with this margin, relative to its widths, because roots may lie on its border.
 const MARGIN: f64 = 1e-3;
@@ -26,7 +26,7 @@ fn width(x: Interval) -> f64 {
 fn contains_zero(x: Interval) -> bool {
     x.inf() <= 0.0 && 0.0 <= x.sup()
 }
-/// `None` where they have no point in common.
+/// `None` if they have no point in common.
 fn common(a: Interval, b: Interval) -> Option<Interval> {
     let (lower, upper) = (a.inf().max(b.inf()), a.sup().min(b.sup()));
     (lower <= upper).then(|| interval(lower, upper))
@@ -52,7 +52,7 @@ pub(super) fn certify(equations: &Equations, limit: usize) -> Option<Vec<Vec<f64
         if seen > limit {
             return None;
         }
-        // What is proved already.
+        // Enclosures proved so far.
         let inside_known = |(_, only): &(Box, Box)| {
             x[..n]
                 .iter()
@@ -140,7 +140,7 @@ fn sharpen(equations: &Equations, x: &mut Box) {
     }
 }
 
-/// K(X) = m - C f(m) + (1 - C J(X)) (X - m), with C near J(m)^-1; `None` where that does not exist.
+/// K(X) = m - C f(m) + (1 - C J(X)) (X - m), with C near J(m)^-1; `None` if J(m) is singular.
 #[expect(clippy::needless_range_loop, reason = "matrix indices as in the formula")]
 fn krawczyk(equations: &Equations, x: &Box) -> Option<Box> {
     let n = equations.space.dimension();

@@ -1,16 +1,15 @@
-//! A system e(x) = 0 in a box, as a satisficing problem: what all root problems share.
+//! A system e(x) = 0 in a box, as a satisficing problem; shared by all root problems.
 
 use satisfice::interval::{Interval, IntervalOps, lower_bound, side};
 use satisfice::{Axis, Error, Located, Region, Space};
 use satisfice::{Bounds, Encoding};
 
-use super::newton;
 use crate::number::{Dual, Number};
 
 /// Systems have at most this many unknowns, so that evaluation needs no allocation.
 pub(crate) const UNKNOWNS: usize = 24;
 
-/// One system, in the arithmetics it is needed in. Each writes all equations.
+/// A system in each arithmetic that it is evaluated in. Each function writes all equations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Functions {
     pub(crate) real: fn(&[f64], &mut [f64]),
@@ -44,7 +43,7 @@ pub(crate) struct Equations {
 }
 
 impl Equations {
-    /// `threshold` of the sum of squares and `separation` of roots have to be positive.
+    /// `threshold` (of the sum of squares) and `separation` (of roots) are positive.
     pub(crate) fn new(
         functions: Functions,
         bounds: impl IntoIterator<Item = (f64, f64)>,
@@ -98,14 +97,6 @@ impl Equations {
         (self.functions.real)(x, &mut residuals[..self.residuals]);
         residuals[..self.residuals].iter().fold(0.0, |sum, e| sum + e * e)
     }
-
-    /// The root that Newton's method finds from a hit; `None` if it finds none inside the box.
-    pub(crate) fn canonical(&self, hit: &Located<f64>) -> Option<Located<f64>> {
-        Some(Located {
-            coordinates: newton::polish(self, &hit.coordinates)?,
-            separation: hit.separation.clone(),
-        })
-    }
 }
 
 impl Encoding<f64, Located<f64>> for Equations {
@@ -122,7 +113,7 @@ impl Encoding<f64, Located<f64>> for Equations {
 }
 
 impl Bounds<f64> for Equations {
-    /// The same in interval arithmetic, which contains every rounding of `fitness`.
+    /// The sum in interval arithmetic, which contains every rounding of `fitness`.
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let n = self.space.dimension();
         if region.lower.len() != n || region.upper.len() != n {

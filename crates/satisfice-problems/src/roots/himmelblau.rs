@@ -16,10 +16,17 @@ const LEAST_DISTANCE: f64 = 3.5;
 ///
 /// F(x, y) = (x^2 + y - 11)^2 + (x + y^2 - 7)^2 < delta.
 ///
-/// What counts as distinct is a root: a hit is polished by Newton's method, and hits within the separation of it are the
-/// same. `lower_bound` is an interval evaluation.
+/// A hit is polished by Newton's method; different roots are distinct, and hits within the separation of a root are that
+/// root. `lower_bound` is an interval evaluation.
 ///
 /// Source: Himmelblau 1972, Applied Nonlinear Programming; the roots are those of the quartic that elimination leaves.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::Himmelblau;
+/// assert_eq!(Himmelblau::new(1.0, 0.1)?.reference_hits(), Some(4));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Himmelblau {
     equations: Equations,
@@ -35,7 +42,7 @@ impl Himmelblau {
     /// The roots with F below `threshold`, farther apart than `separation`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a number is not positive and finite.
+    /// [`Error::Parameter`] if a number is not positive and finite.
     pub fn new(threshold: f64, separation: f64) -> Result<Self, Error> {
         Ok(Self {
             equations: Equations::new(functions!(himmelblau), [(-6.0, 6.0); 2], threshold, separation)?,

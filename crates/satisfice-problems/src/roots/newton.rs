@@ -1,22 +1,32 @@
 //! Newton's method from a point near a root, damped.
 
-use satisfice::Boundary;
+use satisfice::{Boundary, Located};
 
 use super::equations::{Equations, UNKNOWNS};
 use crate::number::Dual;
 
-/// From inside a sound threshold ten steps are plenty; more only matter at near-singular roots.
+/// Below a sensible threshold ten steps suffice; more are needed only at near-singular roots.
 const STEPS: usize = 60;
-/// Damped steps are shorter.
+/// Damped steps are shorter than full ones.
 const DAMPED_STEPS: usize = 1000;
-/// A step is halved at most this often.
+/// A step is halved at most this many times.
 const HALVINGS: usize = 20;
-/// Where a step of Gauss and Newton leads nowhere, near a singular posture: the first damping of Levenberg 1944, and the largest.
+/// The first and the largest damping of Levenberg 1944, for points near a singularity, where the Gauss-Newton step fails.
 const DAMPING: (f64, f64) = (1e-4, 1.0);
 
-/// The root near `start`: as close as f64 allows, with a residual not above that of `start`, inside the box. `None` where
+impl Equations {
+    /// The root that Newton's method finds from a hit; `None` if it finds none inside the box.
+    pub(crate) fn canonical(&self, hit: &Located<f64>) -> Option<Located<f64>> {
+        Some(Located {
+            coordinates: polish(self, &hit.coordinates)?,
+            separation: hit.separation.clone(),
+        })
+    }
+}
+
+/// The root near `start`: as close as f64 allows, with a residual not above that of `start`, inside the box. `None` if
 /// the Jacobian is singular or the iteration leaves the box.
-pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
+fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
     let before = equations.fitness(start);
     let (mut best, mut least) = (start.to_vec(), before);
     let can_damp = equations.residuals > start.len();
@@ -44,7 +54,7 @@ pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
                 damping = if damping > DAMPING.0 { damping / 4.0 } else { 0.0 };
             }
             None if can_damp && damping < DAMPING.1 => damping = (4.0 * damping).max(DAMPING.0),
-            // No step makes it better: rounding is all that is left.
+            // No step improves it: only rounding is left.
             None => break,
         }
     }
@@ -63,7 +73,7 @@ pub(crate) fn polish(equations: &Equations, start: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// J(x)^-1 e(x), by Gaussian elimination with partial pivoting on the exact derivatives. With more equations than unknowns
-/// the step of Gauss and Newton, from J^T J, to whose diagonal `damping` is added.
+/// the Gauss-Newton step, from J^T J, to whose diagonal `damping` is added.
 fn newton_step(equations: &Equations, x: &[f64], damping: f64) -> Option<[f64; UNKNOWNS]> {
     let (n, m) = (x.len(), equations.residuals);
     let mut matrix = [[0.0; UNKNOWNS + 1]; UNKNOWNS];

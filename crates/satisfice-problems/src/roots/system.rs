@@ -13,9 +13,9 @@ const LARGEST_SEPARATION: f64 = 0.01;
 
 /// All roots of a nonlinear system in a box.
 ///
-/// F is the sum of the squares of the equations, a hit is F < delta = 1e-5; it is polished by Newton's method, and hits within
+/// F is the sum of the squares of the equations. A hit, F < delta = 1e-5, is polished by Newton's method, and hits within
 /// 0.01 of each other are one root: the usual rules of the field. Every count is proved by [`System::certify`] in a test,
-/// but for the singular root of cosine-circle.
+/// except for the singular root of cosine-circle.
 ///
 /// | name | unknowns | roots |
 /// |---|---|---|
@@ -37,8 +37,15 @@ const LARGEST_SEPARATION: f64 = 0.01;
 /// | katsura | 4 | 6 |
 /// | wright | 5 | 32 |
 ///
-/// Sources stand beside the equations, in `roots/systems.rs`; a survey of such problems: Gong et al. 2021, doi
+/// The sources are given with the equations in `roots/systems.rs`; a survey of such problems: Gong et al. 2021, doi
 /// 10.1016/j.swevo.2021.100906.
+///
+/// ```
+/// use satisfice_problems::System;
+/// let system = System::new("boggs", 1e-5, 0.01)?;
+/// assert_eq!(system.certify(100_000).unwrap().len(), 3); // proved
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct System {
     equations: Equations,
@@ -50,7 +57,7 @@ impl System {
     /// The system called `name`, with roots where F < `threshold`, farther apart than `separation`.
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a name that is none, [`Error::Parameter`] where a number is not positive and finite.
+    /// [`Error::Unknown`] for an unknown name, [`Error::Parameter`] if a number is not positive and finite.
     pub fn new(name: &str, threshold: f64, separation: f64) -> Result<Self, Error> {
         let index = SYSTEMS.iter().position(|entry| entry.name == name);
         let index = index.ok_or_else(|| Error::unknown("system", name, NAMES.iter().copied()))?;

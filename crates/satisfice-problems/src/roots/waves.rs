@@ -16,10 +16,17 @@ const LARGEST_SEPARATION: f64 = 0.05;
 ///
 /// sin 6 pi x = 0.5 cos 2 pi y, sin 6 pi y = -0.5 cos 2 pi x.
 ///
-/// F is the sum of the squared differences. What counts as distinct is a root: a hit is polished by Newton's method.
-/// There are 144: both equations have period 2 in x and y. The first keeps |sin 6 pi x| <= 0.5, away from the extrema of the
-/// wave, so that it is 12 curves x = g(y) with |g'| < 0.2 on the torus; the second likewise 12 curves y = h(x) with
-/// |h'| < 0.2; a curve of each kind cross exactly once (h after g contracts), and no crossing lies on the border.
+/// F is the sum of the squared differences. A hit is polished by Newton's method; different roots are distinct.
+/// There are 144: both equations have period 2 in x and y. The first implies |sin 6 pi x| <= 0.5, away from the extrema of
+/// the wave: its solutions are 12 curves x = g(y) with |g'| < 0.2 on the torus; those of the second, 12 curves y = h(x) with
+/// |h'| < 0.2; two curves, one of each kind, cross exactly once (h after g is a contraction), and no crossing is on the border.
+///
+/// ```
+/// use satisfice::catalogue::Catalogued;
+/// use satisfice_problems::Roots;
+/// assert_eq!(Roots::new(6e-4, 0.01)?.reference_hits(), Some(144));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Roots {
     equations: Equations,
@@ -36,7 +43,7 @@ impl Roots {
     /// The roots with F below `threshold`, farther apart than `separation`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where a number is not positive and finite.
+    /// [`Error::Parameter`] if a number is not positive and finite.
     pub fn new(threshold: f64, separation: f64) -> Result<Self, Error> {
         Ok(Self {
             equations: Equations::new(functions!(waves), [(0.0, 2.0); 2], threshold, separation)?,

@@ -30,7 +30,7 @@ pub struct Branin {
 }
 
 impl Branin {
-    /// The points with F below `threshold`, of which those within `separation` of each other are one.
+    /// The points with F below `threshold`; points within `separation` of each other are one hit.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a threshold that is not finite, or a separation that is negative or not finite.

@@ -43,7 +43,7 @@ const CENTRES: [[f64; 6]; 4] = [
 ];
 
 impl Hartmann6 {
-    /// The points with F below `threshold`, of which those within `separation` of each other are one.
+    /// The points with F below `threshold`; points within `separation` of each other are one hit.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a threshold that is not finite, or a separation that is negative or not finite.
@@ -52,7 +52,7 @@ impl Hartmann6 {
         Ok(Self { surface })
     }
 
-    /// F at a point of the unit cube; missing coordinates count as at each centre.
+    /// F at a point of the unit cube; a missing coordinate is taken at each centre.
     #[must_use]
     pub fn value(point: &[f64]) -> f64 {
         let well = |k: usize| {

@@ -1,4 +1,4 @@
-//! Smooth functions of few variables, the usual test of searches with few evaluations.
+//! Smooth functions of few variables, the usual tests of a search with few evaluations.
 
 mod branin;
 mod hartmann;

@@ -5,7 +5,7 @@ use satisfice::{Encoding, Error, Located, Space};
 
 use crate::lattice::description;
 
-/// What the problems of this family share.
+/// The part that the problems of this family share.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
     pub(super) space: Space<f64>,
