@@ -29,12 +29,10 @@ RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --all-features --quie
 step "feature matrix: none, each alone; the tests are the same, so the results are"
 # All features together are the workspace's tests. What no feature switches is tested without any, the rest has to compile.
 cargo test -p satisfice --quiet --no-default-features --lib --tests
-for features in rayon serde interval; do
+for features in rayon interval; do
   echo "-- satisfice with features: $features"
   cargo check -p satisfice --quiet --no-default-features --features "$features" --all-targets
 done
-# Checkpoints are the one thing that a feature adds to the state of a search.
-cargo test -p satisfice --quiet --no-default-features --features serde --test checkpoint
 
 if rustup target list --installed 2> /dev/null | grep -q '^wasm32-unknown-unknown$'; then
   step "the core compiles for the web"

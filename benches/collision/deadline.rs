@@ -14,7 +14,7 @@ const LOOK: usize = 64;
 /// delta.
 const BANDS: [f32; 5] = [0.2, 0.28, 0.4, 0.55, f32::INFINITY];
 
-/// Candidates whose likelihood is looked at together.
+/// Candidates whose likelihood is examined together.
 const BLOCK: usize = 2048;
 
 /// What is there when the clock starts.
@@ -22,12 +22,12 @@ struct Culled {
     triangles: Vec<Triangle>,
     candidates: Pairs,
     /// For each candidate the squared distance of the two centres, in units of the farthest at which the triangles can still be
-    /// within delta. Whoever culls has both boxes at hand, and leaves this behind.
+    /// within delta. Whoever culls has both boxes available, and leaves this behind.
     apart: Vec<f32>,
     threshold: Threshold,
 }
 
-/// A clock that is looked at now and then.
+/// A clock that is read now and then.
 struct Clock {
     end: Instant,
     steps: usize,

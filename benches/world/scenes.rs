@@ -16,7 +16,7 @@ pub(crate) struct Scene {
     pub(crate) huge: Option<f64>,
     /// Every so many-th body moves; 0 for none.
     pub(crate) every: usize,
-    /// Whether triangles are looked at too.
+    /// Whether triangles are examined too.
     pub(crate) triangles: bool,
 }
 

@@ -54,7 +54,7 @@ impl MovingTeapots {
                 }
             }
             let moved = Placement::from_translation(offset)?.place(&teapot)?;
-            // Samples and serial numbers stay: a pair keeps its place in the space.
+            // Samples and indices stay: a pair keeps its place in the space.
             problem.pairs_mut().move_b(&moved)?;
             scene
                 .hits
@@ -87,7 +87,7 @@ impl MovingTeapots {
     }
 
     /// Mean recall of every frame by an engine with these settings, in percent, over the seeds 1 to `seeds`: one search each, one slice of so many
-    /// evaluations a frame.
+    /// evaluations per frame.
     ///
     /// # Errors
     /// As [`Search::run`], and for an engine that finds what is no hit.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// What was wrong with a suite, a run of it or a file.
+/// An error in a suite, in one of its runs, or of a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -23,7 +23,7 @@ pub enum Error {
     Suite {
         /// Its name or file, and the part of it.
         place: String,
-        /// What is wrong, and what would be right.
+        /// The problem, and what is allowed instead.
         what: String,
     },
     /// A file of a sweep that cannot be read or written.
@@ -31,7 +31,7 @@ pub enum Error {
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         what: String,
     },
 }

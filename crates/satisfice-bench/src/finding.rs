@@ -9,13 +9,13 @@ use crate::table;
 pub struct Figure {
     /// Without extension.
     pub name: &'static str,
-    /// What is seen.
+    /// A description.
     pub caption: String,
     /// The picture.
     pub chart: Chart,
 }
 
-/// What a study found.
+/// The result of a study.
 #[derive(Debug, Clone, Default)]
 pub struct Finding {
     /// Heading.

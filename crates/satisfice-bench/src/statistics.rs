@@ -9,7 +9,7 @@ const RESAMPLES: usize = 1000;
 /// The seed of all bootstraps: the same rows give the same report.
 const SEED: u64 = 0x5eed;
 
-/// A median and the 95 % percentile-bootstrap interval of it; infinite where more than half of the runs never got there.
+/// A median and the 95 % percentile-bootstrap interval of it; infinite if more than half of the runs never got there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The median.

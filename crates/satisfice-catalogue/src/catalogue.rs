@@ -27,7 +27,7 @@ pub struct ProblemSpec {
     pub name: &'static str,
     /// One line.
     pub summary: &'static str,
-    /// Where it comes from.
+    /// Its source.
     pub source: &'static str,
     /// Its parameters with defaults and ranges.
     pub parameters: &'static [Parameter],

@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use satisfice::{Cancel, TracePoint};
 
-/// How far a run is.
+/// The progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
     /// The slice that is running, from 0.

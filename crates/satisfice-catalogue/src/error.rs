@@ -1,6 +1,6 @@
 //! Every error of this crate, as data.
 
-/// What was wrong with a specification, a report or a checkpoint.
+/// An error in a specification, a report or a checkpoint.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -18,7 +18,7 @@ pub enum Error {
         "the checkpoint's {what} is {saved}, not {now}: give the arguments that the run was started with"
     )]
     Differs {
-        /// What differs, as a path in the JSON of a [`RunSpec`](crate::RunSpec).
+        /// The difference, as a path in the JSON of a [`RunSpec`](crate::RunSpec).
         what: String,
         /// Its value in the checkpoint.
         saved: String,

@@ -13,7 +13,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod black_box;
 pub mod catalogue;
 pub mod checkpoint;
 mod control;
@@ -23,6 +22,7 @@ mod instance;
 pub mod json;
 pub mod listing;
 mod machine;
+mod method;
 pub mod options;
 pub mod quantity;
 pub mod report;

@@ -25,7 +25,7 @@ pub struct Item {
     pub name: &'static str,
     /// One line.
     pub summary: &'static str,
-    /// Where it comes from.
+    /// Its source.
     pub reference: &'static str,
     /// Its parameters.
     pub parameters: Vec<Row>,
@@ -36,14 +36,14 @@ pub struct Item {
 pub struct Row {
     /// Its name.
     pub name: &'static str,
-    /// What it does.
+    /// A summary.
     pub summary: &'static str,
     /// Its values.
     #[serde(flatten)]
     pub values: Range,
 }
 
-/// What values a parameter takes, and its default.
+/// The values of a parameter, and its default.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Range {

@@ -7,9 +7,9 @@ use crate::spec::RunSpec;
 pub struct RunOption {
     /// Its name: `--NAME` on the command line, `NAME = VALUE` in a suite.
     pub name: &'static str,
-    /// What its value is, for help: `TIME`, `N`.
+    /// The kind of its value, for help: `TIME`, `N`.
     pub value: &'static str,
-    /// What it does, for help.
+    /// A summary, for help.
     pub help: &'static str,
     /// Whether it is an option of every search, or of `run` and suites only.
     pub every_search: bool,

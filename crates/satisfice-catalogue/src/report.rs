@@ -6,7 +6,7 @@ use crate::spec::RunSpec;
 
 pub use satisfice::report::{SliceReport, recall};
 
-/// What one run did and found: all that is needed to repeat and to verify it. Everything but times is the same for the
+/// The report of a run: all that is needed to repeat and to verify it. Everything but times is the same for the
 /// same specification under a budget of evaluations.
 ///
 /// Its JSON is that of a library's [`Report`](satisfice::Report), and in addition lists several slices.

@@ -108,7 +108,7 @@ where
     failed.map_or(Ok(reports), |error| Err(error.into()))
 }
 
-/// What to say where several threads had little to share.
+/// The note for runs in which several threads had little to share.
 fn idle_threads(spec: &RunSpec, calls: u64, shared: u64) -> Option<String> {
     let idle = spec.threads != 1 && spec.islands == 1 && calls > 0 && shared < calls / 2;
     idle.then(|| {

@@ -7,7 +7,7 @@ use satisfice::{Budget, Cancel, Real};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::error::Error;
-use crate::exact;
+use crate::method;
 use crate::settings::Settings;
 
 /// A run: a problem, an engine, a seed and a budget.
@@ -34,7 +34,7 @@ pub struct RunSpec {
     pub engine_parameters: Settings,
     /// The seed; 0 by default.
     pub seed: u64,
-    /// What the run may spend; nothing is limited by default.
+    /// The limits of the run; none by default.
     pub budget: Limits,
     /// The share of the evaluations spent on uniform probes, from 0 to 0.5; `None`, the default, leaves it to the engine.
     #[serde(default, rename = "requested_probe_share")]
@@ -159,7 +159,7 @@ impl RunSpec {
         if self.budget.slices == 0 {
             return Err(Error::NoSlices);
         }
-        if exact::find(&self.engine).is_some() {
+        if method::find(&self.engine).is_some() {
             // An exact method has no parameters, so every name is unknown.
             let texts = self.engine_parameters.texts();
             satisfice::catalogue::Params::with(&[], &self.engine, pairs(&texts))?;

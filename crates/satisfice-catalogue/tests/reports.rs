@@ -1,4 +1,4 @@
-//! Records of runs by name: what they hold, that they repeat, and that a false one is found out.
+//! Records of runs by name: their contents, that runs repeat, and that a false report is detected.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

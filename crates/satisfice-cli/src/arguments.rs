@@ -113,7 +113,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
 
-    /// Time between two checkpoints; more where a checkpoint takes more than a tenth of it.
+    /// Time between two checkpoints; longer if a checkpoint takes more than a tenth of it.
     #[arg(long, value_name = "TIME", default_value = "5s", value_parser = quantity::time, requires = "checkpoint")]
     pub(crate) checkpoint_every: Duration,
 
@@ -167,7 +167,7 @@ pub(crate) struct ProgramArguments {
     #[arg(long, value_name = "TIME", value_parser = satisfice_catalogue::quantity::time)]
     pub(crate) timeout: Option<Duration>,
 
-    /// Try an evaluation that failed again so often. If it fails then, its value counts as NaN.
+    /// Retry a failed evaluation up to this many times. If it still fails, its value counts as NaN.
     #[arg(long, value_name = "N", default_value = "1")]
     pub(crate) retries: u32,
 
@@ -365,8 +365,8 @@ pub(crate) enum BenchSubcommands {
     Merge(MergeArguments),
 }
 
-/// Put the shards of a sweep together: the results are those of a sweep on one machine, but for times. A run that is missing or
-/// there twice is an error that names it.
+/// Put the shards of a sweep together: the results are those of a sweep on one machine, except for times. A run that is
+/// missing or present twice is an error that names it.
 #[derive(Debug, Args)]
 pub(crate) struct MergeArguments {
     /// The folders that `bench --shard` wrote, one for each shard.
@@ -378,7 +378,7 @@ pub(crate) struct MergeArguments {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// Evaluate every solution of a report again, check its counts, and print what does not fit.
+/// Evaluate every solution of a report again, check its counts, and print every mismatch.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

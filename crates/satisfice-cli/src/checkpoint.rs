@@ -42,7 +42,7 @@ impl Keeper {
         })
     }
 
-    /// Replaces the file. A failure is reported at once, and the next checkpoint is tried again: the run goes on.
+    /// Replaces the file. A failure is reported at once, and the next checkpoint is tried again: the run continues.
     pub(crate) fn save(&mut self, bytes: &[u8]) {
         self.failed = self.output.write(bytes).err();
         if let Some(error) = &self.failed {

@@ -74,6 +74,13 @@ use serde::de::DeserializeOwned;
 /// The command, with the problems that it knows by name.
 ///
 /// An example is at the top of [this page](crate).
+///
+/// ```
+/// use satisfice_cli::Command;
+/// use satisfice_collision::problem::Teapots;
+/// let command = Command::without_problems().problem::<Teapots>(); // `list`, `run`, `bench`, `verify` know `teapots`
+/// # let _ = command;
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Command {
     catalogue: Catalogue,

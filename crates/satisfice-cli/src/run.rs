@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
-use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunReport, RunSpec, json};
+use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunSpec, json};
 use satisfice_draw::plot::{self, Format};
 
 use crate::arguments::{DEFAULT_ENGINE, RunArguments};
@@ -93,7 +93,7 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
         .into_iter()
         .flatten()
         .any(|path| path == Path::new("-"));
-    let shown = show(&report, to_stdout)?;
+    let shown = summary::show(&report, to_stdout)?;
     keeper.map_or(Ok(()), Keeper::finish)?;
     Ok(shown)
 }
@@ -118,12 +118,4 @@ fn spec(arguments: &RunArguments, saved: Option<&RunSpec>) -> anyhow::Result<Run
     arguments.search.enter(&mut spec);
     arguments.slices.enter(&mut spec);
     Ok(spec)
-}
-
-/// The summary, unless stdout has the report itself.
-pub(crate) fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
-    if !to_stdout {
-        output::print(summary::summary(report).as_bytes())?;
-    }
-    Ok(summary::exit_code(report))
 }

@@ -7,6 +7,8 @@ use satisfice::Completeness;
 use satisfice_catalogue::RunReport;
 use satisfice_catalogue::report::FoundSolution;
 
+use crate::output;
+
 /// The number of hits shown; all of them are in the JSON report.
 const SHOWN: usize = 5;
 /// Bytes of a solution that are shown.
@@ -15,6 +17,14 @@ const LONGEST: usize = 300;
 /// The summary of a report.
 pub(crate) fn summary(report: &RunReport) -> String {
     summary_with(report, |solution| shortened(&solution.solution.to_string()))
+}
+
+/// The summary, unless stdout has the report itself.
+pub(crate) fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
+    if !to_stdout {
+        output::print(summary(report).as_bytes())?;
+    }
+    Ok(exit_code(report))
 }
 
 /// A solution on one line of a terminal: the first values of a long one.

@@ -279,7 +279,7 @@ fn all_values_of_a_list_are_run() {
     assert_eq!((spent(100), spent(4000)), (4, 4));
 }
 
-/// Ctrl-C keeps the runs that have ended, and the same command goes on.
+/// Ctrl-C keeps the runs that have ended, and the same command continues.
 #[test]
 #[cfg(unix)]
 fn an_interrupted_sweep_keeps_its_runs() {

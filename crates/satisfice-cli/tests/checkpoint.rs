@@ -14,7 +14,7 @@ fn read(path: &std::path::Path) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
 }
 
-/// Some seconds long where nobody interrupts it.
+/// Takes a few seconds if not interrupted.
 const LONG: &str = "run falsification --engine latest-hit-qpso --evaluations 1000000 --seed 3";
 
 #[cfg(unix)]

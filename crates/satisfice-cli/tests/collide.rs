@@ -308,7 +308,7 @@ fn limits_keep_what_was_found() {
     }
 }
 
-/// Each is seconds long where nobody interrupts it.
+/// Each takes seconds if not interrupted.
 #[test]
 fn an_interrupted_enumeration_keeps_its_pairs() {
     let folder = tempfile::tempdir().unwrap();

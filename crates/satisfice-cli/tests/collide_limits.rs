@@ -1,4 +1,4 @@
-//! How `collide` keeps to its limits: memory, the number of pairs listed, and time; and what it says of closest points.
+//! The limits of `collide`: memory, listed pairs, time; and its closest points.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

@@ -1,5 +1,5 @@
-//! A program with a problem of its own has the whole command. This program is its own test: called with arguments of the
-//! command it is the example `own_command`, otherwise it checks itself.
+//! A program with a problem of its own has the whole command. This program is its own test: with arguments of
+//! the command it is the example `own_command`, without any it checks itself.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

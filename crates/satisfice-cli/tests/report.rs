@@ -1,4 +1,4 @@
-//! The experiments in small, and their reports looked at in a browser.
+//! The experiments in small, and their reports examined in a browser.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

@@ -10,10 +10,10 @@ use crate::simulation::Simulation;
 /// Which particles of a falling cloth are closer than delta to each other, or to vertices of the sphere?
 ///
 /// The cloth has fallen for `frame` sixtieths of a second by [`Simulation`], with all its contacts. delta is in spacings of
-/// the cloth at rest. Particles that an edge of the mesh joins are no pair.
+/// the cloth at rest. Particles joined by an edge of the mesh are not a pair.
 pub type Cloth = Prepared<FallenCloth>;
 
-/// How to make [`Cloth`].
+/// The parameters of [`Cloth`].
 #[derive(Debug, Clone, Copy)]
 pub struct FallenCloth;
 
@@ -46,7 +46,7 @@ impl Recipe for FallenCloth {
         ),
         Parameter::choice(
             "order",
-            "vertex order: which serial number a vertex gets",
+            "vertex order: which index a vertex gets",
             "hilbert",
             &VertexOrder::NAMES,
         ),

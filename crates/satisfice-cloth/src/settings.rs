@@ -1,8 +1,8 @@
-//! What is simulated.
+//! Settings of the simulation.
 
 use satisfice_collision::Error;
 
-/// Which contacts push back.
+/// The contacts that push back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Response {
     /// Those with the sphere and those of the cloth with itself.
@@ -12,7 +12,13 @@ pub enum Response {
     Sphere,
 }
 
-/// What is simulated. Lengths in metres.
+/// Settings of the simulation. Lengths in metres.
+///
+/// ```
+/// use satisfice_cloth::{Response, Settings};
+/// let small = Settings { columns: 16, response: Response::Sphere, ..Settings::default() };
+/// assert!(small.spacing() > Settings::default().spacing());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Particles on each side of the square cloth, 4 to 1024.
@@ -21,18 +27,18 @@ pub struct Settings {
     pub width: f64,
     /// Radius of the sphere, whose centre is the origin.
     pub radius: f64,
-    /// How far the middle of the cloth is beside the centre of the sphere at first, along x.
+    /// Initial offset of the cloth's middle from the centre of the sphere, along x.
     pub beside: f64,
-    /// How far the cloth is above the sphere at first.
+    /// Initial height of the cloth above the sphere.
     pub drop: f64,
     /// Drag of the air, 1/s: speeds fall by exp(-drag t).
     pub drag: f64,
     /// Coulomb's coefficient of friction, of all contacts.
     pub friction: f64,
-    /// Pairs of particles closer than this are detected, in spacings. A little below 1 leaves out most of those that an edge
-    /// joins anyway; above 0.71 nothing slips through the middle of a cell undetected.
+    /// Pairs of particles closer than this are detected, in spacings. A value a little below 1 leaves out most pairs joined
+    /// by an edge; above 0.71 nothing passes undetected through the middle of a cell.
     pub reach: f64,
-    /// Which contacts push back.
+    /// The contacts that push back.
     pub response: Response,
 }
 
@@ -54,25 +60,25 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Distance of two particles at rest.
+    /// Distance between neighbouring particles at rest.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.width / (f64::from(self.columns) - 1.0)
     }
 
-    /// Distance below which a pair is a contact that is detected.
+    /// Distance below which a pair is detected as a contact.
     #[must_use]
     pub fn delta(&self) -> f64 {
         self.reach * self.spacing()
     }
 
-    /// Height of the cloth at first.
+    /// Initial height of the cloth.
     #[must_use]
     pub fn start_height(&self) -> f64 {
         self.radius + self.drop + self.spacing()
     }
 
-    /// Steps with a detection each in a frame: a particle then moves by less than half a spacing at 3 m/s.
+    /// Steps per frame, each with a detection: a particle at 3 m/s moves by less than half a spacing per step.
     pub(crate) fn steps(&self) -> u32 {
         self.columns.div_ceil(16).max(2)
     }

@@ -7,16 +7,16 @@ use satisfice_collision::{Error, Mesh, generate};
 use crate::settings::{Response, Settings};
 use crate::springs::{Spring, relax, springs};
 
-/// Steps in which springs are relaxed between two detections.
+/// Relaxation steps of the springs between two detections.
 const SUBSTEPS: u32 = 2;
-/// Frames a second.
+/// Frames per second.
 const FRAMES: f64 = 60.0;
 /// Gravity, m/s^2, along -z.
 const GRAVITY: f64 = 9.81;
-/// Two particles, and a particle and the sphere, are kept this far apart, in spacings.
+/// The thickness: the distance kept between two particles, and between a particle and the sphere, in spacings.
 const THICKNESS: f64 = 0.85;
 
-/// A cloth on its way.
+/// A falling cloth.
 pub struct Simulation {
     settings: Settings,
     cloth: Mesh,
@@ -34,13 +34,13 @@ pub struct Simulation {
 /// The contacts of one detection, as pairs of vertex numbers.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Contacts {
-    /// Of the cloth with itself, lower number first.
+    /// Contacts of the cloth with itself, lower number first.
     pub within: Vec<(u32, u32)>,
-    /// Of a cloth vertex and a vertex of the sphere.
+    /// Contacts of a cloth vertex with a vertex of the sphere.
     pub sphere: Vec<(u32, u32)>,
 }
 
-/// What should not be.
+/// Failures of the simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crossings {
     /// Pairs of triangles of the cloth that intersect and share no vertex.
@@ -50,8 +50,8 @@ pub struct Crossings {
 }
 
 impl Simulation {
-    /// A flat cloth at rest above the sphere. Its mesh is [`generate::cloth`], the sphere's an icosphere fine enough that no
-    /// particle comes near the sphere unnoticed.
+    /// A flat cloth at rest above the sphere. Its mesh is [`generate::cloth`], the sphere's an icosphere fine enough that every
+    /// particle near the sphere is detected.
     ///
     /// # Errors
     /// [`Error::Parameter`] for settings out of range.
@@ -86,7 +86,7 @@ impl Simulation {
         })
     }
 
-    /// What is simulated.
+    /// The settings.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -101,7 +101,7 @@ impl Simulation {
     /// The cloth as it is now.
     ///
     /// # Errors
-    /// [`Error::NonFiniteVertex`] if the simulation had blown up, which its integrator excludes.
+    /// [`Error::NonFiniteVertex`] if a position overflowed, which the integrator excludes.
     pub fn mesh(&self) -> Result<Mesh, Error> {
         self.cloth.with_vertices(self.points.clone())
     }
@@ -124,14 +124,14 @@ impl Simulation {
         self.settings.steps()
     }
 
-    /// Mean of the particles.
+    /// Mean position of the particles.
     #[must_use]
     pub fn centre(&self) -> Point {
         let n = self.points.len() as f64;
         [0, 1, 2].map(|k| self.points.iter().map(|p| p[k]).sum::<f64>() / n)
     }
 
-    /// A sixtieth of a second: [`Simulation::detect`] and [`Simulation::advance`] as often as it takes.
+    /// Advances by a sixtieth of a second, in steps of [`Simulation::detect`] and [`Simulation::advance`].
     ///
     /// # Errors
     /// As [`Simulation::detect`].
@@ -146,7 +146,7 @@ impl Simulation {
     /// Detects all contacts, exactly.
     ///
     /// # Errors
-    /// [`Error::NonFiniteVertex`] if the simulation had blown up, which its integrator excludes.
+    /// [`Error::NonFiniteVertex`] if a position overflowed, which the integrator excludes.
     pub fn detect(&mut self) -> Result<(), Error> {
         self.world.deform(self.body, &self.points)?;
         let contacts = self.world.frame()?.contacts;
@@ -163,7 +163,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Moves the particles on by a step, with the contacts detected last.
+    /// Advances the particles by a step, with the contacts detected last.
     pub fn advance(&mut self) {
         let dt = 1.0 / (FRAMES * f64::from(self.steps() * SUBSTEPS));
         let slower = (-self.settings.drag * dt).exp();
@@ -234,13 +234,13 @@ impl Simulation {
         }
     }
 
-    /// What should not be: triangles of the cloth that pass through each other, decided exactly, and particles in the sphere.
+    /// Failures: triangles of the cloth that pass through each other, decided exactly, and particles in the sphere.
     /// Cost: a traversal of all triangle pairs.
     ///
     /// # Errors
     /// As [`Simulation::mesh`].
     pub fn crossings(&self) -> Result<Crossings, Error> {
-        // A thousand-millionth of a spacing: nearer than that is touching.
+        // A billionth of a spacing: closer counts as touching.
         let mut world = World::new(
             PairKind::TriangleTriangle,
             Threshold::new(1e-9 * self.settings.spacing())?,
@@ -261,7 +261,7 @@ impl Simulation {
     }
 }
 
-/// What friction takes back of a motion: its part along the surface, at most `most` long.
+/// The part of a motion that friction undoes: along the surface, at most `most` long.
 fn slip(moved: Point, normal: Point, most: f64) -> Point {
     let along: f64 = (0..3).map(|k| moved[k] * normal[k]).sum();
     let tangent = [0, 1, 2].map(|k| moved[k] - along * normal[k]);
@@ -355,7 +355,7 @@ mod tests {
         assert!(seen > 1000, "{seen}");
     }
 
-    /// Gravity alone: half g t^2, but for the drag and the order of the integrator.
+    /// Gravity alone: half g t^2, apart from drag and the error of the integrator.
     #[test]
     fn a_cloth_beside_the_sphere_falls_as_everything_does() {
         let settings = Settings {

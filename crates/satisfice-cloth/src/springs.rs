@@ -13,7 +13,7 @@ pub(crate) struct Spring {
     pub(crate) compliance: f64,
 }
 
-/// Along the sides of the cells.
+/// Along the edges of the cells.
 const STRUCTURAL: f64 = 0.0;
 /// Along their diagonals.
 const SHEAR: f64 = 2e-7;
@@ -54,7 +54,7 @@ pub(crate) fn springs(columns: u32, spacing: f64) -> Vec<Spring> {
     springs
 }
 
-/// One XPBD correction of every spring in turn (Gauss-Seidel) for a step of `dt` seconds, one iteration a step:
+/// One XPBD correction of every spring in turn (Gauss-Seidel) for a step of `dt` seconds, one iteration per step:
 ///
 /// ```text
 /// dx_a = -w C n / (2 w + compliance / dt^2),   C = |x_a - x_b| - rest,   w = 1
@@ -67,7 +67,7 @@ pub(crate) fn relax(springs: &[Spring], points: &mut [Point], dt: f64) {
         let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
         let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
         if length <= 0.0 {
-            // No direction to push in; the next step has one.
+            // The points coincide: there is no direction to push in until the next step.
             continue;
         }
         let share = (length - spring.rest) / (length * (2.0 + spring.compliance * inverse));

@@ -1,4 +1,4 @@
-//! Pages of scenes, looked at and worked with in a browser.
+//! Pages of scenes, examined and worked with in a browser.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

@@ -71,7 +71,7 @@ impl Camera {
     }
 }
 
-/// `v` at length 1, `None` where it has no direction.
+/// `v` at length 1, `None` if it has no direction.
 pub(super) fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     let length = dot(&v, &v).sqrt();
     (length > 0.0 && length.is_finite()).then(|| v.map(|c| c / length))

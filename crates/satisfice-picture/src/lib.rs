@@ -69,6 +69,12 @@ impl Up {
 }
 
 /// The direction from which a scene is seen, in parallel projection.
+///
+/// ```
+/// use satisfice_picture::{Up, View};
+/// let from_above = View { elevation: 90.0, up: Up::Y, ..View::default() };
+/// assert_eq!(from_above.azimuth, -76.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// Direction of the eye about the axis that points upwards, in degrees from the axis that is x where that is z.

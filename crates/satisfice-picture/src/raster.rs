@@ -104,7 +104,7 @@ impl Raster {
         f64::from(self.nearness[y as usize * self.width + x as usize]) > nearness + slack
     }
 
-    /// The picture so far: the mean of each pixel's samples. `None` where there is no memory for it.
+    /// The picture so far: the mean of each pixel's samples. `None` if there is no memory for it.
     pub(super) fn pixmap(&self) -> Option<Pixmap> {
         let (width, height) = (self.width / SAMPLES, self.height / SAMPLES);
         let mut pixmap = Pixmap::new(width as u32, height as u32)?;

@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use satisfice::engine::ConfiguredEngine;
-use satisfice::{Axis, Cancel, Search, Space, Stepper};
-use satisfice_catalogue::black_box::{BlackBox, Point, Separation};
+use satisfice::problem::{FnProblem, evaluated_elsewhere};
+use satisfice::{Axis, Cancel, Located, Search, Space, Stepper};
 use satisfice_catalogue::{RunReport, RunSpec, Settings};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -16,7 +16,7 @@ use crate::report::Report;
 use crate::watch::Watcher;
 
 /// A function is called by Python, never by the search.
-pub(crate) type Function = BlackBox<fn(&[f64]) -> f64>;
+pub(crate) type Function = FnProblem<f64, fn(&[f64]) -> f64>;
 
 /// The space and what a hit is, as a dict.
 #[derive(Clone, FromPyObject, Serialize, Deserialize)]
@@ -49,12 +49,11 @@ impl Question {
             }
         });
         let space = Space::new(axes).map_err(refused)?;
-        let separation = self
-            .separation
-            .clone()
-            .map_or(Separation::Exact, Separation::PerAxis);
-        let unevaluated: fn(&[f64]) -> f64 = |_| f64::NAN;
-        BlackBox::new(space, self.delta, &separation, unevaluated).map_err(refused)
+        let problem = evaluated_elsewhere(space, self.delta);
+        match &self.separation {
+            None => Ok(problem.separation(0.0)),
+            Some(radii) => problem.separations(radii).map_err(refused),
+        }
     }
 
     /// Enters the problem in a specification.
@@ -128,7 +127,7 @@ fn drive<'py>(
     caller: &mut Caller<'py>,
     watcher: &mut Watcher,
     dimension: usize,
-) -> PyResult<(satisfice::Report<Point>, Option<PyErr>)> {
+) -> PyResult<(satisfice::Report<Located<f64>>, Option<PyErr>)> {
     let mut values = Vec::new();
     let mut asked = false;
     loop {

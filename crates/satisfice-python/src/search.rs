@@ -6,8 +6,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, P
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use satisfice::{Cancel, Checkpoint, Order, Ticket, Tickets, TracePoint};
-use satisfice_catalogue::black_box::Point;
+use satisfice::{Cancel, Checkpoint, Located, Order, Ticket, Tickets, TracePoint};
 use satisfice_catalogue::{RunReport, RunSpec};
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +36,7 @@ struct Saved {
     question: Question,
     spec: RunSpec,
     failed: u64,
-    checkpoint: Checkpoint<Point>,
+    checkpoint: Checkpoint<Located<f64>>,
 }
 
 impl Search {

@@ -11,7 +11,7 @@ const BITS: usize = 16;
 
 /// The distinct hits, in the order found, each with its fitness and with the evaluation and the time that found it.
 ///
-/// Memory, at rest and beyond the solutions: 20 bytes a hit and 5 bytes a slot of a table that is between 7/16 and 7/8 full,
+/// Memory, at rest and beyond the solutions: 20 bytes per hit and 5 bytes per slot of a table that is between 7/16 and 7/8 full,
 /// so between 25.7 and 31.5 bytes. A look-up that finds nothing costs a hash, a bit test and, rarely, a table look-up.
 #[derive(Debug, Clone)]
 pub struct Archive<T> {
@@ -27,7 +27,7 @@ pub struct Archive<T> {
 
 /// The outcome of [`Archive::enter`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Entered {
+pub(crate) enum Insertion {
     /// It was new.
     New,
     /// It was probe-only, and the engine has found it now.
@@ -195,7 +195,7 @@ impl<T: Identity> Archive<T> {
     ///
     /// At 2^32 - 1 hits, the archive is full and takes no more.
     pub fn insert(&mut self, solution: T, fitness: f64, evaluation: u64, seconds: f64) -> bool {
-        self.enter(solution, fitness, evaluation, seconds, false) == Entered::New
+        self.enter(solution, fitness, evaluation, seconds, false) == Insertion::New
     }
 
     /// [`Archive::insert`] for a hit of the engine or of a probe. That of a probe is listed, but not seen by
@@ -207,19 +207,19 @@ impl<T: Identity> Archive<T> {
         evaluation: u64,
         seconds: f64,
         probe: bool,
-    ) -> Entered {
+    ) -> Insertion {
         if self.contains(&solution) {
-            return Entered::Known;
+            return Insertion::Known;
         }
         if let Some(index) = self.position_probe_only(&solution) {
             if probe {
-                return Entered::Known;
+                return Insertion::Known;
             }
             self.promote(index);
-            return Entered::Promoted;
+            return Insertion::Promoted;
         }
         let Ok(index) = u32::try_from(self.solutions.len()) else {
-            return Entered::Known;
+            return Insertion::Known;
         };
         let key = solution.key();
         self.solutions.push(solution);
@@ -235,7 +235,7 @@ impl<T: Identity> Archive<T> {
             self.table.insert_unique(key, index, rehash);
             self.note(key);
         }
-        Entered::New
+        Insertion::New
     }
 
     /// The index of a solution that is the same, probe-only or not.
@@ -436,7 +436,7 @@ mod tests {
             }
             archive.rest();
             let bytes = archive.overhead_bytes() as f64 / f64::from(hits);
-            assert!(bytes < 32.0, "{bytes} bytes a hit at {hits}");
+            assert!(bytes < 32.0, "{bytes} bytes per hit at {hits}");
             assert!(archive.contains(&[hits - 1, hits - 1]) && !archive.contains(&[hits, hits]));
         }
     }

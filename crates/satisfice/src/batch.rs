@@ -1,11 +1,19 @@
-//! Points on their way from an engine to the ledger.
+//! Batches of proposed points, and their outcomes.
 
 use crate::scalar::Real;
 
-/// Positions proposed by an engine: a flat list, `dimension` numbers a point.
+/// Positions proposed by an engine: a flat list, `dimension` numbers per point.
+///
+/// ```
+/// use satisfice::Batch;
+/// let mut batch = Batch::new(2);
+/// batch.push(&[0.5, 1.5]);
+/// batch.push_with(|position| position.copy_from_slice(&[2.0, 3.0]));
+/// assert_eq!((batch.len(), batch.point(1)), (2, &[2.0, 3.0][..]));
+/// ```
 #[derive(Debug, Clone)]
 pub struct Batch<S> {
-    /// The coordinates of `points` points; what stands behind them is memory to be used again, because to shorten and
+    /// The coordinates of `points` points; the rest is memory for reuse, because to shorten and
     /// lengthen a list costs as much as a cheap fitness.
     memory: Vec<S>,
     dimension: usize,
@@ -30,7 +38,7 @@ impl<S: Real> Batch<S> {
         }
     }
 
-    /// A batch of these coordinates, point after point; `None` where the last point is not complete.
+    /// A batch of these coordinates, point after point; `None` if the last point is not complete.
     pub(crate) fn from_positions(positions: Vec<S>, dimension: usize) -> Option<Self> {
         let dimension = dimension.max(1);
         let points = positions.len() / dimension;
@@ -60,14 +68,14 @@ impl<S: Real> Batch<S> {
         self.points == 0
     }
 
-    /// Number of coordinates a point.
+    /// Number of coordinates per point.
     #[inline]
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// Removes all points, keeps the memory.
+    /// Removes all points and keeps the memory.
     #[inline]
     pub fn clear(&mut self) {
         self.points = 0;
@@ -141,7 +149,7 @@ impl<S: Real> Batch<S> {
     }
 }
 
-/// What became of one proposed point.
+/// The outcome of one proposed point.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Outcome<S> {
     /// A new hit with this F; it is in C now.
@@ -150,7 +158,7 @@ pub enum Outcome<S> {
     Miss(S),
     /// In C already; not evaluated, or found out while evaluating.
     Deleted,
-    /// In C already and evaluated all the same, because the engine [keeps found solutions](crate::Engine::deletes).
+    /// In C already and evaluated anyway, because the engine [keeps found solutions](crate::Engine::deletes).
     Known(S),
     /// F was NaN or infinite.
     NonFinite,
@@ -159,7 +167,7 @@ pub enum Outcome<S> {
 }
 
 impl<S: Real> Outcome<S> {
-    /// F as a minimiser sees it: infinite where there is no number or where the point is deleted.
+    /// F as a minimiser sees it: infinite if there is no number or the point is deleted.
     #[inline]
     #[must_use]
     pub fn fitness(self) -> S {

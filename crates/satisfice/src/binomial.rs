@@ -10,7 +10,7 @@
 /// lower: P(X >= hits | p) = (1 - confidence) / 2      upper: P(X <= hits | p) = (1 - confidence) / 2
 /// ```
 ///
-/// `(0, 1)` without a trial. Cost: some 60 sums of O(sqrt(trials)) terms.
+/// `(0, 1)` without a trial. Cost: about 60 sums of O(sqrt(trials)) terms.
 ///
 /// Clopper, Pearson 1934, doi 10.1093/biomet/26.4.404.
 pub(crate) fn clopper_pearson(hits: u64, trials: u64, confidence: f64) -> (f64, f64) {

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::Error;
 
-/// What one time slice may spend. The first limit reached ends it.
+/// The limits of a time slice. The first limit reached ends it.
 ///
 /// ```
 /// use satisfice::Budget;
@@ -143,6 +143,18 @@ impl Budget {
 }
 
 /// A flag that ends a slice from another thread, a signal handler or an observer. Clones share it.
+///
+/// ```
+/// use satisfice::{Budget, Cancel, Search, Space, StopReason, from_fn};
+/// let flag = Cancel::new();
+/// let problem = from_fn(Space::cube(2, -1.0, 1.0)?, 0.1, |x: &[f64]| {
+///     flag.cancel(); // here from the fitness; as well from another thread
+///     x[0].hypot(x[1])
+/// });
+/// let report = Search::new().run(&problem, &Budget::evaluations(10_000).and_until(&flag))?;
+/// assert_eq!(report.stop_reason, StopReason::Cancelled);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Cancel(Arc<AtomicBool>);
 

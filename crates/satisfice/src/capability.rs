@@ -1,4 +1,4 @@
-//! What a problem may offer beyond its fitness. Engines run without any of it, and faster with it.
+//! Optional capabilities of a problem. Engines run without them, and better with them.
 //!
 //! A problem declares each capability by returning an object: often itself, or one of its fields.
 //!
@@ -74,7 +74,7 @@ pub trait Encoding<S, T> {
 /// For a problem without one, engines use the next lattice points on integer axes and shrinking steps on continuous ones.
 ///
 /// Neighbours have indices, so that an engine can take a few of them, or one at random, however many there are. A solution
-/// of a million neighbours costs no more than one of ten as long as they are not all looked at.
+/// of a million neighbours costs no more than one of ten as long as they are not all examined.
 pub trait Neighbourhood<T> {
     /// The number of indices; neighbours are at `0..count`. It may be more than there are neighbours: indices may be empty.
     fn count(&self, of: &T) -> usize;

@@ -54,7 +54,7 @@ pub trait Context<S: Real> {
     }
 
     /// How many evaluations are planned from now on: what the budget, or its [horizon](crate::Budget::with_horizon), has left.
-    /// `None` where neither limits evaluations. Calls of bounds count.
+    /// `None` if neither limits evaluations. Calls of bounds count.
     fn evaluations_planned(&self) -> Option<u64> {
         None
     }

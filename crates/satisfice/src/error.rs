@@ -1,6 +1,6 @@
 //! Every error of the framework, as data.
 
-/// What was wrong with an input of the framework.
+/// An error in an input of the framework.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -16,7 +16,7 @@ pub enum Error {
         lower: f64,
         /// The upper bound given.
         upper: f64,
-        /// What a usable bound would be.
+        /// The bounds that are usable.
         reason: &'static str,
     },
     /// The problem's threshold is NaN.
@@ -29,13 +29,13 @@ pub enum Error {
         parameter: String,
         /// The value given.
         value: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
-    /// A name that nobody knows.
+    /// A name that is not known.
     #[error("unknown {what} `{name}`{}; known: {}", suggestion(nearest.as_deref()), known.join(", "))]
     Unknown {
-        /// What was named: `engine`, `problem`, `parameter of …`.
+        /// The kind of name: `engine`, `problem`, `parameter of …`.
         what: String,
         /// The name given.
         name: String,
@@ -71,7 +71,7 @@ pub enum Error {
     StartPoint {
         /// Which one, from 0.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
     /// A solution from elsewhere that is not in the space.
@@ -85,7 +85,7 @@ pub enum Error {
     Threads {
         /// How many were wanted.
         threads: usize,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! When two solutions are the same answer.
+//! Identity: when two solutions are the same answer.
 
 mod separation;
 
@@ -19,7 +19,7 @@ const KEYS: FixedState = FixedState::with_seed(0x5a71_5f1c_e000_2012);
 /// It is implemented for every type that is `Eq + Hash` (a pair of indices, a vector of integers): there, *same* is *equal*.
 /// For real coordinates use [`Located`], which is the same as another one within a radius.
 ///
-/// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and the other way round.
+/// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and vice versa.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not define when two solutions are the same answer",
     label = "`Identity` is not implemented for `{Self}`",
@@ -55,12 +55,19 @@ impl<T: Eq + Hash> Identity for T {
 /// A point that counts once per separation, which a problem gives all its solutions alike.
 ///
 /// Two are the same if they are near enough by [`Separation`]: by their Euclidean distance, or axis by axis.
+///
+/// ```
+/// use satisfice::{Identity, Located};
+/// let a = Located::new(&[1.0, 2.0], 0.5); // counts once within a radius of 0.5
+/// assert!(a.same(&Located::new(&[1.3, 2.4], 0.5)));
+/// assert!(!a.same(&Located::new(&[1.4, 2.4], 0.5)));
+/// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(bound(serialize = "S: Real", deserialize = "S: Real"))]
 pub struct Located<S> {
     /// Coordinates, in the units of the space.
     pub coordinates: Vec<S>,
-    /// How near another one counts as the same.
+    /// The separation within which another one counts as the same.
     pub separation: Separation<S>,
 }
 
@@ -137,7 +144,7 @@ impl<S: Real> Located<S> {
         matches!(&self.separation, Separation::Radius(radius) if *radius == S::zero())
     }
 
-    /// A hash of the exact coordinates; 0 where there are none.
+    /// A hash of the exact coordinates; 0 if there are none.
     #[inline]
     fn exact_key(&self) -> u64 {
         let mut hasher = KEYS.build_hasher();
@@ -249,7 +256,7 @@ fn cells_near_by_ends<S: Real>(x: S, radius: S) -> [S; 3] {
     ]
 }
 
-/// Coordinates over this share of the number of cells that the scalar tells apart are looked at with more care.
+/// Coordinates over this share of the number of cells that the scalar tells apart are examined with more care.
 const COARSE: f64 = 1.0 / 4096.0;
 
 /// Edge of a cell in radii. A ball then meets one cell or two on each axis, or three where the scalar's rounding is as

@@ -52,7 +52,7 @@ pub use maryada::{EnclosureOps, Interval, IntervalOps};
 use crate::scalar::Real;
 use crate::space::Region;
 
-/// The values of axis `axis` in `region`, empty where there is no such axis. Exact in both scalars.
+/// The values of axis `axis` in `region`, empty if there is no such axis. Exact in both scalars.
 #[must_use]
 pub fn side<S: Real>(region: &Region<S>, axis: usize) -> Interval {
     match (region.lower.get(axis), region.upper.get(axis)) {
@@ -61,7 +61,7 @@ pub fn side<S: Real>(region: &Region<S>, axis: usize) -> Interval {
     }
 }
 
-/// The values of all axes in `region`; `None` where it has not N of them.
+/// The values of all axes in `region`; `None` if it has not N of them.
 #[must_use]
 pub fn sides<const N: usize, S: Real>(region: &Region<S>) -> Option<[Interval; N]> {
     (region.lower.len() == N && region.upper.len() == N)

@@ -83,7 +83,7 @@ pub trait SatisficingProblem: Sync {
         None
     }
 
-    /// The representative of a hit, for instance a root polished to the last digit or a pair in ascending order; `None`, the
+    /// The representative of a hit, for example a root polished to the last digit or a pair in ascending order; `None`, the
     /// default, if the hit represents itself. Called for hits only. Two hits with the same representative count once.
     ///
     /// The representative is a hit, too, and the one that is listed, with its own fitness: that call of the fitness is
@@ -105,13 +105,14 @@ pub struct FnProblem<S, F> {
     threshold: S,
     separation: Separation<S>,
     fitness: F,
+    name: String,
 }
 
 /// A problem from a closure: all points of `space` with `fitness(values) < threshold`.
 ///
 /// On an all-integer space, different values are different answers. With a continuous axis, points within a separation
 /// radius count once: 1 % of the longest continuous axis, unless [`FnProblem::separation`] or [`FnProblem::separations`] says
-/// otherwise. Different values on an integer axis are different answers all the same. On a logarithmic axis distances are those
+/// otherwise. Different values on an integer axis are different answers anyway. On a logarithmic axis distances are those
 /// of the logarithms, and the radius is 1 % of theirs; on a periodic one they go around the circle.
 ///
 /// ```
@@ -145,6 +146,7 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
         threshold,
         separation,
         fitness,
+        name: "closure".to_owned(),
     }
 }
 
@@ -158,12 +160,18 @@ fn separation_of<S: Real>(space: &Space<S>, radius: impl Fn(&Axis<S>) -> S) -> S
     if axes.iter().all(straight) || axes.iter().all(whole) {
         return Separation::Radius(axes.first().map_or(S::zero(), radius));
     }
-    Separation::axes(axes.iter().map(|axis| separation_on(axis, radius(axis))))
+    Separation::axes(axes.iter().map(|axis| {
+        if axis.kind() == AxisKind::Continuous {
+            separation_on(axis, radius(axis))
+        } else {
+            AxisSeparation::exact()
+        }
+    }))
 }
 
-/// A radius on one axis, by its rule.
+/// A radius on one axis, by its rule; categories are always exact.
 fn separation_on<S: Real>(axis: &Axis<S>, radius: S) -> AxisSeparation<S> {
-    if axis.kind() != AxisKind::Continuous {
+    if matches!(axis.kind(), AxisKind::Categorical | AxisKind::Place) {
         return AxisSeparation::exact();
     }
     let within = AxisSeparation::within(radius);
@@ -200,6 +208,13 @@ pub fn evaluated_elsewhere<S: Real>(space: Space<S>, threshold: S) -> FnProblem<
 }
 
 impl<S: Real, F> FnProblem<S, F> {
+    /// The same problem under another name in reports; `closure` by default.
+    #[must_use]
+    pub fn named(mut self, name: &str) -> Self {
+        name.clone_into(&mut self.name);
+        self
+    }
+
     /// The same problem with another radius within which two points are one answer, in units of the space; 0 lets only
     /// equal points be one. A negative radius or NaN counts as 0. Beside continuous axes, integer axes remain exact.
     #[must_use]
@@ -208,8 +223,8 @@ impl<S: Real, F> FnProblem<S, F> {
         self
     }
 
-    /// The same problem with a radius for each axis: two points are one answer if the squares of distance / radius sum to at
-    /// most 1. A radius of 0 lets only equal values be one, as on every integer axis.
+    /// The same problem with a radius for each axis, in units of the space: two points are one answer if the squares of
+    /// distance / radius sum to at most 1. With a radius of 0 only equal values are one, and so it is on a categorical axis.
     ///
     /// ```
     /// use satisfice::{from_fn, Axis, Space};
@@ -219,12 +234,22 @@ impl<S: Real, F> FnProblem<S, F> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Parameter`] unless there is one radius an axis.
+    /// [`Error::Parameter`] unless there is one radius per axis, finite and not negative.
     pub fn separations(mut self, radii: &[S]) -> Result<Self, Error> {
         let axes = self.space.axes();
         if radii.len() != axes.len() {
             let wanted = format!("one radius for each of the {} axes", axes.len());
             return Err(Error::parameter("separations", radii.len(), wanted));
+        }
+        if let Some(radius) = radii
+            .iter()
+            .find(|radius| !(**radius >= S::zero() && radius.is_finite()))
+        {
+            return Err(Error::parameter(
+                "separations",
+                radius,
+                "finite radii that are not negative",
+            ));
         }
         let pairs = axes.iter().zip(radii);
         self.separation = Separation::axes(pairs.map(|(axis, &radius)| separation_on(axis, radius)));
@@ -258,7 +283,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     }
     fn description(&self) -> Description {
         Description {
-            name: "closure".to_owned(),
+            name: self.name.clone(),
             parameters: Vec::new(),
         }
     }

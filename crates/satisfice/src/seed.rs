@@ -10,6 +10,14 @@ use crate::scalar::Real;
 ///
 /// The same seed gives the same numbers on every platform. Numbers are drawn in `Engine::ask` only, in order, so threads
 /// change nothing. Implements [`rand::Rng`], so all of `rand_distr` works on it.
+///
+/// ```
+/// use satisfice::SearchRng;
+/// let (mut one, mut two) = (SearchRng::new(42), SearchRng::new(42));
+/// assert_eq!(one.uniform(), two.uniform());
+/// assert!(one.below(6) < 6);
+/// assert_ne!(SearchRng::stream(42, 1), SearchRng::stream(42, 2)); // independent
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SearchRng(Xoshiro256PlusPlus);
 

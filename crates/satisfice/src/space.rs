@@ -12,7 +12,7 @@ use crate::scalar::{Real, floor};
 
 pub use axis::{Axis, AxisKind};
 
-/// What happens to a position outside the bounds. An infinite position goes to the bound it points at, NaN to the
+/// The treatment of a position outside the bounds. An infinite position goes to the bound it points at, NaN to the
 /// middle of its axis, under every rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Boundary {
@@ -54,7 +54,7 @@ impl<S: Real> Space<S> {
     /// A space with these axes and the rule [`Boundary::Reflect`].
     ///
     /// # Errors
-    /// [`Error::NoAxis`] without axes; [`Error::Bounds`] where bounds are not finite, are the wrong way round, have a
+    /// [`Error::NoAxis`] without axes; [`Error::Bounds`] if bounds are not finite, are the wrong way round, have a
     /// difference that overflows, or are integers that the scalar cannot hold exactly.
     pub fn new(axes: impl IntoIterator<Item = Axis<S>>) -> Result<Self, Error> {
         let axes: Vec<_> = axes.into_iter().collect();
@@ -162,7 +162,7 @@ impl<S: Real> Space<S> {
                 .all(|(axis, &x)| axis.start <= x && x <= axis.end)
     }
 
-    /// Checks that these are values of the space: one an axis, inside the bounds, whole on integer axes. Cost: O(D).
+    /// Checks that these are values of the space: one per axis, inside the bounds, whole on integer axes. Cost: O(D).
     ///
     /// # Errors
     /// [`Error::Solution`] with the axis.
@@ -379,6 +379,15 @@ fn bring_inside<S: Real>(x: S, lower: S, end: S, boundary: Boundary) -> S {
 }
 
 /// A closed box of values, inclusive on integer axes too.
+///
+/// ```
+/// use satisfice::{Region, Space};
+/// let space = Space::<f64>::lattice(2, 10)?;
+/// let region = Region { lower: vec![0.0, 4.0], upper: vec![3.0, 9.0] };
+/// assert_eq!(region.middle(&space, 0), 1.0);
+/// assert!(region.contains(&[3.0, 4.0]));
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Region<S> {
     /// Least value on each axis.

@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
     /// The next value.
     ///
     /// # Errors
-    /// [`Error::State`] where the state ends early or the next bytes are not such a value.
+    /// [`Error::State`] if the state ends early or the next bytes are not such a value.
     pub fn read<T: Saved>(&mut self) -> Result<T, Error> {
         T::restore(self)
     }
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
     /// Checks that everything has been read.
     ///
     /// # Errors
-    /// [`Error::State`] where bytes are left.
+    /// [`Error::State`] if bytes are left.
     pub fn finish(self) -> Result<(), Error> {
         if self.bytes.is_empty() {
             Ok(())
@@ -135,7 +135,7 @@ pub trait Saved: Sized {
     /// Reads it back.
     ///
     /// # Errors
-    /// [`Error::State`] where the next bytes are not such a value.
+    /// [`Error::State`] if the next bytes are not such a value.
     fn restore(from: &mut Reader<'_>) -> Result<Self, Error>;
 }
 
@@ -156,7 +156,7 @@ pub trait Part {
     /// Reads it back.
     ///
     /// # Errors
-    /// [`Error::State`] where the next bytes do not fit.
+    /// [`Error::State`] if the next bytes do not fit.
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error>;
 }
 

@@ -1,4 +1,4 @@
-//! How many hits are not yet seen: estimates with intervals, from uniform probes.
+//! Estimates of the number of unseen hits, with intervals, from uniform probes.
 
 use crate::binomial::clopper_pearson;
 
@@ -7,54 +7,54 @@ const CONFIDENCE: f64 = 0.9;
 /// The standard normal quantile of (1 + confidence) / 2.
 const QUANTILE: f64 = 1.644_853_626_951_472_7;
 
-/// The hits that a slice has not found, estimated.
+/// An estimate of the hits that a slice has not found.
 ///
-/// `docs/completeness.md` says what is assumed and where that fails.
+/// `docs/completeness.md` describes the assumptions and where they fail.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Unseen {
-    /// The number of distinct hits that are not in C, estimated. Not rounded.
+    /// The estimated number of distinct hits that are not in C. Not rounded.
     pub estimate: f64,
-    /// Two-sided interval for that number, whole ends included; no upper end where nothing bounds it.
+    /// Two-sided interval for that number, ends included, both whole; no upper end if it is unbounded.
     pub interval: (f64, Option<f64>),
-    /// Two-sided interval for the share of the space (of points, or of volume) whose points are hits that the engine has
-    /// not found. It assumes nothing beyond uniform probes; 0 where proved.
+    /// Two-sided interval for the share of the space (of its points or volume) that is hits which the engine has not
+    /// found. It assumes uniform probes only; 0 if completeness is proved.
     pub mass: (f64, f64),
-    /// The chance with which each interval holds the truth, at least: 0.9, or 1 where proved.
+    /// The probability, at least, that each interval contains the true value: 0.9, or 1 if proved.
     pub confidence: f64,
-    /// How it was estimated.
+    /// The method of estimation.
     pub method: Method,
     /// Uniform probes that were evaluated.
     pub probes: u64,
-    /// Probes that hit what the engine has found as well.
+    /// Probes whose hit the engine has found too.
     pub recaptures: u64,
-    /// Probes that hit what the engine has not found.
+    /// Probes whose hit the engine has not found.
     pub fresh: u64,
 }
 
-/// How unseen hits are estimated.
+/// The method by which unseen hits are estimated.
 ///
-/// n probes; m of them hit one of the c hits that the engine has found, u hit one of the v that it has not. Of the v,
-/// the probes found d, which are in C; what is unseen is v - d.
+/// Of n probes, m hit one of the c hits that the engine has found, and u one of the v that it has not. Probes found d of
+/// these v, which are in C: v - d hits are unseen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Method {
     /// The space was covered or excluded by bounds: nothing is unseen.
     Proved,
     /// A lattice of N points, one for each solution. Outside the engine's hits, probes hit with probability v / (N - c):
     /// the interval is Clopper and Pearson's for u of n - m, exact at any n (1934, doi 10.1093/biomet/26.4.404). It is
-    /// narrower than one for all hits from n probes, since c is known and not estimated.
+    /// narrower than an interval for all hits from n probes, because c is known.
     Lattice,
-    /// Hits that are no points of a lattice, taken as equally easy to hit: probes that hit are recaptures with probability
+    /// Hits that are not points of a lattice, assumed equally easy to hit: a probe that hits is a recapture with probability
     /// c / (c + v). The estimate is Chapman's, (c + 1) (m + u + 1) / (m + 1) - 1 - c (1951), the interval Clopper and
-    /// Pearson's for m of m + u. Where the engine prefers hits that are easy to hit, it is a lower bound.
+    /// Pearson's for m of m + u. If the engine prefers hits that are easy to hit, it is a lower bound.
     Recapture,
-    /// As before, but the engine has found nothing: a lower bound from hits that one probe (f1) or two (f2) found,
+    /// For an engine that has found nothing: a lower bound from the hits found by one probe (f1) or by two (f2),
     /// f1 (f1 - 1) / (2 (f2 + 1)), with a log-normal interval (Chao 1984, Scand. J. Stat. 11; 1987, doi 10.2307/2531532;
     /// after Good 1953, doi 10.1093/biomet/40.3-4.237).
     Chao,
 }
 
 impl Unseen {
-    /// Nothing is unseen, for sure.
+    /// Nothing is unseen: proved.
     pub(crate) fn nothing(probes: u64) -> Self {
         Self {
             estimate: 0.0,
@@ -72,7 +72,7 @@ impl Unseen {
 impl core::fmt::Display for Unseen {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let (lower, upper) = self.interval;
-        // Without a probe that supports it, an estimate of 0 says less than its interval.
+        // Without a supporting probe, an estimate of 0 says less than its interval.
         if self.estimate >= 0.5 || upper.is_some_and(|upper| upper < 1.0) {
             write!(f, "{} ", Whole(self.estimate))?;
         }
@@ -83,7 +83,7 @@ impl core::fmt::Display for Unseen {
     }
 }
 
-/// A whole number, a large one by its exponent.
+/// An integer; a large one with an exponent.
 struct Whole(f64);
 
 impl core::fmt::Display for Whole {
@@ -97,10 +97,10 @@ impl core::fmt::Display for Whole {
     }
 }
 
-/// What the probes of a slice found, counted.
+/// Counts of what the probes of a slice found.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Sample {
-    /// N, where the space is a lattice.
+    /// N, if the space is a lattice.
     pub(crate) points: Option<f64>,
     /// c.
     pub(crate) known: u64,
@@ -110,7 +110,7 @@ pub(crate) struct Sample {
     pub(crate) recaptures: u64,
     /// u.
     pub(crate) fresh: u64,
-    /// m and u of probes at the one point that stands for its solution.
+    /// m and u of the probes at the encoding of their solution.
     pub(crate) own_recaptures: u64,
     pub(crate) own_fresh: u64,
     /// d.
@@ -119,7 +119,7 @@ pub(crate) struct Sample {
     pub(crate) once: u64,
     /// f2.
     pub(crate) twice: u64,
-    /// Points of the lattice do not stand for solutions one to one.
+    /// Whether several points of the lattice decode to one solution.
     pub(crate) blurred: bool,
 }
 
@@ -129,15 +129,15 @@ impl Sample {
             return None;
         }
         let (d, c) = (self.distinct as f64, self.known as f64);
-        // No more solutions than points.
+        // There are no more solutions than points.
         let most = self.points.map(|points| (points - c - d).max(0.0));
         let (method, estimate, lower, upper) = match self.points {
             Some(points) if !self.blurred => self.by_lattice(points - c),
             _ if self.known > 0 => self.by_recapture(c),
             _ => self.by_chao(),
         };
-        // Ends are whole, with room for the rounding of what was whole; an interval between two whole numbers becomes the
-        // one nearest to the estimate.
+        // Ends are rounded inwards to integers, with a tolerance for rounding errors; an interval without an integer becomes
+        // the integer nearest to the estimate.
         let room = 1e-9;
         let upper = upper.map(|upper| (upper * (1.0 + room)).floor());
         let mut lower = (lower * (1.0 - room)).ceil();
@@ -163,7 +163,7 @@ impl Sample {
         })
     }
 
-    /// v and its interval, where `others` points are not the engine's hits.
+    /// v and its interval, if `others` points are not hits of the engine.
     fn by_lattice(&self, others: f64) -> (Method, f64, f64, Option<f64>) {
         let trials = self.probes - self.own_recaptures;
         let (lower, upper) = clopper_pearson(self.own_fresh, trials, CONFIDENCE);
@@ -176,7 +176,7 @@ impl Sample {
         )
     }
 
-    /// v and its interval, where all hits are equally easy to hit and the engine has `c` of them.
+    /// v and its interval, if all hits are equally easy to hit and the engine has `c` of them.
     fn by_recapture(&self, c: f64) -> (Method, f64, f64, Option<f64>) {
         let (m, hits) = (self.recaptures as f64, self.recaptures + self.fresh);
         let (lower, upper) = clopper_pearson(self.recaptures, hits, CONFIDENCE);
@@ -189,7 +189,7 @@ impl Sample {
         )
     }
 
-    /// v and its interval, where the engine has found nothing.
+    /// v and its interval, if the engine has found nothing.
     fn by_chao(&self) -> (Method, f64, f64, Option<f64>) {
         let (f1, f2, d) = (self.once as f64, self.twice as f64, self.distinct as f64);
         let n = self.probes as f64;

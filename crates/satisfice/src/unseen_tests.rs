@@ -1,4 +1,4 @@
-//! Coverage and width of the intervals over seeded runs with a brute-force count as referee, and the edge cases.
+//! Coverage and width of the intervals over seeded runs against a brute-force count, and edge cases.
 
 use crate::Encoding;
 use core::ops::ControlFlow;
@@ -33,7 +33,7 @@ fn count<P: SatisficingProblem<Scalar = f64>>(problem: &P) -> u64 {
     }
 }
 
-/// No structure: every point is a hit with probability 0.02, whatever its neighbours are.
+/// No structure: every point is a hit with probability 0.02, independently of its neighbours.
 fn needles(x: &[f64]) -> f64 {
     let mut word = (x[0] as u64) << 32 | x[1] as u64;
     for _ in 0..3 {
@@ -58,8 +58,8 @@ fn ring(x: &[f64]) -> f64 {
     ((x[0] - 99.5).hypot(x[1] - 99.5) - 70.0).abs()
 }
 
-/// One configuration over all seeds: how often the interval held the truth, and the median widths of it and of Clopper and
-/// Pearson's interval for the number of all hits from the same probes.
+/// One configuration over all seeds: how often the interval contained the true number, its median width, and that of the
+/// Clopper-Pearson interval for the number of all hits from the same probes.
 fn coverage<P: SatisficingProblem<Scalar = f64>>(
     problem: &P,
     truth: u64,
@@ -95,7 +95,8 @@ fn run<P: SatisficingProblem<Scalar = f64>>(
     share: f64,
     seed: u64,
 ) -> Report<P::Solution> {
-    Search::named(engine).unwrap()
+    Search::named(engine)
+        .unwrap()
         .seed(seed)
         .probes(share)
         .run(problem, &Budget::evaluations(budget))
@@ -251,7 +252,7 @@ fn points_that_are_one_answer_only_roughly_are_no_lattice() {
 
 #[test]
 fn without_a_hit_of_the_engine_repetitions_count() {
-    // f1 = 4, f2 = 1: 4 * 3 / (2 * 2) = 3 unseen, but for the factor 99 / 100.
+    // f1 = 4, f2 = 1: 4 * 3 / (2 * 2) = 3 unseen, times the factor 99 / 100.
     let sample = Sample {
         probes: 100,
         fresh: 6,
@@ -296,15 +297,15 @@ fn edges_of_the_lattice_estimate() {
     assert_eq!(Sample::default().estimate(), None);
     // No hit at all: 1 - 0.05^(1/100) of 1,000 points.
     assert_eq!(interval(sample(1000.0, 0, 100, 0, 0, 0)), (0.0, 0.0, 29.0));
-    // One probe, a miss, says next to nothing.
+    // One probe that misses says almost nothing.
     assert_eq!(interval(sample(1000.0, 0, 1, 0, 0, 0)), (0.0, 0.0, 950.0));
-    // One probe, a hit: at least 5 % of the points, one of which it found.
+    // One probe that hits: at least 5 % of the points, one of which it found.
     assert_eq!(interval(sample(1000.0, 0, 1, 0, 1, 1)), (999.0, 49.0, 999.0));
     // Every point is a hit and the engine has them all.
     assert_eq!(interval(sample(1000.0, 1000, 50, 50, 0, 0)), (0.0, 0.0, 0.0));
     // Every point is a hit and the engine has one of them; both probes found the same other one.
     assert_eq!(interval(sample(10.0, 1, 2, 0, 2, 1)), (8.0, 2.0, 8.0));
-    // More probes than points, so that no whole number fits: the nearest one.
+    // More probes than points, and no integer in the interval: the nearest one.
     assert_eq!(interval(sample(3.0, 0, 100_000, 0, 33_600, 1)), (0.0, 0.0, 0.0));
 }
 
@@ -324,13 +325,13 @@ fn a_space_of_hits_alone_and_one_without() {
     }
 }
 
-/// What the engine finds does not depend on the probes: its hits are those of a run without.
+/// The engine's hits do not depend on the probes: they are those of a run without.
 #[test]
 fn probes_do_not_disturb_the_engine() {
     let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
     let mut compared = 0;
     for entry in engine::all() {
-        if engine::ConfiguredEngine::<f64>::named(entry.name).unwrap().is_scheduled() {
+        if ConfiguredEngine::<f64>::named(entry.name).unwrap().is_scheduled() {
             continue; // a schedule follows the whole budget, probes included
         }
         if entry.expensive_proposals {
@@ -343,7 +344,7 @@ fn probes_do_not_disturb_the_engine() {
         assert!(0.28 < share && share <= 0.3, "{engine}: {share} is not about 0.3");
         let plain = run(&problem, engine, evaluations - probes, 0.0, 5);
         assert_eq!((plain.counts.probes, plain.unseen), (0, None));
-        // All that the plain run finds, the probed one has found; what it has besides, only probes found.
+        // The probed run has every hit of the plain run; all its other hits were found by probes.
         let known = |hit: &crate::Hit<'_, crate::Located<f64>>| plain.archive.contains(hit.solution);
         let both = probed.hits().filter(known).count();
         assert_eq!(both, plain.hit_count(), "{engine}");
@@ -393,11 +394,7 @@ fn driven_by_hand_and_on_threads_it_is_the_same() {
     let problem = from_fn(Space::lattice(3, 60).unwrap(), 0.5, islands);
     let whole = run(&problem, "latest-hit-qpso", 4_000, 0.1, 3);
     let budget = Budget::evaluations(4_000);
-    let search = || {
-        Search::with(engine::LatestHitQpso::default())
-            .seed(3)
-            .probes(0.1)
-    };
+    let search = || Search::with(engine::LatestHitQpso::default()).seed(3).probes(0.1);
     let threaded = search().threads(2).run(&problem, &budget).unwrap();
     let mut by_hand = search();
     let mut by_hand = by_hand.start(&problem, &budget).unwrap();
@@ -416,7 +413,7 @@ fn driven_by_hand_and_on_threads_it_is_the_same() {
     }
 }
 
-/// Proposes every point of a plane lattice once, but for those of one row that it says it has excluded.
+/// Proposes every point of a plane lattice once, except those of one row, which it claims to have excluded.
 struct Rows {
     next: usize,
     skipped: Option<usize>,

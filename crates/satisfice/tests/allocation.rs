@@ -145,8 +145,8 @@ fn a_hit_takes_64_bytes_beside_its_solution() {
     assert_eq!(found, hits);
     let bytes = memory.bytes_current as f64 / hits as f64 - 8.0;
     let most = memory.bytes_max as f64 / hits as f64 - 8.0;
-    println!("| bytes a hit beside its solution, {hits} hits: kept, at most | {bytes:.0}, {most:.0} |");
-    assert!(most <= 64.0, "{bytes} bytes a hit, {most} at most");
+    println!("| bytes per hit beside its solution, {hits} hits: kept, at most | {bytes:.0}, {most:.0} |");
+    assert!(most <= 64.0, "{bytes} bytes per hit, {most} at most");
 }
 
 #[test]

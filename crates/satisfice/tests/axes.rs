@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use satisfice::{Axis, Budget, Error, Search, Space, engine, from_fn};
+use satisfice::{Axis, Budget, Error, Identity, SatisficingProblem, Search, Space, engine, from_fn, testing};
 
 fn mixed() -> Space<f64> {
     let axes = [
@@ -155,4 +155,52 @@ fn a_circle_has_no_seam_and_a_logarithm_no_small_end() {
             }
         }
     }
+}
+
+fn whole_and_real() -> Space<f64> {
+    Space::new([Axis::integer(0, 9), Axis::continuous(0.0, 1.0)]).unwrap()
+}
+
+#[test]
+fn radii_of_axes_make_an_ellipsoid() {
+    let same = |radii: [f64; 2], a: [f64; 2], b: [f64; 2]| {
+        let problem = from_fn(whole_and_real(), 0.5, |_: &[f64]| 0.0)
+            .separations(&radii)
+            .unwrap();
+        assert_eq!(testing::problem::check(&problem, 1), [], "{radii:?}");
+        let [a, b] = [a, b].map(|x| problem.decode(&x));
+        let mut archive = satisfice::Archive::default();
+        archive.insert(a.clone(), 0.0, 1, 0.0);
+        assert_eq!(archive.contains(&b), a.same(&b), "{a:?} {b:?}");
+        a.same(&b)
+    };
+    assert!(!same([0.0, 0.0], [1.0, 0.5], [1.0, 0.5 + 1e-15]));
+    assert!(same([1.25, 1.25], [1.0, 0.0], [2.0, 0.75]));
+    assert!(!same([1.25, 1.25], [1.0, 0.0], [2.0, 0.7500001]));
+    assert!(same([0.0, 0.5], [1.0, 0.0], [1.0, 0.5]));
+    assert!(!same([0.0, 0.5], [1.0, 0.0], [2.0, 0.0]));
+    assert!(same([2.0, 0.5], [1.0, 0.0], [2.0, 0.4]));
+    assert!(!same([2.0, 0.5], [1.0, 0.0], [2.0, 0.45]));
+}
+
+#[test]
+fn a_separation_that_is_not_usable_is_refused() {
+    for radii in [&[0.1][..], &[-1.0, 0.1], &[0.1, f64::NAN], &[f64::INFINITY, 0.1]] {
+        let refused = from_fn(whole_and_real(), 0.5, |_: &[f64]| 0.0).separations(radii);
+        assert!(
+            refused.is_err_and(|error| error.to_string().contains("separations")),
+            "{radii:?}"
+        );
+    }
+}
+
+/// Categories are told apart whatever the radius.
+#[test]
+fn a_radius_says_nothing_about_categories() {
+    let space = Space::new([Axis::categorical(3), Axis::continuous(0.0, 1.0)]).unwrap();
+    let problem = from_fn(space, 0.5, |_: &[f64]| 0.0)
+        .separations(&[5.0, 0.5])
+        .unwrap();
+    assert!(!problem.decode(&[0.0, 0.5]).same(&problem.decode(&[1.0, 0.5])));
+    assert!(problem.decode(&[1.0, 0.5]).same(&problem.decode(&[1.0, 0.6])));
 }

@@ -1,4 +1,4 @@
-//! The conformance suite over every engine of the registry, and over broken ones that it has to find out.
+//! The conformance suite over every engine of the registry, and over broken ones that it must detect.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 
 use satisfice::engine::{self, Ask, ConfiguredEngine, Origin, Steps};
 use satisfice::state::{Part, Reader, State};
-use satisfice::testing::engine::{Law, check, check_spec};
+use satisfice::testing::engine::{EngineLaw, check, check_spec};
 use satisfice::{
     Batch, Budget, Context, Engine, Error, Outcome, Search, SearchRng, Space, from_fn, saved_fields,
 };
@@ -50,7 +50,7 @@ fn keeps_the_laws(name: &str) {
     let first = instead.map_or(Settings::default(), |&(_, settings)| settings);
     for (settings, searches) in [(first, true)].into_iter().chain(settings) {
         let mut violations = check_spec(engine::find(name).unwrap(), settings).unwrap();
-        violations.retain(|violation| searches || violation.law != Law::HitCount);
+        violations.retain(|violation| searches || violation.law != EngineLaw::HitCount);
         let listed: Vec<String> = violations.iter().take(10).map(ToString::to_string).collect();
         assert!(
             violations.is_empty(),
@@ -61,32 +61,22 @@ fn keeps_the_laws(name: &str) {
     }
 }
 
-/// A test for each engine, by its name with underscores; and one that every engine is among them.
+/// A test for each engine of the registry, by the name of its settings.
 macro_rules! laws {
     ($($engine:ident)*) => {
+        #[allow(non_snake_case, reason = "the names of types")]
         mod laws {
+            use satisfice::engine::{self, EngineConfig as _};
+
             $(#[test]
             fn $engine() {
-                super::keeps_the_laws(&stringify!($engine).replace('_', "-"));
+                super::keeps_the_laws(engine::$engine::NAME);
             })*
-        }
-
-        #[test]
-        fn every_engine_has_a_test_of_its_laws() {
-            let tested: Vec<String> = [$(stringify!($engine)),*].map(|name| name.replace('_', "-")).to_vec();
-            let registered: Vec<&str> = engine::all().iter().map(|spec| spec.name).collect();
-            assert_eq!(tested, registered);
         }
     };
 }
 
-laws! {
-    portfolio random walk descent descent_flood restarted_cma_es
-    pso_1995 pso_inertia pso pso_latest_hit spso_2011
-    qpso qpso_deletion latest_hit_qpso
-    niching_pso_dbscan bounded_swarms branch_and_bound
-    surrogate
-}
+satisfice::for_each_engine!(laws);
 
 #[test]
 fn every_default_is_in_its_range_and_every_engine_says_where_it_comes_from() {
@@ -109,7 +99,7 @@ fn every_default_is_in_its_range_and_every_engine_says_where_it_comes_from() {
 }
 
 /// The laws that an engine is found to break.
-fn broken(engine: &ConfiguredEngine<f64>) -> Vec<Law> {
+fn broken(engine: &ConfiguredEngine<f64>) -> Vec<EngineLaw> {
     let violations = check(engine).unwrap();
     let mut laws = Vec::new();
     for violation in violations {
@@ -235,16 +225,16 @@ impl Engine<f64> for Faulty {
 fn a_broken_engine_is_found_out() {
     for (fault, expected) in [
         (Fault::None, None),
-        (Fault::ProposesNaN, Some(Law::Proposals)),
-        (Fault::ProposesTwoCoordinates, Some(Law::Proposals)),
-        (Fault::ForgetsWhenSaved, Some(Law::Restore)),
-        (Fault::AcceptsShortStates, Some(Law::Restore)),
-        (Fault::FollowsTheBudget, Some(Law::Prefix)),
-        (Fault::RemembersOtherRuns, Some(Law::SameSeed)),
-        (Fault::GivesUpOnNaN, Some(Law::NonFinite)),
-        (Fault::StandsStill, Some(Law::HitCount)),
-        (Fault::SaysCovered, Some(Law::Covered)),
-        (Fault::ProposesNothing, Some(Law::HitCount)),
+        (Fault::ProposesNaN, Some(EngineLaw::Proposals)),
+        (Fault::ProposesTwoCoordinates, Some(EngineLaw::Proposals)),
+        (Fault::ForgetsWhenSaved, Some(EngineLaw::Restore)),
+        (Fault::AcceptsShortStates, Some(EngineLaw::Restore)),
+        (Fault::FollowsTheBudget, Some(EngineLaw::Prefix)),
+        (Fault::RemembersOtherRuns, Some(EngineLaw::SameSeed)),
+        (Fault::GivesUpOnNaN, Some(EngineLaw::NonFinite)),
+        (Fault::StandsStill, Some(EngineLaw::HitCount)),
+        (Fault::SaysCovered, Some(EngineLaw::Covered)),
+        (Fault::ProposesNothing, Some(EngineLaw::HitCount)),
     ] {
         let laws = broken(&Faulty::with(fault));
         match expected {

@@ -69,7 +69,7 @@ fn every_hit_is_a_hit_and_listed_once() {
         .filter(|i| (f64::from(i % 1000) - 700.0).hypot(f64::from(i / 1000) - 300.0) < 40.0)
         .count();
     assert_eq!(report.hit_count(), all, "{:?}", report.counts);
-    // By themselves, four searches would have found nearly three quarters of their hits in vain.
+    // Four separate searches would have found nearly three quarters of their hits more than once.
     assert!(report.counts.duplicates < 2 * all as u64, "{:?}", report.counts);
     assert!(report.hits().map(|hit| hit.evaluation).is_sorted());
     assert_eq!(report.counts.probes, 800);

@@ -1,4 +1,4 @@
-//! A problem that panics: what a run makes of it, and what holds afterwards.
+//! A problem that panics: how the run ends, and what holds afterwards.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -48,7 +48,7 @@ fn what_was_found_is_reported() {
             for hit in report.hits() {
                 assert_eq!(hit.fitness, problem.fitness(hit.solution), "{case}");
             }
-            // The search goes on, warm from these hits.
+            // The search continues, warm from these hits.
             let next = search.run(&problem, &budget).unwrap();
             assert_eq!(next.counts.verified, report.hit_count() as u64, "{case}");
             assert!(next.hit_count() >= report.hit_count(), "{case}");

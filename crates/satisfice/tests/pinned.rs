@@ -1,6 +1,6 @@
 //! Pins the sequence of every engine: the first eight points, a digest of a longer run and its hits, in `tests/pinned/`.
 //!
-//! A change of these files changes results for a seed and belongs into CHANGELOG.md under "Changes results". Write them with
+//! A change of these files changes results for a seed and belongs in CHANGELOG.md under "Changes results". Write them with
 //!
 //! ```text
 //! UPDATE=1 cargo test -p satisfice --test pinned

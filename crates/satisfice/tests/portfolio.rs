@@ -1,4 +1,4 @@
-//! What some sources of the default engine are for.
+//! What individual sources of the default engine contribute.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 

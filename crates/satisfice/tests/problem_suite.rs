@@ -1,11 +1,11 @@
-//! The suite for problems over the framework's own, and over broken ones that it has to find out.
+//! The suite for problems over the framework's own, and over broken ones that it must detect.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use satisfice::{Bounds, Encoding, Neighbourhood};
 
-use satisfice::testing::problem::{Law, check};
+use satisfice::testing::problem::{ProblemLaw, check};
 use satisfice::{Axis, Region, SatisficingProblem, Space, from_fn};
 
 #[test]
@@ -155,26 +155,26 @@ impl Bounds<f64> for Faulty {
 fn a_broken_problem_is_found_out() {
     for (fault, expected) in [
         (Fault::None, None),
-        (Fault::ThresholdIsNaN, Some(Law::Threshold)),
-        (Fault::DecodeIntoForgets, Some(Law::Decode)),
-        (Fault::FitnessCounts, Some(Law::Fitness)),
-        (Fault::FitnessAllIsRounded, Some(Law::Fitness)),
-        (Fault::EncodeLeavesTheSpace, Some(Law::Encode)),
-        (Fault::EncodeIsOffByOne, Some(Law::Encode)),
-        (Fault::NeighboursLeaveTheSpace, Some(Law::Neighbours)),
-        (Fault::NeighboursAlternate, Some(Law::Neighbours)),
-        (Fault::NeighboursBeyondTheCount, Some(Law::Neighbours)),
-        (Fault::BoundIsTooHigh, Some(Law::LowerBound)),
-        (Fault::BoundIsNaN, Some(Law::LowerBound)),
-        (Fault::RepresentativeIsNoHit, Some(Law::Canonical)),
-        (Fault::RepresentativesWander, Some(Law::Canonical)),
+        (Fault::ThresholdIsNaN, Some(ProblemLaw::Threshold)),
+        (Fault::DecodeIntoForgets, Some(ProblemLaw::Decode)),
+        (Fault::FitnessCounts, Some(ProblemLaw::Fitness)),
+        (Fault::FitnessAllIsRounded, Some(ProblemLaw::Fitness)),
+        (Fault::EncodeLeavesTheSpace, Some(ProblemLaw::Encode)),
+        (Fault::EncodeIsOffByOne, Some(ProblemLaw::Encode)),
+        (Fault::NeighboursLeaveTheSpace, Some(ProblemLaw::Neighbours)),
+        (Fault::NeighboursAlternate, Some(ProblemLaw::Neighbours)),
+        (Fault::NeighboursBeyondTheCount, Some(ProblemLaw::Neighbours)),
+        (Fault::BoundIsTooHigh, Some(ProblemLaw::LowerBound)),
+        (Fault::BoundIsNaN, Some(ProblemLaw::LowerBound)),
+        (Fault::RepresentativeIsNoHit, Some(ProblemLaw::Canonical)),
+        (Fault::RepresentativesWander, Some(ProblemLaw::Canonical)),
     ] {
         let problem = Faulty {
             space: Space::lattice(2, 20).unwrap(),
             fault,
             calls: AtomicU32::new(0),
         };
-        let laws: Vec<Law> = check(&problem, 7).iter().map(|violation| violation.law).collect();
+        let laws: Vec<ProblemLaw> = check(&problem, 7).iter().map(|violation| violation.law).collect();
         match expected {
             Some(law) => assert!(laws.contains(&law), "{fault:?}: {laws:?}"),
             None => assert_eq!(laws, []),
@@ -212,9 +212,9 @@ fn a_one_sided_sameness_is_found_out() {
             0.0
         }
     }
-    let laws: Vec<Law> = check(&Problem(Space::cube(1, 0.0, 1.0).unwrap()), 1)
+    let laws: Vec<ProblemLaw> = check(&Problem(Space::cube(1, 0.0, 1.0).unwrap()), 1)
         .iter()
         .map(|violation| violation.law)
         .collect();
-    assert_eq!(laws, [Law::Identity]);
+    assert_eq!(laws, [ProblemLaw::Identity]);
 }

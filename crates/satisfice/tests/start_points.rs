@@ -1,4 +1,4 @@
-//! Start points of the user's own: evaluated first, counted, told to every engine, refused where they are not of the space.
+//! The user's start points: evaluated first, counted, told to every engine, refused if they are not in the space.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 

@@ -19,7 +19,7 @@ use crate::error::Error;
 /// How often a long count checks whether it is still wanted.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// What happens in a sweep.
+/// An event of a sweep.
 #[derive(Debug)]
 pub enum Event<'a> {
     /// It begins.
@@ -35,7 +35,7 @@ pub enum Event<'a> {
     Finished(&'a Row),
 }
 
-/// What is left when a sweep ends.
+/// The outcome of a sweep.
 #[derive(Debug)]
 pub struct Finished {
     /// The runs of the plan, in its order; those that are missing were cancelled.

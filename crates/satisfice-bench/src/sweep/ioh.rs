@@ -15,7 +15,7 @@ use crate::error::Error;
 /// dimension is given as 1, since problems of one number of axes are not alike; the instance is the seed plus 1.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be written.
+/// [`Error::File`] if a file cannot be written.
 pub fn export(folder: &Path, groups: &[Group], rows: &[Row]) -> Result<(), Error> {
     for (number, group) in (1..).zip(groups) {
         for line in &group.lines {

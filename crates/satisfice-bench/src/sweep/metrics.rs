@@ -21,7 +21,7 @@ const CURVE_HITS: usize = 200;
 pub struct Metrics {
     /// The cost of the first hit.
     pub first_hit: Option<Cost>,
-    /// The cost of each of [`RECALLS`], `None` where it was not reached.
+    /// The cost of each of [`RECALLS`], `None` if it was not reached.
     pub to_recall: Vec<Option<Cost>>,
     /// Hits at the row's `at_evaluations`.
     pub at_evaluations: Vec<u64>,
@@ -44,7 +44,7 @@ pub struct Metrics {
 pub struct Cost {
     /// Evaluations.
     pub evaluations: u64,
-    /// Seconds; `None` where the run shared the machine.
+    /// Seconds; `None` if the run shared the machine.
     pub seconds: Option<f64>,
 }
 

@@ -11,7 +11,6 @@ use satisfice_catalogue::{Catalogue, Instance, RunSpec, exact, options};
 use serde::Serialize;
 
 use super::grid;
-use super::row::Row;
 use super::suite::{Choice, Part, Suite};
 use crate::error::Error;
 use crate::studies;
@@ -27,7 +26,7 @@ pub struct Plan {
     pub instances: Vec<Arc<dyn Instance>>,
     /// The runs but for their seeds, in the order of the suite.
     pub cells: Vec<Cell>,
-    places: BTreeMap<String, usize>,
+    pub(super) places: BTreeMap<String, usize>,
     len: u64,
 }
 
@@ -42,7 +41,7 @@ pub struct Cell {
     pub problem_label: String,
     /// The engine with the parameters that the suite sets.
     pub engine_label: String,
-    /// What to run, with seed 0.
+    /// The specification of the runs, with seed 0.
     pub spec: RunSpec,
     /// The seeds.
     pub seeds: Range<u64>,
@@ -80,7 +79,7 @@ impl Cell {
 }
 
 impl Planned<'_> {
-    /// What to run.
+    /// The specification.
     #[must_use]
     pub fn spec(&self) -> RunSpec {
         self.cell.spec.clone().seed(self.seed)
@@ -146,17 +145,6 @@ impl Plan {
             let cells = self.cells.iter().filter(move |cell| cell.seeds.contains(&seed));
             cells.map(move |cell| Planned { cell, seed })
         })
-    }
-
-    /// The run of the plan that a row is of, if any.
-    #[must_use]
-    pub fn find(&self, row: &Row) -> Option<Planned<'_>> {
-        let spec = row.report.spec.clone().seed(0);
-        let version = &row.report.version;
-        let key = key(&row.part, &spec, &row.at_evaluations, &row.at_seconds, version);
-        let cell = &self.cells[*self.places.get(&key)?];
-        let seed = row.report.spec.seed;
-        cell.seeds.contains(&seed).then_some(Planned { cell, seed })
     }
 
     /// The longest time that the runs limited by a clock can take together, in seconds.
@@ -251,8 +239,14 @@ impl Plan {
     }
 }
 
-/// What tells the runs of a cell from all others, as text.
-fn key(part: &str, spec: &RunSpec, at_evaluations: &[u64], at_seconds: &[f64], version: &str) -> String {
+/// A text that identifies the runs of a cell.
+pub(super) fn key(
+    part: &str,
+    spec: &RunSpec,
+    at_evaluations: &[u64],
+    at_seconds: &[f64],
+    version: &str,
+) -> String {
     #[derive(Serialize)]
     struct Key<'a>(&'a str, &'a RunSpec, &'a [u64], &'a [f64], &'a str);
     // Numbers, texts and maps of those: this cannot fail.

@@ -17,7 +17,7 @@ use satisfice_page::ComparePage;
 /// on and off, and `report.html`, which contains the rest of it, the findings of studies and the `command` that made it; returns the groups of the summary.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be written, [`Error::Draw`] where a figure cannot be encoded.
+/// [`Error::File`] if a file cannot be written, [`Error::Draw`] if a figure cannot be encoded.
 pub fn publish(
     folder: &Path,
     plan: &Plan,

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::row::Row;
 use crate::error::Error;
 
-/// How a line begins; 16 hexadecimal digits and `",` follow.
+/// The start of a line; 16 hexadecimal digits and `",` follow.
 const CHECKSUM: &str = "{\"checksum\":\"";
 
 /// The file of a sweep, locked until it is dropped.

@@ -4,7 +4,7 @@ use satisfice_catalogue::RunReport;
 use serde::{Deserialize, Serialize};
 
 use super::metrics::{self, Metrics, Moment};
-use super::plan::{Plan, Planned, seconds};
+use super::plan::{Plan, Planned, key, seconds};
 
 /// A finished run. The run of a plan that it is of is not run again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,7 +24,7 @@ pub struct Row {
     /// The report, without solutions and trace.
     #[serde(flatten)]
     pub report: RunReport,
-    /// What is asked of it.
+    /// The metrics of the run.
     pub metrics: Metrics,
     /// Evaluations, seconds and hits: exact at every point, which are those of the trace and up to 200 of the hits.
     pub curve: Vec<Moment>,
@@ -69,5 +69,18 @@ impl Row {
     pub fn hits_by_second(&self, seconds: f64) -> u64 {
         let after = self.curve.partition_point(|moment| moment.1 <= seconds);
         after.checked_sub(1).map_or(0, |last| self.curve[last].2)
+    }
+}
+
+impl Plan {
+    /// The run of the plan that a row is of, if any.
+    #[must_use]
+    pub fn find(&self, row: &Row) -> Option<Planned<'_>> {
+        let spec = row.report.spec.clone().seed(0);
+        let version = &row.report.version;
+        let key = key(&row.part, &spec, &row.at_evaluations, &row.at_seconds, version);
+        let cell = &self.cells[*self.places.get(&key)?];
+        let seed = row.report.spec.seed;
+        cell.seeds.contains(&seed).then_some(Planned { cell, seed })
     }
 }

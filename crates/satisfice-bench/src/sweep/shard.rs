@@ -89,7 +89,7 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// Which part of which sweep a folder has. Shards of one sweep differ in `shard` only.
+/// The part of a sweep that a folder holds. Shards of one sweep differ in `shard` only.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardOf {
     /// The part.
@@ -285,7 +285,7 @@ fn name_of(row: &Row) -> String {
     )
 }
 
-/// What makes two shards parts of different sweeps.
+/// The difference that makes two shards parts of different sweeps.
 fn differs(part: &ShardOf, sweep: &ShardOf, first: &Path) -> String {
     let first = first.display();
     if part.shard.of != sweep.shard.of {

@@ -35,7 +35,7 @@ pub struct Suite {
     pub name: String,
     /// Heading of its report.
     pub title: String,
-    /// What it shows, a paragraph.
+    /// A description, one paragraph.
     pub about: String,
     /// The text it was read from.
     pub text: String,
@@ -64,7 +64,7 @@ pub struct Part {
     pub at_times: Vec<Duration>,
     /// The engine that all others are compared with: a name or a label; the first one by default.
     pub against: Option<String>,
-    /// What is printed beside a problem's figures, by the problem's label: its name and the parameters that the suite sets.
+    /// Text printed with a problem's figures, by the problem's label: its name and the parameters that the suite sets.
     pub beside: IndexMap<String, String>,
 }
 

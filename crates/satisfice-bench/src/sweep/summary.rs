@@ -31,7 +31,7 @@ pub struct Group {
     pub at_seconds: Vec<f64>,
     /// Label of the engine that the others are compared with.
     pub against: String,
-    /// What the suite prints beside the figures.
+    /// Text that the suite prints with the figures.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub beside: Option<String>,
     /// One line per engine, in the order of the suite.

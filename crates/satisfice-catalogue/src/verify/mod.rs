@@ -13,7 +13,7 @@ use crate::report::{RunReport, recall};
 /// A value in a report that does not fit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mismatch {
-    /// Where in the report, e.g. `solutions[3].fitness`.
+    /// The place in the report, e.g. `solutions[3].fitness`.
     pub place: String,
     /// The value in the report.
     pub found: String,

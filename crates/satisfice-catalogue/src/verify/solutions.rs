@@ -94,7 +94,7 @@ fn agree(a: f64, b: f64, threshold: Option<f64>) -> bool {
     (a - b).abs() <= ROUNDING * scale
 }
 
-/// What is expected instead of a solution that a report lists for the second time.
+/// The expectation instead of a solution that a report lists twice.
 pub const LISTED_BEFORE: &str = "a solution that is not listed before";
 
 /// The same with a given evaluation: `evaluate` returns F, or what it expected instead of a solution that is not one or is

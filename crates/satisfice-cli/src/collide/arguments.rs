@@ -64,7 +64,7 @@ pub(crate) struct CollideArguments {
     pub(crate) at: Vec<At>,
 
     /// Join vertices of a body that are equal or closer than D, in the unit of the meshes, so that seams make no pairs
-    /// within it. Vertices are then numbered anew, in the order of the file.
+    /// within it. Vertices are then renumbered in the order of the file.
     #[arg(long, value_name = "D", value_parser = quantity::not_negative, allow_hyphen_values = true)]
     pub(crate) weld: Option<f64>,
 

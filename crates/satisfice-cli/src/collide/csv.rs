@@ -33,7 +33,7 @@ pub(super) fn write(pairs: &Pairs, world: &World, out: &mut dyn Write) -> io::Re
     Ok(())
 }
 
-/// Two points, the normal and the parts; empty where they are not known.
+/// Two points, the normal and the parts; empty if they are not known.
 fn witness(line: &Line, out: &mut dyn Write) -> io::Result<()> {
     let Some(witness) = &line.witness else {
         return write!(out, ",,,,,,,,,,,");

@@ -21,7 +21,7 @@ pub(super) const METHODS: [(&str, Method); 4] = [
     ("brute-force", Method::BruteForce),
 ];
 
-/// Pairs measured between two looks at the clock; one can take some 100 us.
+/// Pairs measured between two looks at the clock; one can take about 100 us.
 const MEASURED_AT_ONCE: usize = 16;
 
 /// How to find.
@@ -38,7 +38,7 @@ pub(super) struct Exact<'a> {
     pub(super) cancel: &'a Cancel,
 }
 
-/// What was found.
+/// The hits.
 pub(super) struct Found {
     pub(super) pairs: Pairs,
     /// Whether all pairs are listed, as was proved.
@@ -52,7 +52,7 @@ pub(super) struct Found {
 }
 
 /// Pairs that are not measured yet.
-struct Answer {
+struct Enumerated {
     pairs: Vec<Pair>,
     /// Distances that are known beforehand, of all or of none.
     known: Vec<Proximity>,
@@ -134,7 +134,7 @@ impl Exact<'_> {
         scene: &mut scene::World,
         limit: &Limit<'_>,
         counting: &Counting,
-    ) -> anyhow::Result<Answer> {
+    ) -> anyhow::Result<Enumerated> {
         let stop = |found: usize| {
             counting.show(found, limit.start);
             limit.is_reached()
@@ -142,7 +142,7 @@ impl Exact<'_> {
         // `enough`: why no more were wanted, if some pairs answer the question.
         let answer = |contacts: Vec<Contact>, enough: Option<StopReason>, state: Completeness| {
             let proved = state == Completeness::Proved;
-            Answer {
+            Enumerated {
                 pairs: world.pairs(contacts.into_iter()).collect(),
                 known: Vec::new(),
                 skips: Skips::default(),
@@ -174,7 +174,7 @@ impl Exact<'_> {
                 };
                 let enough = (closest.len() >= wanted).then_some(StopReason::Hits);
                 let (contacts, known) = closest.into_iter().unzip();
-                Answer {
+                Enumerated {
                     known,
                     ..answer(contacts, enough, state)
                 }
@@ -190,7 +190,7 @@ impl Exact<'_> {
         scene: &mut scene::World,
         limit: &Limit<'_>,
         counting: &Counting,
-    ) -> anyhow::Result<Answer> {
+    ) -> anyhow::Result<Enumerated> {
         let wanted = self
             .hits
             .map_or(usize::MAX, |hits| usize::try_from(hits).unwrap_or(usize::MAX));
@@ -217,7 +217,7 @@ impl Exact<'_> {
         let found = pairs.len();
         let complete = completeness == Completeness::Proved && found <= wanted.min(self.most);
         pairs.truncate(wanted.min(self.most));
-        let mut answer = Answer {
+        let mut answer = Enumerated {
             pairs,
             known: Vec::new(),
             skips,
@@ -251,7 +251,7 @@ impl Exact<'_> {
         &self,
         world: &World,
         measure: &Measure,
-        answer: &mut Answer,
+        answer: &mut Enumerated,
         limit: &Limit<'_>,
     ) -> anyhow::Result<Pairs> {
         let found = std::mem::take(&mut answer.pairs);

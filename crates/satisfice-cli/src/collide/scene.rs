@@ -61,12 +61,12 @@ impl std::fmt::Display for Pair {
 
 /// The pairs of two bodies, or of one with itself, as a problem for an engine.
 #[derive(Debug)]
-pub(super) struct Job {
+pub(super) struct PairProblem {
     pub(super) bodies: [usize; 2],
     pub(super) problem: FeaturePairs,
 }
 
-impl Job {
+impl PairProblem {
     /// The pair of features that a solution of this job is.
     pub(super) fn pair(&self, (a, b): (u32, u32)) -> Pair {
         let side = |body: usize, feature| Feature {
@@ -98,7 +98,7 @@ pub(super) struct World {
     pub(super) request: Request,
     pub(super) bodies: Vec<NamedBody>,
     pub(super) threshold: Threshold,
-    jobs: OnceLock<Vec<Job>>,
+    jobs: OnceLock<Vec<PairProblem>>,
 }
 
 impl World {
@@ -289,7 +289,7 @@ impl World {
     }
 
     /// A problem for every combination of bodies, made when it is first asked for.
-    pub(super) fn jobs(&self) -> anyhow::Result<&[Job]> {
+    pub(super) fn jobs(&self) -> anyhow::Result<&[PairProblem]> {
         if let Some(jobs) = self.jobs.get() {
             return Ok(jobs);
         }
@@ -303,7 +303,7 @@ impl World {
             } else {
                 FeaturePairs::between(kind, first, second, threshold)
             };
-            problem.map(|problem| Job {
+            problem.map(|problem| PairProblem {
                 bodies: [a, b],
                 problem,
             })

@@ -1,4 +1,4 @@
-//! Whether a report of `collide --json` is true: its scene is read again, and its pairs are measured anew.
+//! Whether a report of `collide --json` is true: its scene is read again, and its pairs are measured again.
 
 use std::collections::BTreeSet;
 

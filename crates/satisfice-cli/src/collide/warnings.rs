@@ -1,4 +1,4 @@
-//! Signs of wrong units, wrong scales and seams. The pairs are exact for the numbers as they are all the same.
+//! Signs of wrong units, wrong scales and seams. They do not change the pairs, which are exact for the given numbers.
 
 use satisfice_catalogue::quantity::shown;
 

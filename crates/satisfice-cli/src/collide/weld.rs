@@ -8,7 +8,7 @@ use satisfice_collision::{Error, Mesh, mesh};
 const SEAM: f64 = 1e-9;
 
 /// The body with one vertex for all that are equal, or joined by a chain of steps below `distance`: the first of them.
-/// Vertices are numbered anew, in the order of the file; lines and triangles keep their numbers.
+/// Vertices are renumbered in the order of the file; lines and triangles keep their numbers.
 pub(super) fn welded(body: &Mesh, distance: f64) -> Result<Mesh, Error> {
     let (vertices, numbers) = merged(body, distance)?;
     let number = |v: u32| numbers[v as usize];

@@ -56,7 +56,7 @@ pub(super) struct Evaluator {
 
 /// An answer of a worker.
 #[derive(Deserialize)]
-struct Answer {
+struct Reply {
     ticket: u64,
     #[serde(default)]
     value: Option<serde_json::Value>,
@@ -206,7 +206,7 @@ fn printed(line: &str) -> Result<f64, String> {
 /// answer.
 fn answer(line: &str, ticket: u64) -> Result<Option<Result<f64, String>>, String> {
     let shown = || format!("`{}`", short(line));
-    let answer: Answer = serde_json::from_str(line).map_err(|error| {
+    let answer: Reply = serde_json::from_str(line).map_err(|error| {
         format!("the worker wrote a line that is no answer such as {{\"ticket\": {ticket}, \"value\": 0.5}}: {}: {error}", shown())
     })?;
     if answer.ticket < ticket {

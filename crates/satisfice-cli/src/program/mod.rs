@@ -16,13 +16,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow, bail};
-use satisfice::{Budget, Cancel, RunReport, Search, Ticket, Tickets};
-use satisfice_catalogue::black_box::{BlackBox, Point, Separation};
+use satisfice::problem::{FnProblem, evaluated_elsewhere};
+use satisfice::{Budget, Cancel, Located, RunReport, Search, Ticket, Tickets};
 use satisfice_catalogue::{RunSpec, json};
 
 use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
 use crate::output;
-use crate::run::show;
+use crate::summary::show;
 use crate::{interrupt, message};
 
 use evaluator::{Evaluator, Failure, Task, Way};
@@ -37,7 +37,7 @@ const TOLD: u64 = 3;
 const HOPELESS: u64 = 8;
 
 /// A problem whose values come from elsewhere.
-type Problem = BlackBox<fn(&[f64]) -> f64>;
+type Problem = FnProblem<f64, fn(&[f64]) -> f64>;
 
 /// A point to evaluate.
 struct Job {
@@ -118,13 +118,12 @@ fn check(arguments: &RunArguments) -> anyhow::Result<()> {
 }
 
 fn problem(space: &SpaceFile, threshold: f64) -> anyhow::Result<Problem> {
-    let separation = match &space.separation {
-        None => Separation::Exact,
-        Some(Widths::Same(radius)) => Separation::Radius(*radius),
-        Some(Widths::PerAxis(radii)) => Separation::PerAxis(radii.clone()),
-    };
-    let elsewhere: fn(&[f64]) -> f64 = |_| f64::NAN;
-    Ok(BlackBox::new(space.space()?, threshold, &separation, elsewhere)?.named("program"))
+    let problem = evaluated_elsewhere(space.space()?, threshold).named("program");
+    Ok(match &space.separation {
+        None => problem.separation(0.0),
+        Some(Widths::Same(radius)) => problem.separations(&vec![*radius; space.axes.len()])?,
+        Some(Widths::PerAxis(radii)) => problem.separations(radii)?,
+    })
 }
 
 /// A search by the engine of a complete specification.
@@ -210,7 +209,7 @@ fn drive(
     values: &Receiver<(Ticket, Result<f64, Failure>)>,
     cancel: &Cancel,
     deadline: Option<Instant>,
-) -> anyhow::Result<(satisfice::Report<Point>, u64)> {
+) -> anyhow::Result<(satisfice::Report<Located<f64>>, u64)> {
     let (mut failed, mut succeeded) = (0, 0_u64);
     loop {
         let free = workers.saturating_sub(tickets.open());

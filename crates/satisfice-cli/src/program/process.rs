@@ -140,7 +140,7 @@ fn read_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<b
     }
 }
 
-/// Now, for limits of evaluations, which are no part of a result.
+/// Now, for limits of evaluations, which are not part of a result.
 #[expect(clippy::disallowed_methods, reason = "decides when a process is given up")]
 pub(super) fn now() -> Instant {
     Instant::now()

@@ -1,4 +1,4 @@
-//! What every test of the command needs: to run it.
+//! Runs the command, for every test of it.
 
 #![allow(dead_code, reason = "each test file makes use of a part")]
 

@@ -1,4 +1,4 @@
-//! How much is examined: a short form for every test run, the full one on demand.
+//! The extent of the examination: a short form for every test run, the full one on demand.
 
 /// Whether the full examination was asked for.
 pub(crate) fn is_full() -> bool {

@@ -1,4 +1,4 @@
-//! Places that cannot be written: full disks, closed pipes, folders that are none. Results never depend on messages.
+//! Places that cannot be written: full disks, closed pipes, paths that are not folders. Results never depend on messages.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! Signals at random moments: what was found is kept, files are whole, and a killed run goes on as if nothing had happened.
+//! Signals at random moments: what was found is kept, files are whole, and a killed run continues as if nothing had happened.
 
 use std::fs;
 use std::path::Path;

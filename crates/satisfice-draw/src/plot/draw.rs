@@ -45,7 +45,7 @@ const STYLES: [LineStyle; 4] = [
 /// Draws a chart. The same chart gives the same bytes.
 ///
 /// # Errors
-/// [`Error::Chart`] where the picture cannot be encoded.
+/// [`Error::Chart`] if the picture cannot be encoded.
 pub fn draw(chart: &Chart, format: Format) -> Result<Vec<u8>, Error> {
     let (plots, layouts): (Vec<_>, Vec<_>) = chart.panels.iter().map(panel).unzip();
     let labels = |panel: &Panel| {

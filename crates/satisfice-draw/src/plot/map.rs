@@ -1,9 +1,18 @@
 //! Maps: points, lines and contours over a plane.
 
 /// Maps side by side, under a title.
+///
+/// ```
+/// use satisfice_draw::plot::{Colour, Format, Layer, Map, Maps, draw_maps};
+/// let hits = Layer::points(Colour::Blue, 2.0, vec![(0.1, 0.2), (0.5, 0.5)]).named("hits");
+/// let map = Map { x_range: (0.0, 1.0), y_range: (0.0, 1.0), layers: vec![hits], ..Map::default() };
+/// let maps = Maps { title: "Hits".to_owned(), size: (300.0, 300.0), panels: vec![map] };
+/// assert!(draw_maps(&maps, Format::Svg)?.starts_with(b"<svg"));
+/// # Ok::<(), satisfice_draw::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Maps {
-    /// What they show.
+    /// The title.
     pub title: String,
     /// Width and height of a panel in units, legend included; a PNG has two pixels per unit.
     pub size: (f64, f64),
@@ -14,7 +23,7 @@ pub struct Maps {
 /// A part of a plane.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Map {
-    /// What it shows.
+    /// The title.
     pub title: String,
     /// Label of the horizontal axis, with its unit.
     pub x_label: String,

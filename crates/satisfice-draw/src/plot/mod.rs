@@ -13,9 +13,18 @@ pub use map::{Colour, Layer, Map, Maps, Marker, Shape};
 use crate::error::Error;
 
 /// One or more panels side by side, under a title.
+///
+/// ```
+/// use satisfice_draw::plot::{Chart, Curve, Format, Panel, draw};
+/// let curve = Curve { points: vec![(1.0, 2.0), (10.0, 5.0)], steps: true, ..Curve::default() };
+/// let panel = Panel { x_label: "evaluations".to_owned(), log_x: true, curves: vec![curve], ..Panel::default() };
+/// let chart = Chart { title: "Hits".to_owned(), panels: vec![panel] };
+/// assert!(draw(&chart, Format::Svg)?.starts_with(b"<svg"));
+/// # Ok::<(), satisfice_draw::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chart {
-    /// What it shows.
+    /// The title.
     pub title: String,
     /// The panels, left to right.
     pub panels: Vec<Panel>,
@@ -45,7 +54,7 @@ pub struct Curve {
     pub label: Option<String>,
     /// Its points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
-    /// For each point the least and the greatest y of a band around it; empty where there is none.
+    /// For each point the least and the greatest y of a band around it; empty if there is none.
     pub band: Vec<(f64, f64)>,
     /// Whether its points are marked by black dots instead of joined.
     pub marks: bool,

@@ -40,7 +40,7 @@ fn program() -> Option<PathBuf> {
 }
 
 impl Browser {
-    /// Starts one; `None`, with a message, where there is none. `options` are added to the command line.
+    /// Starts one; `None`, with a message, if there is none. `options` are added to the command line.
     #[expect(clippy::disallowed_methods, reason = "waits for another program")]
     pub(crate) fn start(options: &[&str]) -> Option<Self> {
         let Some(program) = program() else {

@@ -259,6 +259,8 @@ def question(
     elif _is_number(separation):
         # A radius says nothing about categories: different ones are different hits.
         radius = _real("separation", separation)
+        if not radius > 0:
+            raise ValueError(f"separation = {radius} is not allowed: a positive number, or none for exact coordinates")
         widths = [0.0 if axis in labels else radius for axis in range(len(axes))]
     else:
         widths = [float(width) for width in _list(separation)]

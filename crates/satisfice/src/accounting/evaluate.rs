@@ -63,7 +63,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         }
     }
 
-    /// Whether the batch is to be saved before its evaluation goes on.
+    /// Whether the batch is to be saved before its evaluation continues.
     fn holds(&self) -> bool {
         self.hold.is_some_and(|hold| self.clock.seen() >= hold)
     }

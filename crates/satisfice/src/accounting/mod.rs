@@ -48,7 +48,7 @@ pub(crate) struct Ledger<T> {
     recent: usize,
 }
 
-/// What a saved slice had reached.
+/// The progress of a saved slice.
 #[derive(Debug)]
 pub(crate) struct Reached<T> {
     pub(crate) counts: Counts,
@@ -73,7 +73,7 @@ impl<T> Default for Reached<T> {
 }
 
 impl<T> Ledger<T> {
-    /// Opens the accounts of a slice that begins or goes on now.
+    /// Opens the accounts of a slice that begins or continues now.
     pub(crate) fn open(budget: &Budget, reached: Reached<T>) -> Self {
         let Reached { counts, elapsed, .. } = reached;
         let mut next = 1;

@@ -3,7 +3,7 @@
 use num_traits::Float;
 
 use super::{Ledger, next_count};
-use crate::archive::{Entered, Hit};
+use crate::archive::{Hit, Insertion};
 use crate::batch::Outcome;
 use crate::best::Best;
 use crate::budget::StopReason;
@@ -14,7 +14,7 @@ use crate::problem::SatisficingProblem;
 use crate::report::Counts;
 use crate::scalar::Real;
 
-/// How a batch is judged.
+/// How the outcomes of a batch are decided.
 #[derive(Debug, Clone, Copy)]
 struct Rules {
     /// Whether found solutions are deleted from the space, as far as the engine is concerned.
@@ -203,15 +203,15 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             .archive
             .enter(listed, its_fitness, evaluation, seconds, rules.probing)
         {
-            Entered::New => self.notify_hit(observer),
+            Insertion::New => self.notify_hit(observer),
             // New to the engine only.
-            Entered::Promoted => self.counts.duplicates += 1,
-            Entered::Known => return self.known(fitness, rules),
+            Insertion::Promoted => self.counts.duplicates += 1,
+            Insertion::Known => return self.known(fitness, rules),
         }
         Outcome::Hit(fitness)
     }
 
-    /// What is listed for a hit. A representative that is no hit breaks the problem's law and is not used.
+    /// The solution listed for a hit. A representative that is not a hit breaks the problem's law and is not used.
     fn representative<P: SatisficingProblem<Solution = T> + ?Sized>(
         &self,
         problem: &P,
@@ -266,12 +266,12 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             seconds,
             false,
         );
-        if entered == Entered::New {
+        if entered == Insertion::New {
             self.notify_hit(observer);
         } else {
             self.counts.duplicates += 1;
         }
-        entered == Entered::New
+        entered == Insertion::New
     }
 
     /// Takes the best of a lane, as of now.
@@ -295,7 +295,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 }
 
-/// What is listed for a hit.
+/// The solution listed for a hit.
 enum Representative<S, T> {
     /// The hit itself.
     Itself,

@@ -1,6 +1,13 @@
 //! Name and parameters, as reports show them.
 
 /// Name and parameters of a problem or an engine, as reports show them.
+///
+/// ```
+/// use satisfice::catalogue::Description;
+/// let description = Description { name: "ring".to_owned(), parameters: vec![("radius".to_owned(), "2".to_owned())] };
+/// assert_eq!(Description::default().name, "unnamed");
+/// # let _ = description;
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Description {
     /// Its name, `"unnamed"` by default.

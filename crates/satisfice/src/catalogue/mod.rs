@@ -22,7 +22,7 @@ pub trait Catalogued: SatisficingProblem + Sized {
     const NAME: &'static str;
     /// One line.
     const SUMMARY: &'static str;
-    /// Where it comes from.
+    /// Its source.
     const SOURCE: &'static str;
     /// Its parameters with defaults and ranges.
     const PARAMETERS: &'static [Parameter];

@@ -24,7 +24,7 @@ impl Params {
     /// The defaults of a table.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where the table's own default is out of its range.
+    /// [`Error::Parameter`] if the table's own default is out of its range.
     pub fn defaults(table: &'static [Parameter]) -> Result<Self, Error> {
         let values = table
             .iter()

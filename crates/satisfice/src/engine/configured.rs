@@ -144,7 +144,7 @@ impl<S: Real> ConfiguredEngine<S> {
         default_of(spec).ok_or_else(|| Error::unknown("engine", name, [spec.name]))
     }
 
-    /// An engine of your own. `make` builds it, anew for each lane of a search; reports show `name`.
+    /// An engine of your own. `make` builds it, once for each lane of a search; reports show `name`.
     ///
     /// ```
     /// use satisfice::engine::{Ask, ConfiguredEngine, Origin};
@@ -229,7 +229,7 @@ impl<S: Real> ConfiguredEngine<S> {
     ///
     /// Neighbours are the [problem's own](crate::Neighbourhood), or else the next lattice points; on
     /// continuous axes, the nearest points in both directions of each axis that are not known hits. They get at most every
-    /// other evaluation, so that the engine goes on discovering, and all of them once the engine has nothing more to propose.
+    /// other evaluation, so that the engine continues discovering, and all of them once the engine has nothing more to propose.
     /// The engine is told of the hits among them.
     ///
     /// For hits that lie together. `portfolio` and `descent-flood` already contain a flood fill.

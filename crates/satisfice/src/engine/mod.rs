@@ -21,15 +21,12 @@ mod swarm;
 
 pub use config::{EngineConfig, Setting, Settings};
 pub use configured::{COMMON_PARAMETERS, ConfiguredEngine};
-pub use exact::{BranchAndBound, SplitRule};
-pub use local::{Descent, DescentFlood, Random, RestartedCmaEs, Walk};
-pub use model::{GaussianProcess, Surrogate};
-pub use portfolio::{NeighbourTiming, Omitted, Portfolio};
+pub use exact::*;
+pub use local::*;
+pub use model::*;
+pub use portfolio::*;
 pub use registry::{EngineSpec, all, default, find};
-pub use swarm::{
-    ALPHA_BOUNDED, BoundedSwarms, LatestHitQpso, NichingPsoDbscan, Pso, Pso1995, PsoInertia, PsoLatestHit,
-    Qpso, QpsoDeletion, Spso2011,
-};
+pub use swarm::*;
 
 /// What an engine says after proposing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -56,7 +53,7 @@ pub enum Answers {
 }
 
 impl Answers {
-    /// For an engine around one that takes answers so, and that keeps books of each batch.
+    /// For an engine around one that takes answers so, and that keeps track of each batch.
     pub(crate) fn in_batches(self) -> Self {
         match self {
             Self::Alone => Self::Alone,
@@ -72,27 +69,27 @@ pub enum WarmStart {
     Cold,
     /// The engine's own rule, from [`Context::previous_hit`].
     Engine,
-    /// All of them are evaluated anew, in order, before the engine is asked; it is told of them.
+    /// All of them are evaluated again, in order, before the engine is asked; it is told of them.
     #[default]
     Verify,
 }
 
-/// A search strategy that is asked for points and told what became of them.
+/// A search strategy that is asked for points and told their outcomes.
 ///
-/// One virtual call a batch. An engine whose next point depends on the last outcome asks for batches of one, and may offer to
+/// One virtual call per batch. An engine whose next point depends on the last outcome asks for batches of one, and may offer to
 /// [`advance`](Engine::advance) by itself, which saves half of what the detour costs (`cargo bench --bench engine`).
 ///
 /// Laws, checked for every registered engine by the conformance suite of [`crate::testing`]: numbers are drawn from `rng`
 /// in `ask` only; nothing depends on time, threads or addresses; NaN and infinite fitness do no harm; axes of width zero
-/// and a single axis are fine; a restored engine goes on as the saved one would have.
+/// and a single axis are fine; a restored engine continues as the saved one would have.
 pub trait Engine<S: Real>: Send {
-    /// A slice begins: the problem may have moved, C is empty, C_prev is at hand in `context`.
+    /// A slice begins: the problem may have moved, C is empty, C_prev is available in `context`.
     fn begin(&mut self, context: &dyn Context<S>);
 
     /// Appends proposals to `out`, which is empty. [`Ask::More`] without a proposal is asked again, a thousand times at most.
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask;
 
-    /// Says what became of each point of `batch`, which holds the proposals as the boundary rule left them. Also called
+    /// Reports the outcome of each point of `batch`, which holds the proposals as the boundary rule left them. Also called
     /// with points that the engine has not proposed: hits found by exhaustion, and those of a warm start.
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin);
 
@@ -132,7 +129,7 @@ pub trait Engine<S: Real>: Send {
     /// Restores what [`Engine::save`] wrote, into an engine built with the same parameters.
     ///
     /// # Errors
-    /// [`Error::State`] where the state is not of such an engine.
+    /// [`Error::State`] if the state is not of such an engine.
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error>;
 }
 
@@ -154,7 +151,7 @@ pub trait Steps<S> {
 pub enum Origin {
     /// The engine itself: the points are those of its last `ask`, in order.
     Engine,
-    /// The search: hits of the slice before, evaluated anew; also answers that came after their batch was told.
+    /// The search: hits of the slice before, evaluated again; also answers that came after their batch was told.
     WarmStart,
     /// The user: [start points](crate::Search::start_from) and [values from elsewhere](crate::Tickets::inform).
     Start,

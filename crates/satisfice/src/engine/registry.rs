@@ -1,13 +1,5 @@
 //! The registry: every engine by its name. The command line, the docs, the conformance suite and the benches walk it.
 
-use super::exact::BranchAndBound;
-use super::local::{Descent, DescentFlood, Random, RestartedCmaEs, Walk};
-use super::model::Surrogate;
-use super::portfolio::Portfolio;
-use super::swarm::{
-    BoundedSwarms, LatestHitQpso, NichingPsoDbscan, Pso, Pso1995, PsoInertia, PsoLatestHit, Qpso,
-    QpsoDeletion, Spso2011,
-};
 use super::{ConfiguredEngine, EngineConfig};
 use crate::catalogue::Parameter;
 use crate::error::Error;
@@ -63,8 +55,19 @@ impl EngineSpec {
 
 /// Lists the engines once, by their settings.
 macro_rules! engines {
-    ($($engine:ty,)+) => {
+    (($d:tt) $($engine:ident,)+) => {
+        $(use super::$engine;)+
+
         static ENGINES: &[EngineSpec] = &[$(EngineSpec::of::<$engine>()),+];
+
+        /// Calls a macro with the settings types of all engines: tests that have one function per engine need no list.
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! for_each_engine {
+            ($d name:ident) => {
+                $d name! { $($engine)+ }
+            };
+        }
 
         /// The engine of a spec with the default of each parameter.
         pub(super) fn default_of<S: Real>(spec: &EngineSpec) -> Option<ConfiguredEngine<S>> {
@@ -77,6 +80,7 @@ macro_rules! engines {
 }
 
 engines! {
+    ($)
     Portfolio,
     Random,
     Walk,

@@ -28,6 +28,13 @@ pub enum Separation<S> {
 }
 
 /// The part of one axis in [`Separation::Axes`].
+///
+/// ```
+/// use satisfice::{AxisSeparation, Identity, Located, Separation};
+/// let one_percent = Separation::axes([AxisSeparation::within(0.01).logarithmic()]);
+/// let at = |x| Located::new(&[x], one_percent.clone());
+/// assert!(at(1e6).same(&at(1.009e6)) && !at(1e-6).same(&at(1.02e-6)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisSeparation<S> {
     radius: S,
@@ -112,7 +119,7 @@ impl<S: Real> AxisSeparation<S> {
         }
     }
 
-    /// The square of distance / radius; infinite where the axis is exact and they differ.
+    /// The square of distance / radius; infinite if the axis is exact and they differ.
     #[inline]
     pub(super) fn square(&self, a: S, b: S) -> S {
         if a == b {
@@ -182,25 +189,25 @@ mod serial {
     #[serde(untagged, bound(deserialize = "S: Real"))]
     enum PlainAxis<S> {
         Radius(S),
-        Axis(Axis<S>),
+        AxisRecord(AxisRecord<S>),
     }
 
     #[derive(Serialize, Deserialize)]
     #[serde(bound(deserialize = "S: Real"))]
     enum Tagged<S> {
         Radius(S),
-        Axes(Vec<Axis<S>>),
+        Axes(Vec<AxisRecord<S>>),
     }
 
     #[derive(Serialize, Deserialize)]
     #[serde(bound(deserialize = "S: Real"))]
-    struct Axis<S> {
+    struct AxisRecord<S> {
         radius: S,
         period: S,
         logarithmic: bool,
     }
 
-    impl<S: Real> From<&AxisSeparation<S>> for Axis<S> {
+    impl<S: Real> From<&AxisSeparation<S>> for AxisRecord<S> {
         fn from(axis: &AxisSeparation<S>) -> Self {
             Self {
                 radius: axis.radius,
@@ -210,8 +217,8 @@ mod serial {
         }
     }
 
-    impl<S: Real> From<Axis<S>> for AxisSeparation<S> {
-        fn from(axis: Axis<S>) -> Self {
+    impl<S: Real> From<AxisRecord<S>> for AxisSeparation<S> {
+        fn from(axis: AxisRecord<S>) -> Self {
             let one = Self::within(axis.radius).periodic(axis.period);
             if axis.logarithmic { one.logarithmic() } else { one }
         }
@@ -221,14 +228,14 @@ mod serial {
         if axis.is_plain() {
             PlainAxis::Radius(axis.radius)
         } else {
-            PlainAxis::Axis(axis.into())
+            PlainAxis::AxisRecord(axis.into())
         }
     }
 
     fn read<S: Real>(axis: PlainAxis<S>) -> AxisSeparation<S> {
         match axis {
             PlainAxis::Radius(radius) => AxisSeparation::within(radius),
-            PlainAxis::Axis(axis) => axis.into(),
+            PlainAxis::AxisRecord(axis) => axis.into(),
         }
     }
 
@@ -239,7 +246,7 @@ mod serial {
                 (Self::Axes(axes), true) => serializer.collect_seq(axes.iter().map(plain)),
                 (Self::Radius(radius), false) => Tagged::Radius(*radius).serialize(serializer),
                 (Self::Axes(axes), false) => {
-                    Tagged::Axes(axes.iter().map(Axis::from).collect()).serialize(serializer)
+                    Tagged::Axes(axes.iter().map(AxisRecord::from).collect()).serialize(serializer)
                 }
             }
         }

@@ -13,7 +13,7 @@ use crate::catalogue::{Description, as_map};
 use crate::identity::Identity;
 use crate::unseen::Unseen;
 
-/// What was run: the first keys.
+/// The configuration of the run: the first keys.
 #[derive(Serialize, Deserialize)]
 struct Run {
     problem: String,

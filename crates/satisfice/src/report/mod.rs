@@ -14,7 +14,7 @@ use crate::budget::{Budget, StopReason};
 use crate::catalogue::Description;
 use crate::unseen::Unseen;
 
-/// How complete the hits are.
+/// The completeness of the hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Completeness {
     /// All hits of the space are listed: every region was evaluated or excluded by bounds.
@@ -34,7 +34,7 @@ pub struct TracePoint {
     pub hits: u64,
 }
 
-/// What was counted.
+/// The counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counts {
     /// Candidates that reached the accounting, deleted ones included.
@@ -104,7 +104,7 @@ pub struct Report<T> {
     pub slice: u64,
     /// The budget.
     pub budget: Budget,
-    /// delta: a hit is F < delta. `None` where it is infinite.
+    /// delta: a hit is F < delta. `None` if it is infinite.
     pub threshold: Option<f64>,
     /// The share of probes that was asked for; `None` if it was left to the engine.
     pub requested_probe_share: Option<f64>,
@@ -112,11 +112,11 @@ pub struct Report<T> {
     pub probe_share: f64,
     /// Why it ended.
     pub stop_reason: StopReason,
-    /// What was counted.
+    /// The counts.
     pub counts: Counts,
     /// Wall time of the slice.
     pub elapsed: Duration,
-    /// How much longer than the time budget it took.
+    /// The time beyond the time budget.
     pub overshoot: Duration,
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,

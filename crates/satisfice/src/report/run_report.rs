@@ -9,7 +9,7 @@ use crate::budget::StopReason;
 use crate::identity::Identity;
 use crate::unseen::{Method, Unseen};
 
-/// What one run did and found, as plain data: the JSON of a [`Report`], of the command's `--json`, of sweeps and of `verify`.
+/// The report of a run, as plain data: the JSON of a [`Report`], of the command's `--json`, of sweeps and of `verify`.
 ///
 /// `Spec` says what was run; its keys come first. `S` is a solution. Everything but times is the same for the same
 /// specification under a budget of evaluations.
@@ -26,7 +26,7 @@ use crate::unseen::{Method, Unseen};
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunReport<Spec, S> {
-    /// What was run, with all parameters.
+    /// The specification, with all parameters.
     #[serde(flatten)]
     pub spec: Spec,
     /// `f32` or `f64`.
@@ -35,7 +35,7 @@ pub struct RunReport<Spec, S> {
     pub threshold: Option<f64>,
     /// The share of the evaluations spent on uniform probes.
     pub probe_share: f64,
-    /// What was counted, summed over the slices.
+    /// The counts, summed over the slices.
     #[serde(flatten)]
     pub counts: Counts,
     /// Evaluations that gave no value: a program that failed, an exception that was caught. They are non-finite as well.
@@ -43,7 +43,7 @@ pub struct RunReport<Spec, S> {
     pub failed: u64,
     /// Wall time in seconds, summed over the slices.
     pub elapsed_seconds: f64,
-    /// How much longer than the time budget it took, in seconds, summed over the slices.
+    /// The time beyond the time budget, in seconds, summed over the slices.
     pub overshoot_seconds: f64,
     /// Why the last slice ended.
     pub stop_reason: StopReason,
@@ -55,13 +55,13 @@ pub struct RunReport<Spec, S> {
     pub recall: Option<f64>,
     /// Whether all hits are known to be listed.
     pub completeness: Completeness,
-    /// The estimated number of hits not seen; 0 where completeness is proved, `null` where nothing was probed.
+    /// The estimated number of hits not seen; 0 if completeness is proved, `null` where nothing was probed.
     pub unseen_estimate: Option<f64>,
     /// Its interval; no upper end where nothing bounds it.
     pub unseen_interval: Option<(f64, Option<f64>)>,
     /// The least probability with which the interval contains the true number.
     pub unseen_confidence: Option<f64>,
-    /// How it was estimated.
+    /// The method of estimation.
     pub unseen_method: Option<Method>,
     /// Interval for the share of the space whose points are hits that the engine has not found, of the last slice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -87,12 +87,12 @@ pub struct RunReport<Spec, S> {
 /// One slice of several.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SliceReport {
-    /// What was counted.
+    /// The counts.
     #[serde(flatten)]
     pub counts: Counts,
     /// Wall time in seconds.
     pub elapsed_seconds: f64,
-    /// How much longer than the time budget it took, in seconds.
+    /// The time beyond the time budget, in seconds.
     pub overshoot_seconds: f64,
     /// Why it ended.
     pub stop_reason: StopReason,
@@ -107,7 +107,7 @@ pub struct SliceReport {
 /// One hit of a [`RunReport`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FoundSolution<S> {
-    /// What was found.
+    /// The hits.
     pub solution: S,
     /// F of it.
     pub fitness: f64,

@@ -1,7 +1,7 @@
 //! One lane of a search: an engine, its random numbers, and its slice.
 
 use super::slice::Slice;
-use super::stage::{Source, Stage};
+use super::stage::{BatchSource, Stage};
 use super::steps::SingleSteps;
 use crate::archive::Archive;
 use crate::batch::Outcome;
@@ -114,7 +114,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
                 slice.ledger.count_bounds(bounds);
             }
             if !slice.batch.is_empty() {
-                slice.prepare(problem, Source::Engine, deletes);
+                slice.prepare(problem, BatchSource::Engine, deletes);
                 return true;
             }
             // An engine that works on bounds has not come to its end.
@@ -135,16 +135,16 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
         slice.stage = Stage::Propose;
         slice.ledger.settle(problem, &mut slice.candidates, observer);
         let origin = match from {
-            Source::Probes => return slice.settle_probes(problem),
-            Source::WarmStart => {
+            BatchSource::Probes => return slice.settle_probes(problem),
+            BatchSource::WarmStart => {
                 slice.ledger.counts.verified += slice.candidates.outcomes.len() as u64;
                 if slice.batch.is_empty() {
                     return; // a problem without an encoding: the engine has nothing to see
                 }
                 Origin::WarmStart
             }
-            Source::Starts => Origin::Start,
-            Source::Engine => {
+            BatchSource::Starts => Origin::Start,
+            BatchSource::Engine => {
                 if slice.last == Ask::Covered && !slice.candidates.outcomes.contains(&Outcome::NotEvaluated) {
                     // That was the last of the space, even if the budget ends with it.
                     slice.ledger.stop = Some(StopReason::Covered);

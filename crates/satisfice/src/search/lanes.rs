@@ -8,7 +8,7 @@ use core::time::Duration;
 
 use super::lane::RunningLane;
 use super::slice::Slice;
-use super::stage::{Source, Stage};
+use super::stage::{BatchSource, Stage};
 use crate::budget::{Budget, StopReason};
 use crate::identity::Identity;
 use crate::observer::Observer;
@@ -239,7 +239,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         let common = &mut self.common;
         if matches!(
             common.stage,
-            Stage::Settle(Source::Probes) | Stage::Asked(Source::Probes)
+            Stage::Settle(BatchSource::Probes) | Stage::Asked(BatchSource::Probes)
         ) {
             common.stage = Stage::Propose;
             common.ledger.settle(problem, &mut common.candidates, observer);

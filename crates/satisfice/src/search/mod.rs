@@ -155,7 +155,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Ok(Self::with(ConfiguredEngine::named(name)?))
     }
 
-    /// Sets a parameter of the engine by its name. Engines are built anew for the next slice.
+    /// Sets a parameter of the engine by its name. Engines are rebuilt for the next slice.
     ///
     /// ```
     /// use satisfice::{from_fn, Budget, Search, Space};
@@ -175,7 +175,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Ok(self)
     }
 
-    /// The seed, 0 by default. Setting it begins the sequence of random numbers anew.
+    /// The seed, 0 by default. Setting it restarts the sequence of random numbers.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
@@ -236,7 +236,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self
     }
 
-    /// Points that the next slice evaluates first, as values: one number an axis, inside the bounds and whole on integer axes. They
+    /// Points that the next slice evaluates first, as values: one number per axis, inside the bounds and whole on integer axes. They
     /// are counted like all others. Engines are told of them: descents, climbers and populations start at the best ones, models
     /// learn from all; swarms follow those that hit.
     ///

@@ -1,6 +1,6 @@
 //! What a slice holds between its beginning and its end, and the stage it is at.
 
-use super::stage::{Pending, Source, Stage};
+use super::stage::{BatchSource, Pending, Stage};
 use crate::accounting::{Ledger, Reached};
 use crate::archive::Archive;
 use crate::batch::Batch;
@@ -37,7 +37,7 @@ pub(super) struct Slice<S, T> {
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
-    /// A slice in a space of so many axes that begins now, or goes on from what it had reached.
+    /// A slice in a space of so many axes that begins now, or continues from what it had reached.
     pub(super) fn begin(
         budget: &Budget,
         dimension: usize,
@@ -88,12 +88,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
 
     /// Prepares the candidates of the batch, as many as the budget has room for.
     #[inline]
-    pub(super) fn prepare<P>(&mut self, problem: &P, from: Source, deletes: bool)
+    pub(super) fn prepare<P>(&mut self, problem: &P, from: BatchSource, deletes: bool)
     where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
         let limit = self.ledger.remaining();
-        self.candidates.probing = from == Source::Probes;
+        self.candidates.probing = from == BatchSource::Probes;
         self.candidates
             .prepare(problem, &self.ledger.archive, &mut self.batch, limit, deletes);
         self.stage = Stage::Settle(from);
@@ -124,7 +124,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.candidates.probing = false;
         self.candidates
             .prepare_solutions(next.iter(), &self.ledger.archive, limit);
-        self.stage = Stage::Settle(Source::WarmStart);
+        self.stage = Stage::Settle(BatchSource::WarmStart);
     }
 
     /// Proposes the next points that the user has given.
@@ -139,7 +139,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             self.batch.push(position);
         }
         self.starts.drain(..numbers);
-        self.prepare(problem, Source::Starts, deletes);
+        self.prepare(problem, BatchSource::Starts, deletes);
     }
 
     /// Proposes the next uniform probes, at most so many.
@@ -149,7 +149,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     {
         self.probes.propose(problem, &mut self.batch);
         self.batch.truncate(most);
-        self.prepare(problem, Source::Probes, true);
+        self.prepare(problem, BatchSource::Probes, true);
     }
 
     /// Prepares a batch again that was out when the slice was saved.
@@ -162,14 +162,18 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     ) where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
-        if pending.from == Source::WarmStart {
+        if pending.from == BatchSource::WarmStart {
             self.propose_previous(problem, previous);
         } else {
             let dimension = self.batch.dimension();
             if let Some(batch) = Batch::from_positions(pending.positions, dimension) {
                 self.batch = batch;
             }
-            self.prepare(problem, pending.from, deletes || pending.from == Source::Probes);
+            self.prepare(
+                problem,
+                pending.from,
+                deletes || pending.from == BatchSource::Probes,
+            );
         }
         self.candidates.resume(&pending.computed);
     }
@@ -188,10 +192,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         })
     }
 
-    /// Where the verification goes on once a pending batch is proposed again.
+    /// Where the verification continues once a pending batch is proposed again.
     pub(super) fn verified_before_pending(&self) -> usize {
         match self.stage {
-            Stage::Settle(Source::WarmStart) | Stage::Asked(Source::WarmStart) => {
+            Stage::Settle(BatchSource::WarmStart) | Stage::Asked(BatchSource::WarmStart) => {
                 self.to_verify.start - self.candidates.outcomes.len()
             }
             _ => self.to_verify.start,

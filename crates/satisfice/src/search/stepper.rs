@@ -409,7 +409,7 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
         }
     }
 
-    /// [`Stepper::finish`], but the engines, which a panic may have left in the middle of something, are built anew for the
+    /// [`Stepper::finish`], but the engines, which a panic may have left in the middle of something, are rebuilt for the
     /// next slice.
     fn finish_without_lanes(mut self) -> Report<P::Solution> {
         let running = self.running.take();
@@ -423,7 +423,7 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
 }
 
 impl<P: SatisficingProblem + ?Sized> Drop for Stepper<'_, P> {
-    /// Gives the engines back, for the next slice; after a panic they are built anew.
+    /// Gives the engines back, for the next slice; after a panic they are rebuilt.
     fn drop(&mut self) {
         if let Some(running) = self.running.take()
             && !std::thread::panicking()

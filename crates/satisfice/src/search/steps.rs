@@ -30,7 +30,7 @@ impl<P: SatisficingProblem + ?Sized> Steps<P::Scalar> for SingleSteps<'_, P> {
         assert_eq!(
             position.len(),
             self.problem.space().dimension(),
-            "one number an axis"
+            "one number per axis"
         );
         let outcome = self.ledger.evaluate_one(
             self.problem,

@@ -7,6 +7,7 @@
 //! # Ok::<(), satisfice::Error>(())
 //! ```
 
+use super::Violation;
 use super::case::{Case, spaces};
 use crate::budget::Budget;
 use crate::engine::{ConfiguredEngine, EngineSpec};
@@ -24,7 +25,7 @@ mod probe;
 /// The laws that the suite checks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Law {
+pub enum EngineLaw {
     /// Proposals have a coordinate for each axis, none of them NaN, whatever the fitness.
     Proposals,
     /// Every candidate is inside the bounds, and whole on integer axes.
@@ -48,14 +49,11 @@ pub enum Law {
     HitCount,
     /// An engine that is saved and restored at any time continues as without, and refuses a truncated state.
     Restore,
-    /// A search goes on with a second slice, under each rule of warm starts.
+    /// A search continues with a second slice, under each rule of warm starts.
     Slices,
-    /// An engine that says that the space is covered has covered it.
+    /// The space is covered if the engine says so.
     Covered,
 }
-
-/// A law that an engine breaks.
-pub type Violation = super::Violation<Law>;
 
 /// Evaluations of an ordinary run, and of one by an engine whose proposals are expensive.
 const RUN: u64 = 600;
@@ -68,7 +66,7 @@ const LONG_RUN: u64 = 20_000;
 ///
 /// # Errors
 /// As [`EngineSpec::configure`].
-pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Violation>, Error> {
+pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Violation<EngineLaw>>, Error> {
     let run = if spec.expensive_proposals {
         EXPENSIVE_RUN
     } else {
@@ -93,18 +91,18 @@ pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Vi
     Ok(violations)
 }
 
-/// Runs the suite on an engine, which is built anew for each run.
+/// Runs the suite on an engine, which is rebuilt for each run.
 ///
 /// # Errors
 /// As [`ConfiguredEngine::build`]; errors of starting threads.
-pub fn check<S: Real>(engine: &ConfiguredEngine<S>) -> Result<Vec<Violation>, Error> {
+pub fn check<S: Real>(engine: &ConfiguredEngine<S>) -> Result<Vec<Violation<EngineLaw>>, Error> {
     check_in(engine, RUN)
 }
 
 /// The suite, with ordinary runs of so many evaluations.
-fn check_in<S: Real>(engine: &ConfiguredEngine<S>, run: u64) -> Result<Vec<Violation>, Error> {
+fn check_in<S: Real>(engine: &ConfiguredEngine<S>, run: u64) -> Result<Vec<Violation<EngineLaw>>, Error> {
     engine.check()?;
-    let mut suite = Suite {
+    let mut suite = EngineSuite {
         engine,
         run,
         violations: Vec::new(),
@@ -125,15 +123,15 @@ fn check_in<S: Real>(engine: &ConfiguredEngine<S>, run: u64) -> Result<Vec<Viola
     Ok(suite.violations)
 }
 
-struct Suite<'a, S> {
+struct EngineSuite<'a, S> {
     engine: &'a ConfiguredEngine<S>,
     /// Evaluations of an ordinary run.
     run: u64,
-    violations: Vec<Violation>,
+    violations: Vec<Violation<EngineLaw>>,
 }
 
-impl<S: Real> Suite<'_, S> {
-    fn say(&mut self, law: Law, case: &str, what: impl Into<String>) {
+impl<S: Real> EngineSuite<'_, S> {
+    fn say(&mut self, law: EngineLaw, case: &str, what: impl Into<String>) {
         self.violations.push(Violation {
             law,
             case: case.to_owned(),
@@ -141,7 +139,7 @@ impl<S: Real> Suite<'_, S> {
         });
     }
 
-    fn say_if(&mut self, law: Law, case: &str, what: Option<String>) {
+    fn say_if(&mut self, law: EngineLaw, case: &str, what: Option<String>) {
         if let Some(what) = what {
             self.say(law, case, what);
         }

@@ -16,7 +16,7 @@ pub use context::BareContext;
 pub struct Violation<L> {
     /// Which one.
     pub law: L,
-    /// Where: what was run, or which point was looked at.
+    /// Where: what was run, or which point was examined.
     pub case: String,
     /// What was seen.
     pub what: String,

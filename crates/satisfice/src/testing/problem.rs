@@ -9,6 +9,7 @@
 
 use num_traits::Float;
 
+use super::Violation;
 use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
 use crate::scalar::Real;
@@ -18,7 +19,7 @@ use crate::space::Region;
 /// The laws that the suite checks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Law {
+pub enum ProblemLaw {
     /// The threshold is not NaN and always the same.
     Threshold,
     /// The same values decode to the same solution, also into one that exists.
@@ -38,14 +39,11 @@ pub enum Law {
     Canonical,
 }
 
-/// A broken law.
-pub type Violation = super::Violation<Law>;
-
-/// Points looked at.
+/// Points examined.
 const POINTS: usize = 300;
-/// Neighbours looked at from either end of their indices.
+/// Neighbours examined from either end of their indices.
 const MOST_NEIGHBOURS: usize = 500;
-/// Regions looked at, and points in each.
+/// Regions examined, and points in each.
 const REGIONS: usize = 100;
 const SAMPLES: usize = 30;
 
@@ -54,10 +52,10 @@ type Point<P> = Vec<<P as SatisficingProblem>::Scalar>;
 /// Checks the laws at the corners, in the middle and at random points of a problem's space. Lists the first violation of each
 /// law. Cost: about 4,000 calls of F and `decode`, and about 300 of the other methods.
 #[must_use]
-pub fn check<P: SatisficingProblem>(problem: &P, seed: u64) -> Vec<Violation> {
+pub fn check<P: SatisficingProblem>(problem: &P, seed: u64) -> Vec<Violation<ProblemLaw>> {
     let mut rng = SearchRng::new(seed);
     let points = points(problem, &mut rng);
-    let mut suite = Suite {
+    let mut suite = ProblemSuite {
         problem,
         violations: Vec::new(),
     };
@@ -104,13 +102,13 @@ fn same_bits<S: Real>(a: S, b: S) -> bool {
     a.to_word() == b.to_word() || (a.is_nan() && b.is_nan())
 }
 
-struct Suite<'a, P> {
+struct ProblemSuite<'a, P> {
     problem: &'a P,
-    violations: Vec<Violation>,
+    violations: Vec<Violation<ProblemLaw>>,
 }
 
-impl<P: SatisficingProblem> Suite<'_, P> {
-    fn say(&mut self, law: Law, at: &[P::Scalar], what: impl Into<String>) {
+impl<P: SatisficingProblem> ProblemSuite<'_, P> {
+    fn say(&mut self, law: ProblemLaw, at: &[P::Scalar], what: impl Into<String>) {
         if self.violations.iter().all(|violation| violation.law != law) {
             self.violations.push(Violation {
                 law,
@@ -141,7 +139,7 @@ impl<P: SatisficingProblem> Suite<'_, P> {
     fn threshold(&mut self) {
         let [a, b] = [self.problem.threshold(), self.problem.threshold()];
         if a.is_nan() || a != b {
-            self.say(Law::Threshold, &[], format!("it is {a}, then {b}"));
+            self.say(ProblemLaw::Threshold, &[], format!("it is {a}, then {b}"));
         }
     }
 
@@ -150,13 +148,13 @@ impl<P: SatisficingProblem> Suite<'_, P> {
         for point in points {
             let [a, b] = [self.problem.decode(point), self.problem.decode(point)];
             if !a.same(&b) {
-                self.say(Law::Decode, point, "decoded twice, it is another solution");
+                self.say(ProblemLaw::Decode, point, "decoded twice, it is another solution");
             }
             let slot = used.get_or_insert_with(|| a.clone());
             self.problem.decode_into(point, slot);
             if !a.same(slot) || a.key() != slot.key() {
                 self.say(
-                    Law::Decode,
+                    ProblemLaw::Decode,
                     point,
                     "`decode_into` gives another solution than `decode`",
                 );
@@ -168,17 +166,21 @@ impl<P: SatisficingProblem> Suite<'_, P> {
         let solutions: Vec<_> = points.iter().map(|point| self.problem.decode(point)).collect();
         for (i, a) in solutions.iter().enumerate() {
             if !a.same(a) {
-                self.say(Law::Identity, &points[i], "a solution is not the same as itself");
+                self.say(
+                    ProblemLaw::Identity,
+                    &points[i],
+                    "a solution is not the same as itself",
+                );
             }
             for b in &solutions {
                 let same = a.same(b);
                 if same != b.same(a) {
-                    self.say(Law::Identity, &points[i], "sameness is not symmetric");
+                    self.say(ProblemLaw::Identity, &points[i], "sameness is not symmetric");
                 }
                 let key = b.key();
                 if same && !a.visit_keys(&mut |visited| visited == key) {
                     self.say(
-                        Law::Identity,
+                        ProblemLaw::Identity,
                         &points[i],
                         "a solution that is the same has no visited key",
                     );
@@ -194,11 +196,11 @@ impl<P: SatisficingProblem> Suite<'_, P> {
         for ((point, solution), among_others) in points.iter().zip(&solutions).zip(together) {
             let [a, b] = [self.problem.fitness(solution), self.problem.fitness(solution)];
             if !same_bits(a, b) {
-                self.say(Law::Fitness, point, format!("F is {a}, then {b}"));
+                self.say(ProblemLaw::Fitness, point, format!("F is {a}, then {b}"));
             }
             if !same_bits(a, among_others) {
                 self.say(
-                    Law::Fitness,
+                    ProblemLaw::Fitness,
                     point,
                     format!("F is {a}, but {among_others} by `fitness_all`"),
                 );
@@ -209,12 +211,12 @@ impl<P: SatisficingProblem> Suite<'_, P> {
     fn encode(&mut self, points: &[Point<P>]) {
         for point in points {
             let solution = self.problem.decode(point);
-            self.encodes_to_itself(Law::Encode, point, &solution);
+            self.encodes_to_itself(ProblemLaw::Encode, point, &solution);
         }
     }
 
     /// Whether a solution that can be encoded decodes to itself.
-    fn encodes_to_itself(&mut self, law: Law, point: &[P::Scalar], solution: &P::Solution) {
+    fn encodes_to_itself(&mut self, law: ProblemLaw, point: &[P::Scalar], solution: &P::Solution) {
         let mut values = vec![P::Scalar::of(f64::NAN); point.len()];
         let encoding = self.problem.encoding();
         if !encoding.is_some_and(|encoding| encoding.encode(solution, &mut values)) {
@@ -237,7 +239,7 @@ impl<P: SatisficingProblem> Suite<'_, P> {
         };
         if self.problem.encoding().is_none() {
             self.say(
-                Law::Neighbours,
+                ProblemLaw::Neighbours,
                 &points[0],
                 "neighbours are offered without an encoding",
             );
@@ -256,15 +258,19 @@ impl<P: SatisficingProblem> Suite<'_, P> {
                     _ => false,
                 };
                 if !alike {
-                    self.say(Law::Neighbours, point, "asked twice, there is another neighbour");
+                    self.say(
+                        ProblemLaw::Neighbours,
+                        point,
+                        "asked twice, there is another neighbour",
+                    );
                 }
                 if let Some(neighbour) = neighbour {
-                    self.encodes_to_itself(Law::Neighbours, point, &neighbour);
+                    self.encodes_to_itself(ProblemLaw::Neighbours, point, &neighbour);
                 }
             }
             if neighbourhood.neighbour(&solution, count).is_some() {
                 self.say(
-                    Law::Neighbours,
+                    ProblemLaw::Neighbours,
                     point,
                     format!("a neighbour at index {count}, which is the count"),
                 );
@@ -281,14 +287,18 @@ impl<P: SatisficingProblem> Suite<'_, P> {
             let bound = bounds.lower_bound(&region);
             let Some(bound) = bound else { continue };
             if bound.is_nan() {
-                self.say(Law::LowerBound, &points[i], format!("it is NaN in {region:?}"));
+                self.say(
+                    ProblemLaw::LowerBound,
+                    &points[i],
+                    format!("it is NaN in {region:?}"),
+                );
             }
             for _ in 0..SAMPLES {
                 let point = sample(self.problem, &region, rng);
                 let fitness = self.problem.fitness(&self.problem.decode(&point));
                 if fitness < bound {
                     self.say(
-                        Law::LowerBound,
+                        ProblemLaw::LowerBound,
                         &point,
                         format!("F is {fitness}, the bound {bound} in {region:?}"),
                     );
@@ -302,7 +312,7 @@ impl<P: SatisficingProblem> Suite<'_, P> {
                 && (fitness < bound || bound.is_nan())
             {
                 self.say(
-                    Law::LowerBound,
+                    ProblemLaw::LowerBound,
                     point,
                     format!("F is {fitness}, the bound of that point alone {bound}"),
                 );
@@ -321,14 +331,18 @@ impl<P: SatisficingProblem> Suite<'_, P> {
                 continue;
             };
             if !is_hit(&once) {
-                self.say(Law::Canonical, point, "the representative of a hit is no hit");
+                self.say(
+                    ProblemLaw::Canonical,
+                    point,
+                    "the representative of a hit is no hit",
+                );
             } else if self
                 .problem
                 .canonical(&once)
                 .is_some_and(|twice| !twice.same(&once))
             {
                 self.say(
-                    Law::Canonical,
+                    ProblemLaw::Canonical,
                     point,
                     "a representative has another representative",
                 );

@@ -92,7 +92,7 @@ fn budget() -> Budget {
     Budget::evaluations(EVALUATIONS)
 }
 
-/// Reports of a search that nobody interrupts, its checkpoints between slices, and calls of the fitness at the end of each.
+/// Reports of an uninterrupted search, its checkpoints between slices, and calls of the fitness at the end of each.
 fn uninterrupted(entry: &EngineSpec, name: &str, probes: f64) -> (Vec<String>, Vec<Saved>, Vec<u64>) {
     let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
     let problem = problem(name, &calls, 0, &cancel);

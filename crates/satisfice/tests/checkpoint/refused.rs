@@ -1,4 +1,4 @@
-//! What is no checkpoint of this search is refused, and damage is found.
+//! A checkpoint of another search is refused, and damage is detected.
 
 use super::*;
 

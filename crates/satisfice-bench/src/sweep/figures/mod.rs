@@ -30,7 +30,7 @@ struct Runs<'a> {
     rows: Vec<&'a Row>,
 }
 
-/// A chart of a group; `None` where it has nothing to show.
+/// A chart of a group; `None` if it has nothing to show.
 type Draw = fn(&Group, &[Runs<'_>]) -> Option<Figure>;
 
 /// All charts, in the order of a report: a new one is a file beside this one and a line here.

@@ -41,8 +41,8 @@ impl Hit {
     }
 }
 
-/// What was found.
-pub(super) struct Found {
+/// The hits.
+pub(super) struct Impacts {
     /// The earliest first; pairs whose time is not known come last.
     pub(super) pairs: Vec<Hit>,
     /// How many there are, if that is known.
@@ -59,7 +59,7 @@ pub(super) struct Found {
 
 impl Search<'_> {
     /// Searches on as many threads as are wanted.
-    pub(super) fn run(&self, frames: &Frames) -> anyhow::Result<Found> {
+    pub(super) fn run(&self, frames: &Frames) -> anyhow::Result<Impacts> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build()?;
@@ -68,7 +68,7 @@ impl Search<'_> {
             true => self.first(frames, start),
             false => self.all(frames, start),
         })?;
-        Ok(Found {
+        Ok(Impacts {
             elapsed: start.elapsed(),
             ..found
         })
@@ -85,7 +85,7 @@ impl Search<'_> {
         }
     }
 
-    fn first(&self, frames: &Frames, start: Instant) -> anyhow::Result<Found> {
+    fn first(&self, frames: &Frames, start: Instant) -> anyhow::Result<Impacts> {
         let earliest =
             frames
                 .step
@@ -99,7 +99,7 @@ impl Search<'_> {
             time: impact.time,
         });
         let none = earliest.is_proved && pairs.is_none();
-        Ok(Found {
+        Ok(Impacts {
             count: none.then_some(0),
             complete: none,
             first: Some((earliest.time, earliest.is_proved)),
@@ -114,7 +114,7 @@ impl Search<'_> {
         })
     }
 
-    fn all(&self, frames: &Frames, start: Instant) -> anyhow::Result<Found> {
+    fn all(&self, frames: &Frames, start: Instant) -> anyhow::Result<Impacts> {
         let counting = Counting::new();
         let wanted = self
             .hits
@@ -183,7 +183,7 @@ impl Search<'_> {
             let least = |end: usize| pairs.iter().map(|hit| hit.time[end]).fold(1.0, f64::min);
             ([least(0), least(1)], true)
         });
-        Ok(Found {
+        Ok(Impacts {
             count: is_decided.then_some(count),
             complete: all_are_listed,
             first,

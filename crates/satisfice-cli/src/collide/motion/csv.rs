@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 
 use super::super::csv::quoted;
-use super::report::{Line, Report};
+use super::report::{ImpactLine, MotionReport};
 
 /// Writes a head line and a line for each pair. Pairs whose time was not computed have empty fields. The names of the bodies
 /// follow if a file holds several.
-pub(super) fn write(report: &Report<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(report: &MotionReport<'_>, out: &mut dyn Write) -> io::Result<()> {
     let bodies = &report.frames.bodies;
     let names = bodies.len() > report.frames.request.from.paths.len();
     write!(
@@ -17,7 +17,7 @@ pub(super) fn write(report: &Report<'_>, out: &mut dyn Write) -> io::Result<()> 
     writeln!(out, "{}", if names { ",a_name,b_name" } else { "" })?;
     for hit in &report.pairs {
         let line = report.line(hit);
-        let Line { kind, a, b, .. } = &line;
+        let ImpactLine { kind, a, b, .. } = &line;
         write!(out, "{kind},{},{},{},{},", a.body, a.feature, b.body, b.feature)?;
         match line.time {
             Some([low, high]) => write!(out, "{low},{high},")?,

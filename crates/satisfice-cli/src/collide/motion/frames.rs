@@ -14,7 +14,7 @@ use super::super::inputs::{Inputs, NamedBody};
 
 /// What makes a step.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Request {
+pub(super) struct MotionRequest {
     pub(super) from: Inputs,
     pub(super) to: Inputs,
     /// The kind of pairs; without one, all in which surfaces, wires and points first meet.
@@ -30,7 +30,7 @@ pub(super) struct Request {
 /// Bodies in motion and what is asked of them.
 #[derive(Debug)]
 pub(super) struct Frames {
-    pub(super) request: Request,
+    pub(super) request: MotionRequest,
     /// The bodies at the start.
     pub(super) bodies: Vec<NamedBody>,
     /// The same bodies at the end.
@@ -42,7 +42,7 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    pub(super) fn read(request: Request) -> anyhow::Result<Self> {
+    pub(super) fn read(request: MotionRequest) -> anyhow::Result<Self> {
         let separation = Separation::new(request.threshold)?;
         if request.from.reads_stdin() && request.to.reads_stdin() {
             bail!("standard input can be read once only: name files for --from or for --to");
@@ -109,7 +109,7 @@ impl Frames {
         }
         let pairs = value("pairs")?;
         let pairs = pairs.as_str().context("`pairs` is no text")?;
-        Self::read(Request {
+        Self::read(MotionRequest {
             from,
             to,
             pairs: (pairs != "all").then(|| pairs.parse()).transpose()?,
@@ -170,7 +170,7 @@ impl Frames {
 }
 
 /// Every body needs a partner of the same topology.
-fn check_partners(request: &Request, from: &[NamedBody], to: &[NamedBody]) -> anyhow::Result<()> {
+fn check_partners(request: &MotionRequest, from: &[NamedBody], to: &[NamedBody]) -> anyhow::Result<()> {
     if from.len() != to.len() {
         let files = |inputs: &Inputs| inputs.paths.len();
         bail!(

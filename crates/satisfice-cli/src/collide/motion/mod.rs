@@ -18,8 +18,8 @@ use super::files::Files;
 use super::inputs::Inputs;
 use crate::{interrupt, message, output};
 use answer::Search;
-use frames::{Frames, Request};
-use report::Report;
+use frames::{Frames, MotionRequest};
+use report::MotionReport;
 pub(super) use verify::{is_of_motion, verify};
 
 /// Times of impact are known to within this part of the step.
@@ -34,7 +34,7 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         at: arguments.at.clone(),
         weld: None,
     };
-    let frames = Frames::read(Request {
+    let frames = Frames::read(MotionRequest {
         from: inputs(&arguments.from),
         to: inputs(&arguments.to),
         pairs: arguments.pairs.map(Into::into),
@@ -57,7 +57,7 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         threads: arguments.search.threads(),
         cancel: &cancel,
     };
-    let report = Report::new(search.run(&frames)?, &search, &frames);
+    let report = MotionReport::new(search.run(&frames)?, &search, &frames);
     if report.is_cut() {
         message::say(format_args!(
             "warning: the list ends after {} pairs; --max-pairs N lists more, in 40 bytes of memory each",

@@ -5,7 +5,7 @@ use satisfice_page::{Contact, Feature, ScenePage};
 
 use super::super::page::{kind, title, up};
 use super::super::summary::elapsed;
-use super::report::Report;
+use super::report::MotionReport;
 use super::summary;
 
 /// The step is shown at its start and at the end of so many equal parts.
@@ -15,7 +15,7 @@ const LISTED: usize = 5000;
 
 /// The page of a report. Pairs whose time was not computed are counted, not drawn.
 pub(super) fn html(
-    report: &Report<'_>,
+    report: &MotionReport<'_>,
     asked: Option<super::super::arguments::Axis>,
 ) -> anyhow::Result<String> {
     let (frames, head) = (report.frames, &report.head);

@@ -15,7 +15,7 @@ use super::super::PROBLEM;
 use super::super::pairs::Side;
 use super::super::report::{BodyLine, Head};
 use super::TOLERANCE;
-use super::answer::{Found, Hit, Search};
+use super::answer::{Hit, Impacts, Search};
 use super::frames::Frames;
 
 /// The first impact of all pairs.
@@ -29,7 +29,7 @@ pub(super) struct FirstImpact {
 
 /// A pair as a report has it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Line {
+pub(super) struct ImpactLine {
     pub(super) kind: String,
     pub(super) a: Side,
     pub(super) b: Side,
@@ -44,7 +44,7 @@ pub(super) struct Line {
 }
 
 /// A whole report.
-pub(super) struct Report<'a> {
+pub(super) struct MotionReport<'a> {
     pub(super) head: Head,
     pub(super) pairs: Vec<Hit>,
     pub(super) first_impact: Option<FirstImpact>,
@@ -53,8 +53,8 @@ pub(super) struct Report<'a> {
     pub(super) frames: &'a Frames,
 }
 
-impl<'a> Report<'a> {
-    pub(super) fn new(found: Found, search: &Search<'_>, frames: &'a Frames) -> Self {
+impl<'a> MotionReport<'a> {
+    pub(super) fn new(found: Impacts, search: &Search<'_>, frames: &'a Frames) -> Self {
         let listed = found.pairs.len() as u64;
         let untimed = found.pairs.iter().filter(|hit| !hit.is_timed()).count() as u64;
         let late = search
@@ -127,11 +127,11 @@ impl<'a> Report<'a> {
             .flatten()
     }
 
-    pub(super) fn line(&self, hit: &Hit) -> Line {
+    pub(super) fn line(&self, hit: &Hit) -> ImpactLine {
         let kind = self.frames.kinds[usize::from(hit.kind)];
         let (kind_a, kind_b) = kind.features();
         let impact = self.impact(hit);
-        Line {
+        ImpactLine {
             kind: kind.name().to_owned(),
             a: self.side(hit.contact.a, kind_a),
             b: self.side(hit.contact.b, kind_b),
@@ -160,10 +160,10 @@ impl<'a> Report<'a> {
 }
 
 /// What `collide --from --to --json` writes. The pairs are made one by one while they are written.
-impl Serialize for Report<'_> {
+impl Serialize for MotionReport<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        struct Listed<'r>(&'r Report<'r>);
-        impl Serialize for Listed<'_> {
+        struct ListedImpacts<'r>(&'r MotionReport<'r>);
+        impl Serialize for ListedImpacts<'_> {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 let pairs = &self.0.pairs;
                 let mut list = serializer.serialize_seq(Some(pairs.len()))?;
@@ -174,19 +174,19 @@ impl Serialize for Report<'_> {
             }
         }
         #[derive(Serialize)]
-        struct Whole<'r> {
+        struct WholeMotion<'r> {
             #[serde(flatten)]
             head: &'r Head,
             first_impact: Option<FirstImpact>,
             bodies: Vec<BodyLine>,
-            pairs: Listed<'r>,
+            pairs: ListedImpacts<'r>,
             touching: &'r BTreeSet<[usize; 2]>,
         }
-        Whole {
+        WholeMotion {
             head: &self.head,
             first_impact: self.first_impact,
             bodies: self.frames.bodies.iter().map(BodyLine::new).collect(),
-            pairs: Listed(self),
+            pairs: ListedImpacts(self),
             touching: &self.touching,
         }
         .serialize(serializer)
@@ -195,8 +195,8 @@ impl Serialize for Report<'_> {
 
 /// The lists of a report that was read.
 #[derive(Debug, Deserialize)]
-pub(super) struct Lists {
-    pub(super) pairs: Vec<Line>,
+pub(super) struct ImpactLists {
+    pub(super) pairs: Vec<ImpactLine>,
     pub(super) touching: BTreeSet<[usize; 2]>,
     pub(super) first_impact: Option<FirstImpact>,
 }

@@ -6,9 +6,9 @@ use satisfice_collision::FeatureKind;
 
 use super::super::pairs::Side;
 use super::super::summary::{Lines, SHOWN_PAIRS, body_names, digits, elapsed};
-use super::report::Report;
+use super::report::MotionReport;
 
-pub(super) fn summary(report: &Report<'_>) -> String {
+pub(super) fn summary(report: &MotionReport<'_>) -> String {
     let head = &report.head;
     let kinds: Vec<&str> = report.frames.kinds.iter().map(|kind| kind.name()).collect();
     let what = match head.threshold {
@@ -59,7 +59,7 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     lines.text()
 }
 
-fn count(report: &Report<'_>) -> String {
+fn count(report: &MotionReport<'_>) -> String {
     let head = &report.head;
     let hits = shown::count(head.hits);
     match head.reference_hits {
@@ -69,7 +69,7 @@ fn count(report: &Report<'_>) -> String {
     }
 }
 
-pub(super) fn completeness(report: &Report<'_>) -> &'static str {
+pub(super) fn completeness(report: &MotionReport<'_>) -> &'static str {
     let head = &report.head;
     match (head.completeness, head.reference_hits) {
         (Completeness::Proved, _) => "proved: these are all",
@@ -78,7 +78,7 @@ pub(super) fn completeness(report: &Report<'_>) -> &'static str {
     }
 }
 
-pub(super) fn first_impact(report: &Report<'_>) -> Option<String> {
+pub(super) fn first_impact(report: &MotionReport<'_>) -> Option<String> {
     let first = report.first_impact?;
     let [low, high] = first.time;
     let found = !report.pairs.is_empty();
@@ -101,7 +101,7 @@ fn moment(time: f64) -> String {
     digits(time)
 }
 
-fn side(report: &Report<'_>, kind: FeatureKind, side: &Side) -> String {
+fn side(report: &MotionReport<'_>, kind: FeatureKind, side: &Side) -> String {
     let ends = side
         .vertices
         .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));

@@ -1,4 +1,4 @@
-//! Whether the report of a motion is true: the frames are read again, and every pair is asked about anew.
+//! Whether the report of a motion is true: the frames are read again, and every pair is asked about again.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::super::pairs::Side;
 use super::super::report::Head;
 use super::TOLERANCE;
 use super::frames::Frames;
-use super::report::{Line, Lists};
+use super::report::{ImpactLine, ImpactLists};
 
 /// Candidates are decided in a fraction of a microsecond, so that counting all pairs of so many takes seconds.
 const MOST_TO_COUNT: u64 = 20_000_000;
@@ -23,7 +23,7 @@ pub(in super::super) fn is_of_motion(head: &Head) -> bool {
 
 /// What is not true of a report, and how many pairs it lists.
 pub(in super::super) fn verify(text: &[u8], head: &Head) -> anyhow::Result<(Vec<Mismatch>, u64)> {
-    let lists: Lists =
+    let lists: ImpactLists =
         serde_json::from_slice(text).context("the report is not one of `collide --from --to --json`")?;
     let frames =
         Frames::of_settings(&head.problem_parameters).context("the motion of the report cannot be built")?;
@@ -62,15 +62,15 @@ pub(in super::super) fn verify(text: &[u8], head: &Head) -> anyhow::Result<(Vec<
     Ok((wrong, head.hits))
 }
 
-fn name(line: &Line) -> String {
-    let Line { kind, a, b, .. } = line;
+fn name(line: &ImpactLine) -> String {
+    let ImpactLine { kind, a, b, .. } = line;
     format!(
         "{kind}: {} of body {} and {} of body {}",
         a.feature, a.body, b.feature, b.body
     )
 }
 
-fn contact(line: &Line) -> MovingContact {
+fn contact(line: &ImpactLine) -> MovingContact {
     let side = |side: &Side| FeatureOf {
         body: u32::try_from(side.body).unwrap_or(u32::MAX),
         index: side.feature,
@@ -82,7 +82,7 @@ fn contact(line: &Line) -> MovingContact {
 }
 
 /// What a line should be instead.
-fn mistake(line: &Line, frames: &Frames) -> anyhow::Result<Option<String>> {
+fn mistake(line: &ImpactLine, frames: &Frames) -> anyhow::Result<Option<String>> {
     let Some(kind) = frames.kinds.iter().find(|kind| kind.name() == line.kind) else {
         return Ok(Some("a kind of pairs that was asked for".to_owned()));
     };
@@ -122,7 +122,7 @@ fn count(head: &Head, frames: &Frames) -> anyhow::Result<Option<Mismatch>> {
     Ok(None)
 }
 
-fn first(head: &Head, lists: &Lists, frames: &Frames) -> anyhow::Result<Option<Mismatch>> {
+fn first(head: &Head, lists: &ImpactLists, frames: &Frames) -> anyhow::Result<Option<Mismatch>> {
     let Some(given) = lists.first_impact else {
         return Ok(None);
     };

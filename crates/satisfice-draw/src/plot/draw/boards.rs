@@ -40,7 +40,7 @@ const PEARLS: [(f64, f64); 5] = [
 /// Draws boards. The same boards give the same bytes.
 ///
 /// # Errors
-/// [`Error::Chart`] where the picture cannot be encoded.
+/// [`Error::Chart`] if the picture cannot be encoded.
 pub fn draw_boards(boards: &Boards, format: Format) -> Result<Vec<u8>, Error> {
     let width = GAP + (EDGE + GAP) * boards.boards.len().max(1) as f64;
     let mut scene = Scene::new(width, TITLE + EDGE + 2.0 * GAP);

@@ -14,7 +14,7 @@ use crate::plot::{Format, Layer, Map, Maps, Marker, Shape};
 /// Draws maps. The same maps give the same bytes.
 ///
 /// # Errors
-/// [`Error::Chart`] where the picture cannot be encoded.
+/// [`Error::Chart`] if the picture cannot be encoded.
 pub fn draw_maps(maps: &Maps, format: Format) -> Result<Vec<u8>, Error> {
     let (plots, layouts): (Vec<_>, Vec<_>) = maps.panels.iter().map(panel).unzip();
     let columns = maps.panels.len().max(1);

@@ -17,7 +17,7 @@ pub trait Setting: Sized {
     /// The value of a text.
     ///
     /// # Errors
-    /// [`Error::Parameter`] or [`Error::Unknown`] where the row does not allow the text.
+    /// [`Error::Parameter`] or [`Error::Unknown`] if the row does not allow the text.
     fn read(row: &Parameter, text: &str) -> Result<Self, Error>;
 
     /// The value as text, which [`read`](Setting::read) turns back into the same value.

@@ -107,7 +107,7 @@ impl<S: Real> Engine<S> for FloodFill<S> {
 
 #[cfg(test)]
 mod tests {
-    use crate::engine::{build, find};
+    use crate::engine::{ConfiguredEngine, find};
     use crate::testing::engine::check;
     use crate::{Budget, Search, Space, from_fn};
 
@@ -122,7 +122,7 @@ mod tests {
             "branch-and-bound",
             "portfolio",
         ] {
-            let found = check::<f64>(&build(name).unwrap().flood_fill());
+            let found = check::<f64>(&ConfiguredEngine::named(name).unwrap().flood_fill());
             assert_eq!(found.unwrap(), [], "{name}");
         }
     }
@@ -150,7 +150,7 @@ mod tests {
     fn discovery_keeps_every_other_evaluation() {
         // Everything is a hit: the neighbourhoods never end.
         let problem = from_fn(Space::lattice(2, 1000).unwrap(), 2.0, |_: &[f64]| 1.0);
-        let engine = build("random").unwrap().flood_fill();
+        let engine = ConfiguredEngine::named("random").unwrap().flood_fill();
         let report = Search::with(engine)
             .seed(1)
             .run(&problem, &Budget::evaluations(4000))

@@ -38,7 +38,7 @@ struct Cell<S> {
 /// An engine and the regions that it is kept out of.
 pub(in crate::engine) struct Pruned<S> {
     inner: Box<dyn Engine<S>>,
-    /// The tree from its root; empty where the problem offers no bounds.
+    /// The tree from its root; empty if the problem offers no bounds.
     cells: Vec<Cell<S>>,
     /// Bounds asked for.
     calls: u64,

@@ -16,7 +16,7 @@ use crate::{engine_choice, engine_settings};
 engine_choice! {
     /// The axis on which [`BranchAndBound`] splits a region.
     pub enum SplitRule {
-        /// The longest, in share of its length.
+        /// The longest, relative to the length of the whole axis.
         Longest = "longest",
         /// The first that is not fixed.
         First = "first",
@@ -26,30 +26,39 @@ engine_choice! {
 engine_settings! {
     /// Branch and bound for all points with F < delta.
     ///
-    /// A region is closed where its bound is at least delta; where the problem says that one hit [covers](Context::covers) it; and
-    /// where it holds at most `leaf` points, by proposing all of them. Others are split in two, in the order of their bounds, then of F
-    /// at a point inside (on continuous axes only: that is how hits are found there), then the latest first. With no region left, every
-    /// hit is in C, or is the same answer as one: [`Ask::Covered`].
+    /// A region is closed if its bound is at least delta, if one hit [covers](Context::covers) it, or, once it holds at most `leaf`
+    /// points, by proposing all of them. Other regions are split in two, least bound first, then least F at a point inside (on
+    /// continuous axes only, where these points find the hits), then latest first. When no region is left, every hit is in C or the
+    /// same answer as one in C: [`Ask::Covered`].
     ///
-    /// * On integer axes that always happens. Without bounds it is an enumeration, in the order of halving; the report then has
-    ///   completeness `Proved` and no `bound_calls`.
-    /// * On continuous axes a region has to be excluded, or to lie within the separation of one hit. Where F is at least delta but
-    ///   touches it, or where the problem does not say what a hit covers, regions shrink to `resolution`; those that no later hit
-    ///   covers are given up, and the engine ends with [`Ask::Exhausted`], completeness `Unknown`.
+    /// * On integer axes this always happens. Without bounds it is an enumeration, in the order of halving: completeness `Proved`,
+    ///   `bound_calls` 0.
+    /// * On continuous axes a region has to be excluded, or to lie within the separation of one hit. Where F equals delta
+    ///   without falling below it, or where the problem does not say what a hit covers, regions shrink to `resolution`. Those that no
+    ///   later hit covers are given up, and the engine ends with [`Ask::Exhausted`], completeness `Unknown`.
     ///
-    /// Draws no random numbers. Memory: `regions` times 2 D numbers and about 60 bytes, but at most 2^25 numbers; deeper regions are then
-    /// processed depth first, in as much memory again. Only a lattice of thousands of axes has no room for that: regions that do not fit
-    /// are given up after one point inside, and completeness is `Unknown`. Source: Land, Doig 1960, doi 10.2307/1910129.
+    /// Draws no random numbers. Memory: per region 2 D numbers and about 60 bytes, up to `regions` regions or 2^25 numbers; deeper
+    /// regions are then processed depth first, in as much memory again. With thousands of axes even that does not suffice: regions that
+    /// do not fit are given up after one point inside, and completeness is `Unknown`. Source: Land, Doig 1960, doi 10.2307/1910129.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Completeness, Search, Space, engine::BranchAndBound, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = BranchAndBound { leaf: 16, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(20000))?;
+    /// assert_eq!((report.hit_count(), report.completeness), (317, Completeness::Proved));
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct BranchAndBound {
         /// An integer region of at most this many points is enumerated.
         pub leaf: usize = 32, 1..=1 << 20;
-        /// Points proposed at once, about.
+        /// Points per batch, approximately.
         pub batch: usize = 64, 1..=1 << 20;
-        /// Regions kept in best-first order; beyond, depth first in bounded memory.
+        /// Regions kept in best-first order; beyond that, depth first in bounded memory.
         pub regions: usize = 1 << 20, 1..=1 << 30;
-        /// The axis to split: the longest in share of its length, or the first that is not fixed.
+        /// The axis to split: the longest relative to the whole axis, or the first that is not fixed.
         pub split: SplitRule = SplitRule::Longest;
-        /// Share of every continuous axis below which a region is given up unproved.
+        /// A region shorter than this share of every continuous axis is given up unproved.
         pub resolution: f64 = 1e-12, 0.0..=1.0;
     }
 }
@@ -83,9 +92,9 @@ impl EngineConfig for BranchAndBound {
     }
 }
 
-/// After this many unanswered calls and none answered, the problem has no bounds.
+/// If the first calls, this many, are unanswered, the problem has no bounds.
 const SILENCE: u32 = 64;
-/// So many points of a region are looked at for one that is not in C.
+/// Points tried in a region to find one that is not in C.
 const ATTEMPTS: u64 = 4;
 /// Coordinates of regions in best-first order, at most, and of those that are processed depth first: 256 MB each.
 const MOST_COORDINATES: usize = 1 << 25;
@@ -99,11 +108,11 @@ struct RegionSearch<S> {
     splitter: Splitter<S>,
     started: bool,
     best_first: BinaryHeap<Node<S>>,
-    /// What did not fit there; worked off first.
+    /// Regions that did not fit there; processed first.
     depth_first: Vec<Node<S>>,
-    /// Regions with a point that is proposed, and its place in the batch.
+    /// Regions with a proposed point, and its index in the batch.
     proposed: Vec<(usize, Node<S>)>,
-    /// Regions at the limit of the resolution, to be looked at again at the end.
+    /// Regions at the limit of the resolution, examined again at the end.
     too_small: Vec<Node<S>>,
     next_index: u64,
     unanswered: u32,
@@ -112,7 +121,7 @@ struct RegionSearch<S> {
 }
 
 impl<S: Real> RegionSearch<S> {
-    /// The bound of a region, at least its parent's; `None` where it excludes the region.
+    /// The bound of a region, at least its parent's; `None` if it excludes the region.
     fn bound(&mut self, context: &dyn Context<S>, region: &Region<S>, parent: S) -> Option<S> {
         if !self.answered && self.unanswered >= SILENCE {
             return Some(parent);
@@ -120,7 +129,7 @@ impl<S: Real> RegionSearch<S> {
         let bound = match context.lower_bound(region) {
             Some(bound) => {
                 self.answered = true;
-                // NaN says nothing, and `max` passes over it.
+                // `max` ignores NaN.
                 parent.max(bound)
             }
             None => {
@@ -191,7 +200,7 @@ impl<S: Real> RegionSearch<S> {
         }
         match self.splitter.split(space, &node.region) {
             Split::Halves(lower, upper) => {
-                // The later one comes first among equals.
+                // Among equals, the later one comes first.
                 self.enter(context, upper, node.bound, out);
                 self.enter(context, lower, node.bound, out);
             }
@@ -227,7 +236,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
             self.started = true;
             self.enter(context, context.space().region(), S::neg_infinity(), out);
         }
-        // Few enough that the clock is looked at.
+        // Few enough that the clock is read in between.
         for _ in 0..(points_at_once(context.space().dimension()) / 4).max(1) {
             let next = self.depth_first.pop().or_else(|| self.best_first.pop());
             let Some(node) = next else { break };
@@ -239,7 +248,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         if self.depth_first.len() + self.best_first.len() + self.proposed.len() > 0 {
             return Ask::More;
         }
-        // Hits found since may cover what was too small to split.
+        // Hits found since may cover regions that were too small to split.
         self.too_small.retain(|node| !context.covers(&node.region));
         if self.given_up || !self.too_small.is_empty() {
             Ask::Exhausted

@@ -1,22 +1,22 @@
-//! Regions that are split in two: what branch and bound and the exclusion of dead regions share.
+//! Regions that are split in two, for branch and bound and for the exclusion of regions without hits.
 
 use core::cmp::Ordering;
 
 use crate::scalar::Real;
 use crate::space::{Region, Space};
 
-/// A region with its bound, as it waits for its turn.
+/// A waiting region with its bound.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(in crate::engine) struct Node<S> {
     pub(in crate::engine) bound: S,
-    /// F at a point inside, infinite where that is not known.
+    /// F at a point inside, infinite if unknown.
     pub(in crate::engine) guide: S,
     pub(in crate::engine) index: u64,
     pub(in crate::engine) region: Region<S>,
 }
 
 impl<S: Real> Node<S> {
-    /// Number of points where that is finite, as a real.
+    /// The number of points if finite, as a real.
     pub(in crate::engine) fn cardinality(&self, space: &Space<S>) -> Option<f64> {
         let sides = self.region.lower.iter().zip(&self.region.upper);
         space
@@ -32,11 +32,11 @@ impl<S: Real> Node<S> {
             })
     }
 
-    /// Values inside: on continuous axes somewhere in the middle half, where exactly depends on the index and
-    /// the attempt alone.
+    /// Values inside: on continuous axes in the middle half, at a place that depends on the index and the attempt
+    /// only.
     ///
-    /// Middles will not do: hits on a regular grid surround points at the separation from each of them, all around, and a
-    /// region about such a point never lies within a single one's reach.
+    /// Midpoints fail: hits on a regular grid leave points that are a separation away from several hits, and no region
+    /// around such a point is covered by a single hit.
     pub(in crate::engine) fn inner_point(&self, space: &Space<S>, attempt: u64) -> Vec<S> {
         let inside = |(axis, kind): (usize, &crate::Axis<S>)| {
             let (lower, upper) = (self.region.lower[axis], self.region.upper[axis]);
@@ -49,7 +49,7 @@ impl<S: Real> Node<S> {
         space.axes().iter().enumerate().map(inside).collect()
     }
 
-    /// Visits the positions of all points of a region with finitely many, the last axis fastest.
+    /// Visits the positions of all points of a finite region, the last axis fastest.
     pub(in crate::engine) fn each_point(&self, space: &Space<S>, mut visit: impl FnMut(&[S])) {
         let Region { lower, upper } = &self.region;
         let mut values = lower.clone();
@@ -102,7 +102,7 @@ impl<S: Real> PartialEq for Node<S> {
 }
 impl<S: Real> Eq for Node<S> {}
 
-/// What became of a region.
+/// The result of a split.
 pub(in crate::engine) enum Split<S> {
     /// Both halves; continuous ones share their face.
     Halves(Region<S>, Region<S>),
@@ -148,5 +148,18 @@ impl<S: Real> Splitter<S> {
             upper.lower[j] = region.upper[j];
         }
         Split::Halves(lower, upper)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first outputs of `SplitMix64` from state 0, by the authors' code.
+    #[test]
+    fn places_are_numbers_of_splitmix64() {
+        for (axis, word) in [(0, 0xe220_a839_7b1d_cdaf_u64), (1, 0x6e78_9e6a_a1b9_65f4)] {
+            assert_eq!(scatter(0, 0, axis), (word >> 11) as f64 / 2_f64.powi(53));
+        }
     }
 }

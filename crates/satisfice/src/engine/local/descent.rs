@@ -21,6 +21,15 @@ engine_settings! {
     ///
     /// After the descent of feature pairs in Guy, Debunne 2004 (INRIA RR-5136) and Kimmerle, Nesme, Faure 2004 (VMV). The first better
     /// neighbour is taken, not the best of all, because that finds more hits on the colliding teapots.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Descent, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = Descent { step: 0.1, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Descent {
         /// First step on continuous axes, as a share of each.
         pub step: f64 = 0.25, 1e-12..=1.0;

@@ -16,6 +16,15 @@ engine_settings! {
     /// A slice that begins with the verified hits of the one before floods from them first.
     ///
     /// After Guy, Debunne 2004 (INRIA RR-5136) and Kimmerle, Nesme, Faure 2004 (VMV).
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::DescentFlood, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = DescentFlood { step: 0.1, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct DescentFlood {
         /// First step on continuous axes, as a share of each.
         pub step: f64 = 0.25, 1e-12..=1.0;

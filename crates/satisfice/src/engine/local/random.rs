@@ -9,6 +9,15 @@ use crate::seed::SearchRng;
 
 engine_settings! {
     /// Every point independent and uniform in the space, with replacement.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Random, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = Random { batch: 16, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Random {
         /// Points proposed at once; does not change the hits.
         pub batch: usize = 64, 1..=1 << 20;

@@ -24,7 +24,7 @@ pub(in crate::engine) fn pair(count: usize, rng: &mut SearchRng) -> (usize, usiz
 }
 
 /// Writes a recombination of two hits of the list, which has at least two: half of the time each coordinate is either's by a
-/// fair draw, else a single one is exchanged. `false` where the result is one of the two.
+/// fair draw, else a single one is exchanged. `false` if the result is one of the two.
 pub(in crate::engine) fn recombine<S: Real>(hits: &[S], rng: &mut SearchRng, position: &mut [S]) -> bool {
     let dimension = position.len();
     let (a, b) = pair(hits.len() / dimension, rng);
@@ -67,7 +67,7 @@ impl Pairs {
         within && (self.swapped.is_empty() || (self.swapped.len() == dimension && self.later < count))
     }
 
-    /// Writes the next exchange of coordinates and says whether it differs from its two hits; `None` where there is none left.
+    /// Writes the next exchange of coordinates and says whether it differs from its two hits; `None` if there is none left.
     /// Which axes are exchanged is drawn: each by a fair draw, or, half of the time and always in the plane, a single one;
     /// then the others. Cost: O(D).
     pub(in crate::engine) fn next<S: Real>(

@@ -23,6 +23,15 @@ engine_settings! {
     /// - recombinations of all pairs of hits; the next searches start at those that just miss.
     ///
     /// Steps on integer axes are rounded, so this engine suits continuous axes. Hits are deleted.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::RestartedCmaEs, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = RestartedCmaEs { searches: 4, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct RestartedCmaEs {
         /// Searches at a time, and candidates of a batch: many feed more threads.
         pub searches: usize = 8, 1..=65_536;
@@ -52,7 +61,7 @@ const CONVERGED: f64 = 1e-9;
 const REFINING_STEP: f64 = 0.003;
 /// Near misses that are kept to be searched from.
 const MISSES: usize = 16;
-/// Recombinations that are looked at for one that is not a known hit, for each candidate of a batch.
+/// Recombinations that are examined for one that is not a known hit, for each candidate of a batch.
 const LOOKS: usize = 8;
 
 /// One local search: keeps its best point, accepts what is no worse.
@@ -138,7 +147,7 @@ impl<S: Real> Searches<S> {
         }
     }
 
-    /// Starts search `index` anew: from the best near miss every other time, else from a uniform point.
+    /// Starts search `index` again: from the best near miss every other time, else from a uniform point.
     fn start(&mut self, index: usize, space: &Space<S>, rng: &mut SearchRng) {
         self.restarts += 1;
         let climb = &mut self.climbs[index];
@@ -343,7 +352,7 @@ impl<S: Real> Part for Searches<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, Budget, Located, SatisficingProblem, Search, engine};
+    use crate::{Axis, Budget, Located, SatisficingProblem, Search};
 
     /// Maxima of a product of narrow and wide waves, 25 of them; the narrow ones have widths of a 25th of the wide ones.
     struct Waves(Space<f64>);
@@ -380,7 +389,7 @@ mod tests {
     fn all_maxima_of_narrow_and_wide_waves_are_found_with_a_few_evaluations() {
         let problem = waves();
         for seed in 0..10 {
-            let mut search = Search::with(engine::RestartedCmaEs::default()).seed(seed);
+            let mut search = Search::with(RestartedCmaEs::default()).seed(seed);
             let report = search
                 .run(&problem, &Budget::evaluations(40_000).and_hits(25))
                 .unwrap();

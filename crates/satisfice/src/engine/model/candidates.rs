@@ -16,20 +16,20 @@ const JUST_OUTSIDE: f64 = 0.4;
 const TRIES: usize = 8;
 
 /// What candidates are drawn from.
-pub(super) struct Source<'a> {
+pub(super) struct CandidateSource<'a> {
     pub(super) units: &'a Units,
     pub(super) record: &'a Record,
     /// Indices of the points that the model knows.
     pub(super) known: &'a [usize],
     /// Length scales.
     pub(super) lengths: &'a [f64],
-    /// How far from a hit the next distinct one may be, for each axis; 0 where that is not known.
+    /// How far from a hit the next distinct one may be, for each axis; 0 if that is not known.
     pub(super) reach: &'a [f64],
     /// Where uniform candidates are drawn.
     pub(super) bounds: (&'a [f64], &'a [f64]),
 }
 
-impl Source<'_> {
+impl CandidateSource<'_> {
     /// A block of uniform candidates if `k` is even, else one near hits.
     pub(super) fn either(
         &self,

@@ -136,30 +136,53 @@ const FIRST_STEP: f64 = 0.4;
 /// Longest step of a logarithm.
 const LONGEST_STEP: f64 = 1.0;
 
-/// Improves the scales by steps along the signs of the gradient, whose lengths adapt, each axis for itself (iRprop⁻: Igel,
-/// Hüsken 2003, doi 10.1016/S0925-2312(01)00700-7). Returns the best scales of all steps.
+/// A coordinate of iRprop⁻ (Igel, Hüsken 2003, doi 10.1016/S0925-2312(01)00700-7): steps along the sign of the slope. Their length
+/// grows while the sign stays, and halves when it changes; that step and the next comparison are skipped.
+#[derive(Debug, Clone)]
+struct SignDescent {
+    length: f64,
+    slope: f64,
+}
+
+impl SignDescent {
+    /// The step at a point with this slope.
+    fn step(&mut self, slope: f64) -> f64 {
+        let sign = slope * self.slope;
+        if sign > 0.0 {
+            self.length = (self.length * 1.2).min(LONGEST_STEP);
+        } else if sign < 0.0 {
+            self.length *= 0.5;
+        }
+        self.slope = if sign < 0.0 { 0.0 } else { slope };
+        if self.slope == 0.0 {
+            0.0
+        } else {
+            -self.length.copysign(self.slope)
+        }
+    }
+}
+
+/// Improves the scales by [`SignDescent`]. Returns the best scales of all steps.
 pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[f64], steps: usize) -> Scales {
     let mut fit = Fit::default();
     let mut scales = from.clone();
     let mut best = (f64::INFINITY, from.clone());
-    let mut lengths = vec![FIRST_STEP; scales.logs.len()];
-    let mut before = vec![0.0; scales.logs.len()];
+    let mut descents = vec![
+        SignDescent {
+            length: FIRST_STEP,
+            slope: 0.0,
+        };
+        scales.logs.len()
+    ];
     for _ in 0..steps {
         let (loss, gradient) = fit.evaluate(&scales, inputs, values);
         if loss < best.0 {
             best = (loss, scales.clone());
         }
-        for (k, slope) in gradient.into_iter().enumerate() {
-            let mut slope = slope;
-            if slope * before[k] > 0.0 {
-                lengths[k] = (lengths[k] * 1.2_f64).min(LONGEST_STEP);
-            } else if slope * before[k] < 0.0 {
-                lengths[k] *= 0.5;
-                slope = 0.0;
-            }
-            before[k] = slope;
-            if slope != 0.0 {
-                scales.shift(k, -lengths[k].copysign(slope));
+        for (k, (descent, slope)) in descents.iter_mut().zip(gradient).enumerate() {
+            let step = descent.step(slope);
+            if step != 0.0 {
+                scales.shift(k, step);
             }
         }
     }
@@ -197,6 +220,34 @@ mod tests {
                 "{k}: {slope} {difference}"
             );
         }
+    }
+
+    /// The table of the paper for one coordinate: the sign stays, changes, rests once, and stays again.
+    #[test]
+    fn steps_are_those_of_irprop_minus() {
+        let mut descent = SignDescent {
+            length: FIRST_STEP,
+            slope: 0.0,
+        };
+        let slopes = [2.0, 0.5, -1.0, -3.0, -0.1, 0.0, 4.0, f64::MIN_POSITIVE];
+        let steps = slopes.map(|slope| descent.step(slope));
+        let expected = [
+            -0.4,              // the first
+            -0.4 * 1.2,        // the same sign
+            0.0,               // another sign: half the length, no step
+            0.4 * 1.2 / 2.0,   // no comparison after a change of sign
+            0.24 * 1.2,        // the same sign
+            0.0,               // no slope
+            -0.24 * 1.2,       // nothing to compare with
+            -0.24 * 1.2 * 1.2, // the same sign, however flat
+        ];
+        for (step, expected) in steps.into_iter().zip(expected) {
+            assert!((step - expected).abs() < 1e-15, "{steps:?}");
+        }
+        for _ in 0..40 {
+            assert!(descent.step(1.0) >= -LONGEST_STEP);
+        }
+        assert_eq!(descent.length, LONGEST_STEP);
     }
 
     #[test]

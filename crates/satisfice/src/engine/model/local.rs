@@ -1,6 +1,6 @@
 //! The model of F, its candidates, and which of them is proposed.
 
-use super::candidates::{Source, least};
+use super::candidates::{CandidateSource, least};
 use super::duplicates::{is_duplicate, radius};
 use super::lanes::LANES;
 use super::likelihood::likeliest;
@@ -8,7 +8,7 @@ use super::pool::{Place, Pool, Score};
 use super::process::Process;
 use super::reach::{reach, square};
 use super::record::Record;
-use super::region::Region;
+use super::region::TrustRegion;
 use super::scales::Scales;
 use super::target::Target;
 use super::units::Units;
@@ -20,7 +20,7 @@ use crate::seed::SearchRng;
 const LEARNED_FROM: usize = 160;
 /// Steps of the likelihood's ascent at the first fit, and at later ones, which start where the last one ended.
 const STEPS: (usize, usize) = (40, 8);
-/// Blocks of candidates that are drawn anew for each proposal, half of them uniform.
+/// Blocks of candidates that are drawn again for each proposal, half of them uniform.
 const REPLACED: usize = 4;
 /// Rounds in which candidates are drawn around the best one, each time closer.
 const ROUNDS: usize = 3;
@@ -32,7 +32,7 @@ const EXAMINED: usize = 4096;
 pub(super) struct Model {
     pub(super) process: Process,
     pub(super) target: Target,
-    pub(super) region: Region,
+    pub(super) region: TrustRegion,
     /// How many of the known points the scales, mean and variance come from.
     pub(super) prefix: usize,
     /// Points of the record at the last fit, and those that are known or left out by now.
@@ -80,10 +80,10 @@ impl Model {
             None => (Scales::new(axes), Pool::default(), STEPS.0),
         };
         let region = if points <= most {
-            Region::whole(record)
+            TrustRegion::whole(record)
         } else {
             pool.clear();
-            Region::local(record, &scales, most, rng)
+            TrustRegion::local(record, &scales, most, rng)
         };
         pool.reset();
         let raw: Vec<f64> = region.known.iter().map(|&i| record.values[i]).collect();
@@ -145,8 +145,8 @@ impl Model {
             .collect()
     }
 
-    fn source<'a>(&'a self, units: &'a Units, record: &'a Record, lengths: &'a [f64]) -> Source<'a> {
-        Source {
+    fn source<'a>(&'a self, units: &'a Units, record: &'a Record, lengths: &'a [f64]) -> CandidateSource<'a> {
+        CandidateSource {
             units,
             record,
             known: &self.region.known[..self.prefix],
@@ -156,7 +156,7 @@ impl Model {
         }
     }
 
-    /// Draws some candidates anew.
+    /// Draws some candidates again.
     pub(super) fn refresh<S: Real>(&mut self, given: &mut Given<'_, S>, rng: &mut SearchRng) {
         let least = least(given.record, &self.region.known);
         let (lengths, radius) = (self.lengths(), self.radius);

@@ -127,7 +127,7 @@ impl Pool {
         (units.copied().collect(), excluded.copied().collect(), self.next)
     }
 
-    /// `None` where the lists do not fit each other.
+    /// `None` if the lists do not fit each other.
     pub(super) fn restored(axes: usize, units: &[f64], excluded: &[bool], next: usize) -> Option<Self> {
         let (lanes, []) = units.as_chunks::<LANES>() else {
             return None;

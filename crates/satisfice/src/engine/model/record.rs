@@ -23,7 +23,7 @@ pub(super) enum Kind {
 pub(super) struct Record {
     axes: usize,
     units: Vec<f64>,
-    /// NaN where there is no finite F.
+    /// NaN if there is no finite F.
     pub(super) values: Vec<f64>,
     /// Indices of hits.
     pub(super) hits: Vec<usize>,
@@ -60,7 +60,7 @@ impl Record {
         self.seen.contains(&key(units))
     }
 
-    /// Notes a point with its F, NaN where that is missing.
+    /// Notes a point with its F, NaN if that is missing.
     pub(super) fn add(&mut self, units: &[f64], value: f64, kind: Kind) {
         self.seen.insert(key(units));
         match kind {
@@ -82,7 +82,7 @@ impl Record {
         (self.axes, self.units.clone(), self.values.clone(), lists)
     }
 
-    /// `None` where the lists do not fit each other.
+    /// `None` if the lists do not fit each other.
     pub(super) fn restored(
         axes: usize,
         units: Vec<f64>,

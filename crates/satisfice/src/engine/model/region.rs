@@ -11,14 +11,14 @@ const LOCAL: usize = 128;
 
 /// The points of a model and the box in which it proposes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Region {
+pub(super) struct TrustRegion {
     /// Indices of points, in ascending order up to the first that was added.
     pub(super) known: Vec<usize>,
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
 }
 
-impl Region {
+impl TrustRegion {
     /// All points and the whole space.
     pub(super) fn whole(record: &Record) -> Self {
         Self {

@@ -5,7 +5,7 @@ use super::low_discrepancy;
 use super::pool::Pool;
 use super::process::Process;
 use super::record::{Kind, Record};
-use super::region::Region;
+use super::region::TrustRegion;
 use super::scales::Scales;
 use super::target::Target;
 use super::units::Units;
@@ -324,7 +324,7 @@ impl Model {
             delta: from.read()?,
             clip: from.read()?,
         };
-        let region = Region {
+        let region = TrustRegion {
             known: from.read()?,
             lower: from.read()?,
             upper: from.read()?,

@@ -12,7 +12,7 @@ pub(super) struct Target {
 }
 
 impl Target {
-    /// The clip for these values, NaN where one is missing.
+    /// The clip for these values, NaN if one is missing.
     pub(super) fn new(delta: f64, values: &[f64]) -> Self {
         let excess = values.iter().map(|value| value - delta);
         let mut misses: Vec<f64> = excess.filter(|&e| e >= 0.0 && e.is_finite()).collect();

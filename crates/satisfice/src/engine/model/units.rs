@@ -116,7 +116,7 @@ impl Units {
             .collect()
     }
 
-    /// `None` where the list is not whole.
+    /// `None` if the list is not whole.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

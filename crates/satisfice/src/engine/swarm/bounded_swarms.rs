@@ -26,6 +26,15 @@ engine_settings! {
     /// 2. Each leaf in turn, again and again, has a new swarm of `particles` (PSO with constriction, the best attracts, updated once a
     ///    sweep), for `sweeps` times its size over the mean size of the leaves. A particle that leaves the leaf is put on its edge. Hits
     ///    are deleted.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::BoundedSwarms, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = BoundedSwarms { particles: 8, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct BoundedSwarms {
         /// Guessed: values of an integer axis that a leaf has at most.
         pub leaf: usize = 64, 1..=1 << 20;
@@ -82,7 +91,7 @@ impl EngineConfig for BoundedSwarms {
 
 /// After this many unanswered calls and none answered, the problem has no bounds.
 const SILENCE: u32 = 64;
-/// Regions bounded in one `ask` at most, so that the clock is looked at.
+/// Regions bounded in one `ask` at most, so that the clock is read in between.
 const WORK: usize = 256;
 
 /// The tree and the swarm of [`BoundedSwarms`].

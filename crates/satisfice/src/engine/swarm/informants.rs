@@ -38,7 +38,7 @@ impl Informants {
         self.offsets.is_empty()
     }
 
-    /// Draws all links anew. Cost: O(N K).
+    /// Draws all links again. Cost: O(N K).
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the tables allow 10^6 particles, each informing 1000: below 2^32"

@@ -15,7 +15,7 @@ use crate::space::{Axis, Boundary};
 
 engine_settings! {
     /// PSO with constriction and niches, after the rival that the paper names (Wang et al. 2006). **A reconstruction**: of the original
-    /// we know only that a swarm searches pairs of serial numbers and that clustering keeps several niches. The parameters marked as
+    /// we know only that a swarm searches pairs of indices and that clustering keeps several niches. The parameters marked as
     /// guessed are ours; `docs/results/paper.md` sweeps them.
     ///
     /// Every `period` sweeps, DBSCAN clusters the personal bests (axes scaled to 1, radius `eps`, `min_points`). A particle of a niche is
@@ -25,7 +25,7 @@ engine_settings! {
     /// V_i := chi (V_i + phi/2 r1 (P_i - X_i) + phi/2 r2 (G_niche - X_i)),   |V_i| <= Vmax
     /// ```
     ///
-    /// an outlier by its own best alone, and it is drawn anew when it is slower than `still` on every axis. A niche whose members have
+    /// an outlier by its own best alone, and it is drawn again when it is slower than `still` on every axis. A niche whose members have
     /// come together within a cell is scattered over the space. A hit is deleted: it becomes the personal best, and F is infinite there
     /// from then on.
     pub struct NichingPsoDbscan {
@@ -43,7 +43,7 @@ engine_settings! {
         pub eps: f64 = 0.1, 0.0..=10.0;
         /// Guessed: points that make a core of DBSCAN.
         pub min_points: usize = 3, 1..=1_000_000;
-        /// Guessed: an outlier slower than this is drawn anew, in cells (1e-4 of a continuous axis).
+        /// Guessed: an outlier slower than this is drawn again, in cells (1e-4 of a continuous axis).
         pub still: f64 = 0.5, 0.0..=1e9;
     }
 }
@@ -93,7 +93,7 @@ struct NichingSwarm<S> {
     velocities: Vec<S>,
     niches: Vec<u32>,
     memory: Memory,
-    /// Whether a particle is to be drawn anew in this sweep.
+    /// Whether a particle is to be drawn again in this sweep.
     scattered: Vec<bool>,
     sweeps: u64,
 }

@@ -246,7 +246,7 @@ impl<S: Real> Swarm<S> {
     #[inline(always)]
     #[expect(
         clippy::inline_always,
-        reason = "a call a step would cost a tenth of the whole"
+        reason = "a call per step would cost a tenth of the whole"
     )]
     pub(super) fn step(
         &mut self,
@@ -270,7 +270,7 @@ impl<S: Real> Swarm<S> {
     #[inline(always)]
     #[expect(
         clippy::inline_always,
-        reason = "a call a step would cost a tenth of the whole"
+        reason = "a call per step would cost a tenth of the whole"
     )]
     fn settle(&mut self, outcome: Outcome<S>) {
         let i = self.turn;
@@ -310,7 +310,7 @@ impl<S: Real> Swarm<S> {
     /// Says whether a restored list of `rows` rows of coordinates has the length that it ought to have.
     ///
     /// # Errors
-    /// [`Error::State`] where it has not.
+    /// [`Error::State`] if it has not.
     pub(super) fn fits(&self, what: &str, length: usize, rows: usize) -> Result<(), Error> {
         if Some(length) == rows.checked_mul(self.dimension) {
             Ok(())
@@ -321,7 +321,7 @@ impl<S: Real> Swarm<S> {
     /// The same for rows that are drawn with the first proposals: they are there before those are told.
     ///
     /// # Errors
-    /// [`Error::State`] where the list has another length.
+    /// [`Error::State`] if the list has another length.
     pub(super) fn fits_rows_drawn(&self, what: &str, length: usize) -> Result<(), Error> {
         if !self.started && length == 0 {
             return Ok(());
@@ -331,7 +331,7 @@ impl<S: Real> Swarm<S> {
     /// Says whether a restored list of one row of coordinates a particle has its length.
     ///
     /// # Errors
-    /// [`Error::State`] where it has not.
+    /// [`Error::State`] if it has not.
     pub(super) fn fits_rows(&self, what: &str, length: usize) -> Result<(), Error> {
         self.fits(what, length, if self.started { self.particles } else { 0 })
     }

@@ -21,7 +21,7 @@ pub const ALPHA_BOUNDED: f64 = 1.781_072_417_990_198;
 #[inline(always)]
 #[expect(
     clippy::inline_always,
-    reason = "a call an axis would cost a tenth of the whole"
+    reason = "a call per axis would cost a tenth of the whole"
 )]
 pub(crate) fn draw<S: Real>(rng: &mut SearchRng, alpha: S, x: S, best: S, attractor: S, mean_best: S) -> S {
     let (phi, negative) = rng.uniform_and_sign();

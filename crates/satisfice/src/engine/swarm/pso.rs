@@ -12,6 +12,15 @@ engine_settings! {
     ///
     /// Source: Clerc, Kennedy 2002, doi 10.1109/4235.985692: phi = 4.1, hence chi = 0.7298; Vmax of half an axis after Eberhart, Shi
     /// 2000, doi 10.1109/CEC.2000.870279.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Pso, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = Pso { particles: 20, deletion: true, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Pso {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;

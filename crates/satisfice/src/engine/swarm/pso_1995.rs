@@ -12,6 +12,15 @@ engine_settings! {
     ///
     /// Source: Kennedy, Eberhart 1995, doi 10.1109/ICNN.1995.488968; Vmax of 10 to 20 % of an axis after Eberhart, Shi 2001,
     /// doi 10.1109/CEC.2001.934374. The publication does not say what happens at the bounds; here the space's boundary rule decides.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Pso1995, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = Pso1995 { particles: 20, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Pso1995 {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;

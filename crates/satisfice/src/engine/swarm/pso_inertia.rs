@@ -13,6 +13,15 @@ engine_settings! {
     /// Source: Shi, Eberhart 1998, doi 10.1109/ICEC.1998.699146; the schedule and Vmax of half an axis after Shi, Eberhart 1999,
     /// doi 10.1109/CEC.1999.785511. Differs from the publication in that w follows the elapsed share of the budget instead of a count
     /// of iterations.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::PsoInertia, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = PsoInertia { w_end: 0.5, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct PsoInertia {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;

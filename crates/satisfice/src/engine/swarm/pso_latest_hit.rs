@@ -12,6 +12,15 @@ engine_settings! {
     /// space and become personal bests.
     ///
     /// Source: Clerc, Kennedy 2002, doi 10.1109/4235.985692, with the attractor of Chen et al. 2012, doi 10.3923/itj.2012.536.539.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::PsoLatestHit, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = PsoLatestHit { particles: 20, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct PsoLatestHit {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;

@@ -15,6 +15,15 @@ engine_settings! {
     ///
     /// Source: Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875; alpha after Sun et al. 2012, doi 10.1162/EVCO_a_00049. Differs from the
     /// publication in the schedule, which follows the elapsed share of the budget instead of a count of iterations.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Qpso, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = Qpso { alpha: 0.9, alpha_end: Some(0.5), ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Qpso {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;

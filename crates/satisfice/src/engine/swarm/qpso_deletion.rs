@@ -13,6 +13,15 @@ engine_settings! {
     ///
     /// Source: Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875. Differs from the publication in the deletion, and in that a hit
     /// becomes P_i even if it is worse than the P_i that was deleted.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::QpsoDeletion, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = QpsoDeletion { alpha: 0.9, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct QpsoDeletion {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;

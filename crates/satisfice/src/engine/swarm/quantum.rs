@@ -106,7 +106,7 @@ impl<S: Real> Engine<S> for QuantumSwarm<S> {
 #[inline(always)]
 #[expect(
     clippy::inline_always,
-    reason = "a call a step would cost a tenth of the whole"
+    reason = "a call per step would cost a tenth of the whole"
 )]
 fn displace<S: Real>(rng: &mut SearchRng, alpha: S, x: &mut [S], best: &[S], attractor: &[S], mean: &[S]) {
     let d = x.len();

@@ -21,7 +21,7 @@ engine_settings! {
     /// V := w V + x' - X;   X := X + V;   where X leaves the box: on the bound, V := -V / 2
     /// ```
     ///
-    /// with L the best personal best among the particle's informants. Each particle informs itself and K random ones, drawn anew
+    /// with L the best personal best among the particle's informants. Each particle informs itself and K random ones, drawn again
     /// after every sweep that has not improved the best of all. Lengths are in units of the axes. A periodic space has no bound to put a
     /// particle on.
     ///

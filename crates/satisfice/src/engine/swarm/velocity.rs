@@ -169,7 +169,7 @@ impl<S: Real> Coefficients<S> {
     #[inline(always)]
     #[expect(
         clippy::inline_always,
-        reason = "a call a step would cost a tenth of the whole"
+        reason = "a call per step would cost a tenth of the whole"
     )]
     fn displace(
         &self,

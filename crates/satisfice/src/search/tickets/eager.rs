@@ -452,7 +452,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         self.open.get(&number).map(|open| &open.solution)
     }
 
-    /// Ends the slice. Its first engine goes on in the next one, if that has one lane.
+    /// Ends the slice. Its first engine continues in the next one, if that has one lane.
     pub(super) fn finish(mut self) -> Running<S, T> {
         let _ = self.slice.ledger.is_over();
         let mut slice = Some(self.slice);

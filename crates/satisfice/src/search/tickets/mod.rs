@@ -360,7 +360,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// state is then the one that the log was taken from.
     ///
     /// # Errors
-    /// [`Error::State`] where the log does not fit; [`Error::Ticket`], [`Error::Solution`].
+    /// [`Error::State`] if the log does not fit; [`Error::Ticket`], [`Error::Solution`].
     pub fn replay(&mut self, log: &TicketLog<P::Solution>) -> Result<(), Error> {
         for event in log.events() {
             match event {
@@ -428,7 +428,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     }
 }
 
-/// Position of a solution, empty where the problem does not encode it.
+/// Position of a solution, empty if the problem does not encode it.
 fn position_of<P: SatisficingProblem + ?Sized>(
     problem: &P,
     solution: &P::Solution,

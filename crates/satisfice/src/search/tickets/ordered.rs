@@ -158,7 +158,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         }
     }
 
-    /// Proposes a batch again that was out when the slice was saved; `false` if there is none such.
+    /// Proposes a batch again that was out when the slice was saved; `false` if there is none.
     pub(super) fn propose_again<P>(&mut self, out: Out<S>, problem: &P, previous: &Archive<T>) -> bool
     where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,

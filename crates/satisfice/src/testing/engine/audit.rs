@@ -1,6 +1,7 @@
 //! Whether a report is true to what it is about, and to itself.
 
-use super::{Law, Violation};
+use super::super::Violation;
+use super::EngineLaw;
 use crate::budget::StopReason;
 use crate::identity::Located;
 use crate::problem::SatisficingProblem;
@@ -13,7 +14,7 @@ pub(super) fn audit<S: Real>(
     case: &Case<S>,
     report: &Report<Located<S>>,
     calls: u64,
-    violations: &mut Vec<Violation>,
+    violations: &mut Vec<Violation<EngineLaw>>,
 ) {
     let mut say = |law, what: String| {
         violations.push(Violation {
@@ -23,30 +24,30 @@ pub(super) fn audit<S: Real>(
         });
     };
     if let Some(values) = case.outside() {
-        say(Law::Inside, format!("{values} was decoded"));
+        say(EngineLaw::Inside, format!("{values} was decoded"));
     }
     let counts = report.counts;
     if calls != counts.fitness_calls {
         say(
-            Law::Accounting,
+            EngineLaw::Accounting,
             format!("{} fitness calls counted, {calls} made", counts.fitness_calls),
         );
     }
     if counts.fitness_calls > counts.evaluations || counts.duplicates > counts.evaluations {
-        say(Law::Accounting, format!("{counts:?}"));
+        say(EngineLaw::Accounting, format!("{counts:?}"));
     }
     let mut last = 0;
     for hit in report.hits() {
         let fitness = case.value(&hit.solution.coordinates);
         if !(fitness < case.threshold() && fitness.is_finite()) {
             say(
-                Law::Accounting,
+                EngineLaw::Accounting,
                 format!("{:?} with F = {fitness} is no hit", hit.solution),
             );
         }
         if hit.evaluation <= last || hit.evaluation > counts.evaluations {
             say(
-                Law::Accounting,
+                EngineLaw::Accounting,
                 format!("a hit at {} after one at {last}", hit.evaluation),
             );
         }
@@ -54,7 +55,7 @@ pub(super) fn audit<S: Real>(
     }
     let hits: Vec<_> = report.hits().map(|hit| hit.solution).collect();
     if let Some(i) = (1..hits.len()).find(|&i| hits[..i].contains(&hits[i])) {
-        say(Law::Accounting, format!("{:?} is listed twice", hits[i]));
+        say(EngineLaw::Accounting, format!("{:?} is listed twice", hits[i]));
     }
     let end = report.trace.last().map(|point| (point.evaluations, point.hits));
     if end != Some((counts.evaluations, hits.len() as u64))
@@ -63,14 +64,14 @@ pub(super) fn audit<S: Real>(
             .is_sorted_by_key(|point| (point.evaluations, point.hits))
     {
         say(
-            Law::Accounting,
+            EngineLaw::Accounting,
             format!("the trace ends at {end:?}, {} hits in {counts:?}", hits.len()),
         );
     }
     if !budget_is_kept(report) {
         let (limit, spent) = (report.budget.evaluations, counts.evaluations);
         say(
-            Law::Budget,
+            EngineLaw::Budget,
             format!(
                 "{spent} of {limit:?} evaluations, stopped by {:?}",
                 report.stop_reason
@@ -81,7 +82,10 @@ pub(super) fn audit<S: Real>(
     if report.completeness == Completeness::Proved && countable && case.poison == Poison::Never {
         let (found, all) = (hits.len() as u64, case.count());
         if found != all {
-            say(Law::Covered, format!("{found} hits of {all} said to be all"));
+            say(
+                EngineLaw::Covered,
+                format!("{found} hits of {all} said to be all"),
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What is run for each law.
 
 use super::probe::{Probe, Restored};
-use super::{LONG_RUN, Law, Suite};
+use super::{EngineLaw, EngineSuite, LONG_RUN};
 use crate::budget::{Budget, StopReason};
 use crate::engine::WarmStart;
 use crate::error::Error;
@@ -13,20 +13,20 @@ use crate::space::Space;
 use crate::testing::case::{Case, Poison, spaces};
 use crate::testing::{difference, difference_in_hits};
 
-impl<S: Real> Suite<'_, S> {
-    /// A run twice, and once with its proposals looked at.
+impl<S: Real> EngineSuite<'_, S> {
+    /// A run twice, and once with its proposals examined.
     pub(super) fn ordinary(&mut self, case: &Case<S>) -> Result<(), Error> {
         let budget = Budget::evaluations(self.run);
         let report = self.run(case, &budget)?;
         let again = self.search()?.run(case, &budget)?;
-        self.say_if(Law::SameSeed, &case.name, difference(&report, &again));
+        self.say_if(EngineLaw::SameSeed, &case.name, difference(&report, &again));
         let by_hand = self.run_by_hand(case, &budget)?;
-        self.say_if(Law::ByHand, &case.name, difference(&report, &by_hand));
+        self.say_if(EngineLaw::ByHand, &case.name, difference(&report, &by_hand));
         let (probe, findings) = Probe::around(self.engine);
         let probed = Search::with(probe).seed(42).run(case, &budget)?;
-        self.say_if(Law::Proposals, &case.name, findings.first());
+        self.say_if(EngineLaw::Proposals, &case.name, findings.first());
         self.say_if(
-            Law::SameSeed,
+            EngineLaw::SameSeed,
             &case.name,
             difference_in_hits(&report, &probed, self.run),
         );
@@ -56,7 +56,7 @@ impl<S: Real> Suite<'_, S> {
             let short = self.run(&case, &short)?;
             let long = self.run(&twin, &long)?;
             self.say_if(
-                Law::Prefix,
+                EngineLaw::Prefix,
                 &case.name,
                 difference_in_hits(&short, &long, self.run),
             );
@@ -66,7 +66,11 @@ impl<S: Real> Suite<'_, S> {
             };
             let (short, long) = (common(&short), common(&long));
             if !long.starts_with(&short) {
-                self.say(Law::Prefix, &case.name, format!("traces {short:?} and {long:?}"));
+                self.say(
+                    EngineLaw::Prefix,
+                    &case.name,
+                    format!("traces {short:?} and {long:?}"),
+                );
             }
         }
         Ok(())
@@ -81,7 +85,7 @@ impl<S: Real> Suite<'_, S> {
             for threads in [2, 3, 8] {
                 let many = self.search()?.threads(threads).run(&case, &budget)?;
                 let what = difference(&one, &many).map(|what| format!("{threads} threads: {what}"));
-                self.say_if(Law::Threads, &case.name, what);
+                self.say_if(EngineLaw::Threads, &case.name, what);
             }
         }
         Ok(())
@@ -100,23 +104,27 @@ impl<S: Real> Suite<'_, S> {
                     let (probe, findings) = Probe::around(self.engine);
                     let mut search = Search::with(probe).seed(42);
                     let report = self.run_by(&mut search, &case, &Budget::evaluations(self.run))?;
-                    self.say_if(Law::Proposals, &case.name, findings.first());
-                    // Who has covered the space, which the audit has looked at, has not given up.
+                    self.say_if(EngineLaw::Proposals, &case.name, findings.first());
+                    // An engine that covers the space, which the audit checks, has not given up.
                     let covered = report.stop_reason == StopReason::Covered;
                     if report.counts.evaluations < healthy.counts.evaluations && !covered {
                         self.say(
-                            Law::NonFinite,
+                            EngineLaw::NonFinite,
                             &case.name,
                             format!("gave up after {} evaluations", report.counts.evaluations),
                         );
                     }
                     if matches!(case.poison, Poison::Everywhere(_)) && report.hit_count() > 0 {
-                        self.say(Law::NonFinite, &case.name, "found hits where there are none");
+                        self.say(
+                            EngineLaw::NonFinite,
+                            &case.name,
+                            "found hits where there are none",
+                        );
                     }
                     reports.push((case.name, report));
                 }
                 for (name, report) in &reports[1..] {
-                    self.say_if(Law::NonFinite, name, difference(&reports[0].1, report));
+                    self.say_if(EngineLaw::NonFinite, name, difference(&reports[0].1, report));
                 }
             }
         }
@@ -129,7 +137,7 @@ impl<S: Real> Suite<'_, S> {
             let report = self.run(&case, &Budget::evaluations(LONG_RUN))?;
             let (found, all) = (report.hit_count() as u64, case.count());
             if found * 4 < all || found > all {
-                self.say(Law::HitCount, &case.name, format!("{found} hits of {all}"));
+                self.say(EngineLaw::HitCount, &case.name, format!("{found} hits of {all}"));
             }
         }
         Ok(())
@@ -142,15 +150,15 @@ impl<S: Real> Suite<'_, S> {
             for every in [1, 7] {
                 let (restored, findings) = Restored::around(self.engine, every);
                 let report = Search::with(restored).seed(42).run(&case, &budget)?;
-                self.say_if(Law::Restore, &case.name, findings.first());
+                self.say_if(EngineLaw::Restore, &case.name, findings.first());
                 self.say_if(
-                    Law::Restore,
+                    EngineLaw::Restore,
                     &case.name,
                     difference_in_hits(&straight, &report, self.run),
                 );
                 if straight.counts != report.counts {
                     self.say(
-                        Law::Restore,
+                        EngineLaw::Restore,
                         &case.name,
                         format!("{:?} and {:?}", straight.counts, report.counts),
                     );
@@ -179,7 +187,7 @@ impl<S: Real> Suite<'_, S> {
                 twins[1].run(&first, &budget)?;
                 let twin = twins[1].run(&again, &budget)?;
                 let name = format!("{}, {rule:?}", moved.name);
-                self.say_if(Law::Slices, &name, difference(&after, &twin));
+                self.say_if(EngineLaw::Slices, &name, difference(&after, &twin));
                 let wanted = if rule == WarmStart::Verify {
                     before.hit_count() as u64
                 } else {
@@ -187,7 +195,7 @@ impl<S: Real> Suite<'_, S> {
                 };
                 if after.counts.verified != wanted.min(self.run) {
                     self.say(
-                        Law::Slices,
+                        EngineLaw::Slices,
                         &name,
                         format!("{} of {wanted} hits verified", after.counts.verified),
                     );

@@ -81,7 +81,7 @@ impl<S: Real> Engine<S> for Probe<S> {
     }
 }
 
-/// Every so many tells, the engine is saved, and another that is restored from it goes on.
+/// Every so many tells, the engine is saved, and another that is restored from it continues.
 pub(super) struct Restored<S> {
     inner: Box<dyn Engine<S>>,
     spare: Vec<Box<dyn Engine<S>>>,

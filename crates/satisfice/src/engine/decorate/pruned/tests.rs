@@ -3,7 +3,7 @@
 use crate::Bounds;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::engine::{all, build, find};
+use crate::engine::{ConfiguredEngine, all, find};
 use crate::testing::engine::check;
 use crate::{Budget, Completeness, Region, Report, SatisficingProblem, Search, Space};
 
@@ -161,7 +161,7 @@ fn resumed_it_goes_on() {
 
 #[test]
 fn without_bounds_nothing_changes() {
-    let violations = check::<f64>(&build("random").unwrap().pruned()).unwrap();
+    let violations = check::<f64>(&ConfiguredEngine::named("random").unwrap().pruned()).unwrap();
     assert!(violations.is_empty(), "{:?}", violations.first());
     let problem = crate::from_fn(Space::lattice(2, 50).unwrap(), 60.0, |x: &[f64]| x[0] * x[1]);
     let budget = Budget::evaluations(2000);

@@ -1,4 +1,4 @@
-//! What is proved is checked by enumeration, or by sampling the space anew.
+//! Proofs are checked by enumeration, or by new samples of the space.
 
 use crate::{Bounds, Encoding};
 use std::collections::BTreeSet;
@@ -17,7 +17,7 @@ struct Shell<S> {
     width: S,
     separation: S,
     bounded: bool,
-    /// Taken off the bound.
+    /// Subtracted from the bound.
     slack: S,
     covers: bool,
 }
@@ -81,7 +81,7 @@ impl<S: Real> Encoding<S, Located<S>> for Shell<S> {
 impl<S: Real> Bounds<S> for Shell<S> {
     fn lower_bound(&self, region: &Region<S>) -> Option<S> {
         let ends = || region.lower.iter().zip(&region.upper).zip(&self.centre);
-        // Every operation is monotone, rounded or not.
+        // Every operation is monotone, rounding included.
         let nearest = self.distance(ends().map(|((&l, &u), &c)| c.max(l).min(u)));
         let farthest = self.distance(ends().map(|((&l, &u), &c)| if c - l > u - c { l } else { u }));
         Some((nearest - self.radius).max(self.radius - farthest).max(S::zero()) - self.slack)
@@ -189,7 +189,7 @@ fn bounds_spare_most_of_a_large_space() {
     );
 }
 
-/// Points of the shell, drawn anew, are all the same answer as some hit.
+/// New sample points of the shell are all the same answer as some hit.
 fn covers_the_shell<S: Real>(problem: &Shell<S>, report: &Report<Located<S>>) {
     let mut rng = SearchRng::new(5);
     let (mut position, mut values) = (vec![S::zero(); problem.space.dimension()], Vec::new());
@@ -246,7 +246,7 @@ fn continuous_spaces_are_proved<S: Real>() {
                     .all(|b| !crate::Identity::same(a.solution, b.solution))
             );
         }
-        // In bounded memory the same is proved, in another order.
+        // In bounded memory the proof is the same, in another order.
         let frugal = run(&problem, &[("regions", "64")], 100_000);
         assert_eq!(frugal.completeness, Completeness::Proved, "{frugal}");
         covers_the_shell(&problem, &frugal);
