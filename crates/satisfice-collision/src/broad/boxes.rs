@@ -345,7 +345,7 @@ struct Item {
 }
 
 /// The numbers of some boxes in an order in which every aligned run of 8, 64, 512, … is compact. Cost: O(n log n).
-pub(crate) fn order_by_median(boxes: &[Box32], parallel: bool) -> Vec<u32> {
+pub(crate) fn order_by_median<'b>(boxes: impl IntoIterator<Item = &'b Box32>, parallel: bool) -> Vec<u32> {
     let mut items: Vec<Item> = (0_u32..)
         .zip(boxes)
         .map(|(id, b)| Item {

@@ -5,100 +5,24 @@
 //! depth. A new body goes down to the child that grows least, and a full node is split along its longest axis. Rebuilding
 //! orders the bodies as [`BoxTree`](crate::broad) does and fills every node.
 
+mod follow;
+mod node;
+#[cfg(test)]
+mod tests;
+mod visits;
+
+pub(super) use follow::Change;
+
 use crate::Aabb;
 use crate::broad::{Box32, exponent, order_by_median, power_of_two};
-use crate::simd::{Floats as _, Lanes};
-
-/// Marks an empty lane, and the parent of the root.
-const NONE: u32 = u32::MAX;
-
-/// Eight boxes side by side, and what is in them.
-#[derive(Clone)]
-struct Node {
-    lower: [[f32; 8]; 3],
-    upper: [[f32; 8]; 3],
-    /// Nodes, or bodies on level 0.
-    child: [u32; 8],
-    parent: u32,
-    /// 0 for a node whose children are bodies.
-    level: u32,
-}
-
-impl Node {
-    fn empty(level: u32) -> Self {
-        Self {
-            lower: [[f32::INFINITY; 8]; 3],
-            upper: [[f32::NEG_INFINITY; 8]; 3],
-            child: [NONE; 8],
-            parent: NONE,
-            level,
-        }
-    }
-
-    fn set(&mut self, lane: usize, child: u32, to: &Box32) {
-        self.child[lane] = child;
-        self.set_box(lane, to);
-    }
-
-    fn set_box(&mut self, lane: usize, to: &Box32) {
-        for k in 0..3 {
-            self.lower[k][lane] = to.min[k];
-            self.upper[k][lane] = to.max[k];
-        }
-    }
-
-    fn lane_box(&self, lane: usize) -> Box32 {
-        Box32 {
-            min: std::array::from_fn(|k| self.lower[k][lane]),
-            max: std::array::from_fn(|k| self.upper[k][lane]),
-        }
-    }
-
-    fn bounds(&self) -> Box32 {
-        (0..8).fold(Box32::EMPTY, |bounds, lane| bounds.union(&self.lane_box(lane)))
-    }
-
-    fn free_lane(&self) -> Option<usize> {
-        self.child.iter().position(|&child| child == NONE)
-    }
-
-    fn lane_of(&self, child: u32) -> Option<usize> {
-        self.child.iter().position(|&other| other == child)
-    }
-
-    fn children(&self) -> impl Iterator<Item = (usize, u32)> {
-        self.child
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|&(_, child)| child != NONE)
-    }
-
-    /// Bit `lane` is set if the box of that lane overlaps `b`, which is finite.
-    #[inline(always)]
-    fn overlaps<L: Lanes>(&self, lanes: L, b: &Box32) -> u32 {
-        let s = lanes.single();
-        let on = |k: usize| {
-            s.both(
-                s.at_most(s.load(&self.lower[k]), s.splat(b.max[k])),
-                s.at_most(s.splat(b.min[k]), s.load(&self.upper[k])),
-            )
-        };
-        s.bits(s.both(s.both(on(0), on(1)), on(2)))
-    }
-}
-
-/// The lanes of a mask, ascending.
-#[inline(always)]
-fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (lane < 8).then_some(lane)
-    })
-}
+use node::{NONE, Node, at_lane, lane_in, lanes, node_of};
 
 impl Box32 {
+    /// Whether two boxes share a point.
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
+    }
+
     /// The bits of the squared distance of two boxes, which are ordered as the numbers are; 0 where there is none.
     fn gap(&self, other: &Self) -> u32 {
         let side = |k: usize| {
@@ -117,49 +41,75 @@ pub(super) struct BodyTree {
     nodes: Vec<Node>,
     free: Vec<u32>,
     root: Option<u32>,
-    /// The leaf of each body, by slot; [`NONE`] for those that are not in the tree.
-    leaf: Vec<u32>,
+    /// The place of each body in its leaf, by slot; [`NONE`] for those that are not in the tree.
+    places: Vec<u32>,
     origin: [f64; 3],
     scale: f64,
     bodies: usize,
     /// Bodies put elsewhere since the tree was built.
-    changes: usize,
+    moves: usize,
+    /// The sum of the sides of the boxes of all nodes but the root, and the least of it since the tree was built.
+    size: f64,
+    least_size: f64,
+    /// Nodes with a changed box, leaves first.
+    changed: Vec<u32>,
 }
 
 impl BodyTree {
-    /// Whether so many bodies have been put elsewhere since it was built that building it anew pays.
-    pub(super) fn is_worn(&self) -> bool {
-        self.changes > 4 * self.bodies + 64
-    }
-
     /// Whether a body is in the tree.
     pub(super) fn contains(&self, body: u32) -> bool {
-        self.leaf.get(body as usize).is_some_and(|&leaf| leaf != NONE)
+        self.place_of(body).is_some()
+    }
+
+    /// The place of a body in its leaf.
+    fn place_of(&self, body: u32) -> Option<u32> {
+        self.places
+            .get(body as usize)
+            .copied()
+            .filter(|&place| place != NONE)
+    }
+
+    /// The box of a body in the tree; the empty one for a body that is not there.
+    pub(super) fn box_of(&self, body: u32) -> Box32 {
+        self.place_of(body)
+            .map_or(Box32::EMPTY, |place| self.box_at(place))
+    }
+
+    fn box_at(&self, place: u32) -> Box32 {
+        self.nodes[node_of(place) as usize].lane_box(lane_in(place))
     }
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>() + (self.leaf.capacity() + self.free.capacity()) * 4
+        self.nodes.capacity() * size_of::<Node>()
+            + (self.places.capacity() + self.free.capacity() + self.changed.capacity()) * 4
     }
 
-    /// Builds the tree anew over these boxes. Cost: O(n log n).
+    /// Builds the tree anew over these boxes, in a frame around them; all of them have changed. Cost: O(n log n).
     pub(super) fn build(&mut self, boxes: &[(u32, Aabb)]) {
+        self.choose_frame(boxes);
+        let placed = boxes.iter().map(|(body, bounds)| (*body, self.place(bounds)));
+        self.arrange(&placed.collect::<Vec<_>>());
+        self.changed.extend(0..self.nodes.len() as u32);
+        for node in &mut self.nodes {
+            node.changed = node.taken();
+        }
+    }
+
+    /// Builds the tree anew over these boxes.
+    fn arrange(&mut self, boxes: &[(u32, Box32)]) {
         self.nodes.clear();
         self.free.clear();
-        self.leaf.fill(NONE);
-        (self.root, self.bodies, self.changes) = (None, boxes.len(), 0);
-        self.choose_frame(boxes);
-        let placed: Vec<Box32> = boxes.iter().map(|(_, bounds)| self.place(bounds)).collect();
-        let order = order_by_median(&placed, false);
+        self.places.fill(NONE);
+        self.changed.clear();
+        (self.root, self.bodies, self.moves, self.size) = (None, boxes.len(), 0, 0.0);
         if let Some(most) = boxes.iter().map(|&(body, _)| body as usize + 1).max()
-            && most > self.leaf.len()
+            && most > self.places.len()
         {
-            self.leaf.resize(most, NONE);
+            self.places.resize(most, NONE);
         }
-        let mut below: Vec<(u32, Box32)> = order
-            .iter()
-            .map(|&at| (boxes[at as usize].0, placed[at as usize]))
-            .collect();
+        let order = order_by_median(boxes.iter().map(|(_, bounds)| bounds), false);
+        let mut below: Vec<(u32, Box32)> = order.iter().map(|&at| boxes[at as usize]).collect();
         let mut level = 0;
         while self.root.is_none() && !below.is_empty() {
             let mut above = Vec::with_capacity(below.len().div_ceil(8));
@@ -168,17 +118,21 @@ impl BodyTree {
                 let mut node = Node::empty(level);
                 for (lane, (child, bounds)) in children.iter().enumerate() {
                     node.set(lane, *child, bounds);
-                    self.adopt(*child, level, id);
+                    self.adopt(*child, level, at_lane(id, lane));
                 }
-                above.push((id, node.bounds()));
+                let bounds = node.bounds();
+                self.size += size_of_box(&bounds);
+                above.push((id, bounds));
                 super::push(&mut self.nodes, node);
             }
             if above.len() == 1 {
                 self.root = Some(above[0].0);
+                self.size -= size_of_box(&above[0].1);
             }
             below = above;
             level += 1;
         }
+        self.least_size = self.size;
     }
 
     /// Coordinates count from the middle of all boxes, in a unit in which `f32` overflows last.
@@ -202,26 +156,32 @@ impl BodyTree {
         };
     }
 
-    /// A box in the frame, rounded outwards: at least one step further than the rounded value. It is finite, so that an empty lane
+    /// A box in the frame, rounded outwards: by the step in which the conversion rounds, or two. It is finite, so that an empty lane
     /// never overlaps it; what lies beyond the range of `f32` lies on its end.
-    fn place(&self, bounds: &Aabb) -> Box32 {
-        let at = |c: f64, k: usize| ((c - self.origin[k]) * self.scale) as f32;
-        let within = |c: f32| c.clamp(f32::MIN, f32::MAX);
+    pub(super) fn place(&self, bounds: &Aabb) -> Box32 {
+        let at = |c: f64, k: usize| (((c - self.origin[k]) * self.scale) as f32).clamp(f32::MIN, f32::MAX);
+        let step = |x: f32| x.abs() * f32::EPSILON + f32::from_bits(1);
         Box32 {
-            min: std::array::from_fn(|k| within(at(bounds.min[k], k).next_down())),
-            max: std::array::from_fn(|k| within(at(bounds.max[k], k).next_up())),
+            min: std::array::from_fn(|k| {
+                let x = at(bounds.min[k], k);
+                (x - step(x)).max(f32::MIN)
+            }),
+            max: std::array::from_fn(|k| {
+                let x = at(bounds.max[k], k);
+                (x + step(x)).min(f32::MAX)
+            }),
         }
     }
 
-    fn adopt(&mut self, child: u32, level: u32, parent: u32) {
+    fn adopt(&mut self, child: u32, level: u8, parent: u32) {
         if level == 0 {
-            self.leaf[child as usize] = parent;
+            self.places[child as usize] = parent;
         } else {
             self.nodes[child as usize].parent = parent;
         }
     }
 
-    fn new_node(&mut self, level: u32) -> u32 {
+    fn new_node(&mut self, level: u8) -> u32 {
         match self.free.pop() {
             Some(id) => {
                 self.nodes[id as usize] = Node::empty(level);
@@ -234,20 +194,17 @@ impl BodyTree {
         }
     }
 
-    /// Puts a body into the tree, or elsewhere in it. Cost: O(log n).
-    pub(super) fn put(&mut self, body: u32, bounds: &Aabb) {
-        let to = self.place(bounds);
-        self.changes += 1;
-        if self.contains(body) {
-            let leaf = self.leaf[body as usize] as usize;
-            if let (true, Some(lane)) = (self.is_inside(leaf, &to), self.nodes[leaf].lane_of(body)) {
-                self.nodes[leaf].set_box(lane, &to);
-                return;
-            }
-            self.remove(body);
-        }
-        if self.leaf.len() <= body as usize {
-            self.leaf.resize(body as usize + 1, NONE);
+    /// Gives a node another box in its parent.
+    fn set_box(&mut self, place: u32, to: &Box32) {
+        let node = &mut self.nodes[node_of(place) as usize];
+        self.size += size_of_box(to) - size_of_box(&node.lane_box(lane_in(place)));
+        node.set_box(lane_in(place), to);
+    }
+
+    /// Puts a body that is not in the tree into it. Cost: O(log n).
+    fn insert(&mut self, body: u32, to: &Box32) {
+        if self.places.len() <= body as usize {
+            self.places.resize(body as usize + 1, NONE);
         }
         self.bodies += 1;
         let root = match self.root {
@@ -258,19 +215,8 @@ impl BodyTree {
                 root
             }
         };
-        let leaf = self.descend(root, &to);
-        self.attach(leaf, body, &to);
-    }
-
-    /// Whether a box stays inside what its leaf's parent knows of the leaf.
-    fn is_inside(&self, leaf: usize, to: &Box32) -> bool {
-        let parent = self.nodes[leaf].parent;
-        if parent == NONE {
-            return true;
-        }
-        let parent = &self.nodes[parent as usize];
-        let known = parent.lane_of(leaf as u32).map(|lane| parent.lane_box(lane));
-        known.is_some_and(|known| (0..3).all(|k| known.min[k] <= to.min[k] && to.max[k] <= known.max[k]))
+        let leaf = self.descend(root, to);
+        self.attach(leaf, body, to);
     }
 
     /// The leaf below `node` that grows least by a box; the boxes on the way grow to hold it.
@@ -288,7 +234,7 @@ impl BodyTree {
             let lane = best.map_or(0, |(_, lane)| lane);
             let grown = at.lane_box(lane).union(to);
             let child = at.child[lane];
-            self.nodes[node as usize].set_box(lane, &grown);
+            self.set_box(at_lane(node, lane), &grown);
             node = child;
         }
         node
@@ -297,9 +243,12 @@ impl BodyTree {
     /// Puts a child into a node, which is split if it is full.
     fn attach(&mut self, node: u32, child: u32, to: &Box32) {
         let level = self.nodes[node as usize].level;
+        if level > 0 {
+            self.size += size_of_box(to);
+        }
         if let Some(lane) = self.nodes[node as usize].free_lane() {
             self.nodes[node as usize].set(lane, child, to);
-            self.adopt(child, level, node);
+            self.adopt(child, level, at_lane(node, lane));
             return;
         }
         let full = self.nodes[node as usize].clone();
@@ -313,14 +262,13 @@ impl BodyTree {
         let axis = (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best });
         nine.sort_by(|(_, a), (_, b)| (a.min[axis] + a.max[axis]).total_cmp(&(b.min[axis] + b.max[axis])));
         let other = self.new_node(level);
-        self.nodes[node as usize] = Node {
-            parent: full.parent,
-            ..Node::empty(level)
-        };
+        let mut emptied = Node::empty(level);
+        emptied.parent = full.parent;
+        self.nodes[node as usize] = emptied;
         for (at, (id, b)) in nine.iter().enumerate() {
             let (home, lane) = if at < 4 { (node, at) } else { (other, at - 4) };
             self.nodes[home as usize].set(lane, *id, b);
-            self.adopt(*id, level, home);
+            self.adopt(*id, level, at_lane(home, lane));
         }
         let bounds = [node, other].map(|node| self.nodes[node as usize].bounds());
         if full.parent == NONE {
@@ -328,74 +276,60 @@ impl BodyTree {
             self.root = Some(root);
             for (lane, id) in [node, other].into_iter().enumerate() {
                 self.nodes[root as usize].set(lane, id, &bounds[lane]);
-                self.nodes[id as usize].parent = root;
+                self.nodes[id as usize].parent = at_lane(root, lane);
+                self.size += size_of_box(&bounds[lane]);
             }
         } else {
-            let parent = &mut self.nodes[full.parent as usize];
-            if let Some(lane) = parent.lane_of(node) {
-                parent.set_box(lane, &bounds[0]);
-            }
-            self.attach(full.parent, other, &bounds[1]);
+            self.set_box(full.parent, &bounds[0]);
+            self.attach(node_of(full.parent), other, &bounds[1]);
         }
     }
 
     /// Takes a body out. Cost: O(log n).
     pub(super) fn remove(&mut self, body: u32) {
-        if !self.contains(body) {
+        let Some(mut place) = self.place_of(body) else {
             return;
-        }
-        let mut node = std::mem::replace(&mut self.leaf[body as usize], NONE);
-        let mut child = body;
+        };
+        self.places[body as usize] = NONE;
         self.bodies -= 1;
         loop {
-            let at = &mut self.nodes[node as usize];
-            if let Some(lane) = at.lane_of(child) {
-                at.set(lane, NONE, &Box32::EMPTY);
+            let id = node_of(place);
+            let node = &mut self.nodes[id as usize];
+            if node.level > 0 {
+                self.size -= size_of_box(&node.lane_box(lane_in(place)));
             }
-            let parent = at.parent;
-            if at.child.iter().all(|&child| child == NONE) {
-                self.free.push(node);
-                if parent == NONE {
-                    self.root = None;
-                    return;
-                }
-                (child, node) = (node, parent);
-                continue;
-            }
-            // boxes above may shrink
-            let bounds = at.bounds();
-            if parent == NONE {
+            node.set(lane_in(place), NONE, &Box32::EMPTY);
+            let parent = node.parent;
+            if node.taken() != 0 {
+                self.shrink(id);
                 return;
             }
-            (child, node) = (node, parent);
-            let at = &mut self.nodes[node as usize];
-            if let Some(lane) = at.lane_of(child) {
-                at.set_box(lane, &bounds);
+            self.free.push(id);
+            if parent == NONE {
+                (self.root, self.size, self.least_size) = (None, 0.0, 0.0);
+                return;
             }
-            self.shrink(node);
-            return;
+            place = parent;
         }
     }
 
-    /// Bounds the nodes above `node` as tightly as their children are.
+    /// Bounds a node and those above it as tightly as their children are.
     fn shrink(&mut self, mut node: u32) {
         loop {
             let bounds = self.nodes[node as usize].bounds();
             let parent = self.nodes[node as usize].parent;
-            if parent == NONE {
+            if parent == NONE || self.box_at(parent) == bounds {
                 return;
             }
-            let above = &mut self.nodes[parent as usize];
-            let Some(lane) = above.lane_of(node) else { return };
-            if above.lane_box(lane) == bounds {
-                return;
-            }
-            above.set_box(lane, &bounds);
-            node = parent;
+            self.set_box(parent, &bounds);
+            node = node_of(parent);
         }
     }
 }
 
-#[cfg(test)]
-mod tests;
-mod visits;
+/// The sum of the sides, in double precision, in which it is finite; 0 for the empty box.
+fn size_of_box(b: &Box32) -> f64 {
+    (0..3)
+        .map(|k| (f64::from(b.max[k]) - f64::from(b.min[k])).max(0.0))
+        .sum()
+}

@@ -25,6 +25,7 @@ mod changes;
 mod contact;
 mod count;
 mod deforming;
+mod extent;
 mod filter;
 mod membership;
 mod narrow;
@@ -112,9 +113,8 @@ pub struct World {
     answers: u64,
     log: Log,
     workspaces: Vec<Workspace>,
-    /// The last query of each body for its partners, by slot.
-    marks: Vec<u32>,
-    mark: u32,
+    /// The number of each body among those whose boxes changed last, by slot.
+    numbers: Vec<u32>,
 }
 
 /// Pushes to a list that grows by an eighth, so that little of its room is empty.
@@ -149,8 +149,7 @@ impl World {
             answers: 0,
             log: Log::default(),
             workspaces: vec![Workspace::new(false)],
-            marks: Vec::new(),
-            mark: 0,
+            numbers: Vec::new(),
         }
     }
 
@@ -247,7 +246,7 @@ impl World {
         self.states.capacity() * size_of::<Option<State>>()
             + self.tree.bytes()
             + self.pairs.bytes()
-            + self.marks.capacity() * 4
+            + self.numbers.capacity() * 4
             + (self.unpaired.capacity() + self.dirty.capacity()) * 4
             + self.pending.capacity() * size_of::<Pending>()
             + self.came_from.capacity() * size_of::<(u32, CompactPlacement)>()

@@ -110,11 +110,9 @@ impl Pairs {
             .filter(|(_, record)| record.bodies[0] != NONE)
     }
 
-    /// The same, to be changed.
-    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = (u32, &mut Record)> {
-        (0..)
-            .zip(&mut self.records)
-            .filter(|(_, record)| record.bodies[0] != NONE)
+    /// No record has this number or a greater one.
+    pub(super) fn end(&self) -> u32 {
+        self.records.len() as u32
     }
 
     /// Adds a record, of a body with itself if both are one.

@@ -2,9 +2,10 @@
 
 use super::World;
 use super::body::{BodyId, Motion};
+use super::body_tree::Change;
 use super::pairs::{NONE, Status};
 use super::verlet::VerletList;
-use crate::broad::inflate;
+use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
 use crate::{Aabb, CompactPlacement, Error, Placement};
 
@@ -12,10 +13,6 @@ use crate::{Aabb, CompactPlacement, Error, Placement};
 const FRAMES: f64 = 4.0;
 /// ...but by at most this share of its size.
 const MOST: f64 = 0.25;
-/// The tree is built anew if more than this share of the bodies leave their boxes in a frame.
-const REBUILT: f64 = 0.3;
-/// All pairs of bodies are found anew, in one traversal, if more than this share of the bodies leave their boxes.
-const ALL_PARTNERS: f64 = 0.1;
 /// All records are looked through, in their order in memory, if more than this share of the bodies moves.
 const ALL_RECORDS: f64 = 0.2;
 
@@ -171,35 +168,31 @@ impl World {
                 (known.status, known.slack) = (Status::Stale, None);
             }
         }
-        let mut left = self.move_bodies();
-        let half = self.half_threshold();
-        for slot in std::mem::take(&mut self.unpaired) {
-            left.push((slot, inflate(&self.state(slot).bounds, half)));
+        let many = self.pending.len() as f64 > ALL_RECORDS * self.len() as f64;
+        // the motion of each body by slot, if many move
+        let mut motions = vec![f64::NAN; if many { self.states.len() } else { 0 }];
+        let mut changes = self.move_bodies(&mut motions);
+        self.add_unpaired(&mut changes);
+        if self.tree.is_empty() || self.tree.has_left_frame() {
+            changes = self.build_tree();
+        } else if !changes.is_empty() {
+            self.tree.follow(&mut changes);
         }
-        left.sort_by_key(|(slot, _)| *slot);
-        // of a body that is there twice, the box that predicts its motion comes first
-        left.dedup_by_key(|(slot, _)| *slot);
-        if left.is_empty() {
-            return;
-        }
-        self.put_into_tree(&left);
-        if left.len() as f64 > ALL_PARTNERS * self.len() as f64 {
-            self.find_all_partners();
+        if many {
+            self.go_through_records(&changes, &motions);
         } else {
-            let mut room = Room::default();
-            for (slot, bounds) in &left {
-                self.find_partners(*slot, bounds, &mut room);
-            }
+            self.end_pairs(&changes);
         }
+        self.begin_pairs(&changes);
     }
 
-    /// Moves what moves, and lists the bodies that leave their boxes in the tree with new ones.
-    fn move_bodies(&mut self) -> Vec<(u32, Aabb)> {
+    /// Moves what moves, and lists the bodies that leave their boxes in the tree with new ones. Notes the motion of each, or marks
+    /// its records if there is no room for that.
+    fn move_bodies(&mut self, motions: &mut [f64]) -> Vec<Change> {
         let (frame, half) = (self.frame, self.half_threshold());
-        let mut left = Vec::new();
+        let mut changes = Vec::new();
         let mut pending = std::mem::take(&mut self.pending);
         self.came_from.clear();
-        let many = pending.len() as f64 > ALL_RECORDS * self.len() as f64;
         for Pending { slot, to } in pending.drain(..).filter(|pending| pending.slot != NONE) {
             let state = self.state_mut(slot);
             state.pending = NONE;
@@ -213,38 +206,87 @@ impl World {
             let (new, is_rigid) = (state.bounds, state.deforming.is_none());
             let wanted = inflate(&new, half);
             if !self.tree.holds(slot, &wanted) {
-                left.push((slot, fattened(&wanted, &bounds, &new, motion)));
+                changes.push(Change {
+                    body: slot,
+                    is_recheck: false,
+                    to: self.tree.place(&fattened(&wanted, &bounds, &new, motion)),
+                    before: Box32::EMPTY,
+                });
             }
             if is_rigid && self.predicts {
                 self.came_from.push((slot, (&placement).into()));
             }
-            if !many {
-                self.mark_records(slot, motion);
+            match motions.get_mut(slot as usize) {
+                Some(noted) => *noted = motion,
+                None => self.mark_records(slot, motion),
             }
         }
         self.pending = pending;
-        if many {
-            self.mark_all_records();
-        }
-        left
+        changes
     }
 
-    /// The same as [`World::mark_records`] for every body that has moved.
-    fn mark_all_records(&mut self) {
-        let (pairs, dirty) = (&mut self.pairs, &mut self.dirty);
-        for (id, record) in pairs.iter_mut() {
-            let [one, two] = record.bodies.map(|slot| {
-                let state = self.states[slot as usize].as_ref();
-                state
-                    .filter(|state| state.moved_at == self.frame)
-                    .map(|state| state.motion)
+    /// Adds the bodies whose partners have to be looked for anew.
+    fn add_unpaired(&mut self, changes: &mut Vec<Change>) {
+        if self.unpaired.is_empty() {
+            return;
+        }
+        let half = self.half_threshold();
+        for body in std::mem::take(&mut self.unpaired) {
+            changes.push(Change {
+                body,
+                is_recheck: self.tree.contains(body),
+                to: self.tree.place(&inflate(&self.state(body).bounds, half)),
+                before: Box32::EMPTY,
             });
-            if one.is_some() || two.is_some() {
-                let motion = one.unwrap_or(0.0) + two.unwrap_or(0.0);
-                record.has_moved(motion);
+        }
+        changes.sort_by_key(|change| change.body);
+        // of a body that is there twice, the box that predicts its motion comes first
+        changes.dedup_by(|again, first| {
+            let is_same = again.body == first.body;
+            first.is_recheck |= is_same && again.is_recheck;
+            is_same
+        });
+    }
+
+    /// Builds the tree over bodies anew, in another frame.
+    fn build_tree(&mut self) -> Vec<Change> {
+        let half = self.half_threshold();
+        let states = (0..).zip(&self.states);
+        let boxes: Vec<(u32, Aabb)> = states
+            .filter_map(|(slot, state)| Some((slot, inflate(&state.as_ref()?.bounds, half))))
+            .collect();
+        let change = |&(body, _): &(u32, Aabb)| Change {
+            body,
+            is_recheck: self.tree.contains(body),
+            to: Box32::EMPTY,
+            before: Box32::EMPTY,
+        };
+        let changes = boxes.iter().map(change).collect();
+        self.tree.build(&boxes);
+        changes
+    }
+
+    /// Marks the records of all bodies that have moved, and takes out those whose boxes are apart now.
+    fn go_through_records(&mut self, changes: &[Change], motions: &[f64]) {
+        let mut has_changed = vec![false; self.states.len()];
+        for change in changes {
+            has_changed[change.body as usize] = true;
+        }
+        for id in 0..self.pairs.end() {
+            if !self.pairs.contains(id) {
+                continue;
+            }
+            let record = &mut self.pairs[id];
+            let [a, b] = record.bodies.map(|slot| slot as usize);
+            let (one, two) = (motions[a], motions[b]);
+            if !(one.is_nan() && two.is_nan()) {
+                record.has_moved(one.max(0.0) + two.max(0.0));
                 if !std::mem::replace(&mut record.is_dirty, true) {
-                    dirty.push(id);
+                    self.dirty.push(id);
                 }
+            }
+            if (has_changed[a] || has_changed[b]) && a != b && !self.tree.overlap(a as u32, b as u32) {
+                self.remove_record(id);
             }
         }
     }
@@ -273,110 +315,56 @@ impl World {
         self.threshold.get() * 0.5 * (1.0 + 1e-9)
     }
 
-    fn put_into_tree(&mut self, left: &[(u32, Aabb)]) {
-        let many = left.len() as f64 > REBUILT * self.len() as f64;
-        if !many && !self.tree.is_worn() {
-            for (slot, bounds) in left {
-                self.tree.put(*slot, bounds);
+    /// Takes out the records of changed bodies whose boxes are apart now.
+    fn end_pairs(&mut self, changes: &[Change]) {
+        for change in changes {
+            let mut member = self.pairs.first(change.body);
+            while member != NONE {
+                let record = member / 2;
+                let [a, b] = self.pairs[record].bodies;
+                member = self.pairs.next(member);
+                if a != b && !self.tree.overlap(a, b) {
+                    self.remove_record(record);
+                }
             }
+        }
+    }
+
+    /// Adds records for bodies whose boxes meet now and did not before. Two bodies that may collide have a record if their boxes in
+    /// the tree meet, so that the boxes tell whether there was one.
+    fn begin_pairs(&mut self, changes: &[Change]) {
+        if changes.is_empty() {
             return;
         }
-        let half = self.half_threshold();
-        let mut moved = left.iter().copied().peekable();
-        let mut boxes = Vec::with_capacity(self.len());
-        for (slot, state) in (0..).zip(&self.states) {
-            let Some(state) = state else { continue };
-            let new = moved.next_if(|(other, _)| *other == slot);
-            boxes.push(new.unwrap_or_else(|| (slot, inflate(&state.bounds, half))));
+        let mut numbers = std::mem::take(&mut self.numbers);
+        numbers.resize(self.states.len(), 0);
+        for (number, change) in (0..).zip(changes) {
+            numbers[change.body as usize] = number;
         }
-        self.tree.build(&boxes);
-    }
-
-    /// Brings the records of all bodies in line with the tree: one traversal, and one sort of what was known and what meets now.
-    fn find_all_partners(&mut self) {
-        let mut known: Vec<([u32; 2], u32)> = self
-            .pairs
-            .iter()
-            .filter(|(_, record)| record.bodies[0] != record.bodies[1])
-            .map(|(id, record)| (ordered(record.bodies), id))
-            .collect();
-        known.sort_unstable();
-        let mut met: Vec<[u32; 2]> = Vec::with_capacity(known.len());
-        self.tree.pairs(|a, b| met.push(ordered([a, b])));
-        if !known.is_empty() {
-            met.sort_unstable();
-        }
-        let mut known = known.into_iter().peekable();
-        for bodies in met {
-            while let Some((_, record)) = known.next_if(|(other, _)| *other < bodies) {
-                self.remove_record(record);
-            }
-            let mut is_known = false;
-            while known.next_if(|(other, _)| *other == bodies).is_some() {
-                is_known = true;
-            }
-            let [a, b] = bodies;
-            if !is_known && self.collides(a, b) {
+        let tree = std::mem::take(&mut self.tree);
+        tree.changed_pairs(|a, b| {
+            let [one, two] = [a, b].map(|body| {
+                let change = changes.get(numbers[body as usize] as usize);
+                change.filter(|change| change.body == body)
+            });
+            let had_record = if [one, two].into_iter().flatten().any(|change| change.is_recheck) {
+                self.pairs
+                    .of(a)
+                    .any(|record| self.pairs[record].bodies.contains(&b))
+            } else {
+                let before = |change: Option<&Change>, body| {
+                    change.map_or_else(|| tree.box_of(body), |change| change.before)
+                };
+                before(one, a).overlaps(&before(two, b))
+            };
+            if !had_record && self.collides(a, b) {
                 self.pair_up(a, b);
             }
-        }
-        for (_, record) in known {
-            self.remove_record(record);
-        }
-    }
-
-    /// Brings the records of a body that has another box in line with the tree.
-    fn find_partners(&mut self, slot: u32, bounds: &Aabb, room: &mut Room) {
-        if self.marks.len() < self.states.len() {
-            self.marks.resize(self.states.len(), 0);
-        }
-        if self.mark == u32::MAX {
-            self.marks.fill(0);
-            self.mark = 0;
-        }
-        self.mark += 1;
-        let mark = self.mark;
-        self.marks[slot as usize] = mark;
-        let mut member = self.pairs.first(slot);
-        while member != NONE {
-            let record = member / 2;
-            let [a, b] = self.pairs[record].bodies;
-            member = self.pairs.next(member);
-            if a == b {
-                continue;
-            }
-            let other = if a == slot { b } else { a };
-            if self.tree.overlap(a, b) {
-                self.marks[other as usize] = mark;
-            } else {
-                self.remove_record(record);
-            }
-        }
-        room.partners.clear();
-        let (marks, partners) = (&mut self.marks, &mut room.partners);
-        self.tree.overlapping(bounds, &mut room.stack, |other| {
-            if std::mem::replace(&mut marks[other as usize], mark) != mark {
-                partners.push(other);
-            }
         });
-        for &other in &room.partners {
-            if self.collides(slot, other) {
-                self.pair_up(slot, other);
-            }
-        }
+        self.tree = tree;
+        self.tree.forget_changes();
+        self.numbers = numbers;
     }
-}
-
-/// Two bodies, the lower one first.
-fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
-/// Room for the queries of a frame.
-#[derive(Default)]
-struct Room {
-    stack: Vec<u32>,
-    partners: Vec<u32>,
 }
 
 /// A box that will hold a body for some frames if it goes on as from `old` to `new`, and for about one if it turns.

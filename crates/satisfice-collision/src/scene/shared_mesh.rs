@@ -2,8 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::extent::Extent;
 use crate::broad::FeatureTree;
-use crate::{Aabb, FeatureKind, Mesh};
+use crate::{FeatureKind, Mesh};
 
 /// A mesh that any number of bodies can share: it and its trees are kept once, whatever the number of copies.
 ///
@@ -28,7 +29,7 @@ pub struct SharedMesh(Arc<Inner>);
 #[derive(Debug)]
 struct Inner {
     mesh: Mesh,
-    bounds: Aabb,
+    extent: Extent,
     trees: [OnceLock<FeatureTree>; 3],
 }
 
@@ -46,8 +47,8 @@ impl SharedMesh {
     }
 
     /// The box of the vertices.
-    pub(super) fn bounds(&self) -> &Aabb {
-        &self.0.bounds
+    pub(super) fn extent(&self) -> &Extent {
+        &self.0.extent
     }
 
     /// The tree over features of this kind, built at the first call.
@@ -64,7 +65,7 @@ impl SharedMesh {
 impl From<Mesh> for SharedMesh {
     fn from(mesh: Mesh) -> Self {
         Self(Arc::new(Inner {
-            bounds: mesh.bounds(),
+            extent: Extent::new(mesh.bounds()),
             mesh,
             trees: Default::default(),
         }))

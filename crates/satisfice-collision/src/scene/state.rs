@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::SharedMesh;
 use super::body::{Body, Motion};
 use super::deforming::Deforming;
+use super::extent::largest;
 use super::pairs::NONE;
 use crate::broad::{BlockBounds, Dirty, FeatureTree};
 use crate::mesh::Point;
@@ -35,7 +36,7 @@ pub(super) struct State {
 
 impl State {
     pub(super) fn new(body: Body, generation: u32) -> Result<Self, Error> {
-        let bounds = posed_bounds(body.mesh.bounds(), &body.placement);
+        let bounds = body.mesh.extent().posed(&body.placement);
         check(&body.mesh, &body.placement, &bounds)?;
         let deforming =
             (body.motion == Motion::Deforming).then(|| Box::new(Deforming::new(body.mesh.mesh(), body.ring)));
@@ -58,12 +59,11 @@ impl State {
 
     /// Refuses a placement that takes a vertex out of the range of numbers.
     pub(super) fn check_placement(&self, placement: &Placement) -> Result<(), Error> {
-        let local = self.mesh.bounds();
-        let farthest = largest(&local.min) + largest(&local.max);
-        if (4.0 * farthest + largest(&placement.translation())).is_finite() {
+        let extent = self.mesh.extent();
+        if extent.stays_finite(placement) {
             return Ok(());
         }
-        check(&self.mesh, placement, &posed_bounds(local, placement))
+        check(&self.mesh, placement, &extent.posed(placement))
     }
 
     /// Goes to a placement. Returns how far no vertex moves, or `None` if it is there already.
@@ -71,8 +71,9 @@ impl State {
         if *placement == self.placement {
             return None;
         }
-        let motion = farthest(self.mesh.bounds(), &self.placement, placement);
-        self.bounds = posed_bounds(self.mesh.bounds(), placement);
+        let extent = self.mesh.extent();
+        let motion = extent.motion(&self.placement, placement);
+        self.bounds = extent.posed(placement);
         self.placement = *placement;
         self.rests = *placement == Placement::IDENTITY;
         Some(motion)
@@ -176,18 +177,14 @@ impl State {
     pub(super) fn away_from(&self, placement: &Placement) -> f64 {
         match *placement == self.placement {
             true => 0.0,
-            false => farthest(self.mesh.bounds(), placement, &self.placement),
+            false => self.mesh.extent().motion(placement, &self.placement),
         }
     }
 
     /// No coordinate of a rigid body, before or after its placement, is larger.
     pub(super) fn extent(&self) -> f64 {
-        let local = self.mesh.bounds();
-        [&local.min, &local.max, &self.bounds.min, &self.bounds.max]
-            .map(largest)
-            .iter()
-            .sum::<f64>()
-            + largest(&self.placement.translation())
+        let [min, max] = [&self.bounds.min, &self.bounds.max].map(largest);
+        self.mesh.extent().size() + min + max + largest(&self.placement.translation())
     }
 
     /// How many features of a kind there are.
@@ -212,53 +209,4 @@ fn check(mesh: &SharedMesh, placement: &Placement, bounds: &Aabb) -> Result<(), 
         }
     }
     Ok(())
-}
-
-fn largest(v: &[f64; 3]) -> f64 {
-    v.iter().fold(0.0_f64, |most, c| most.max(c.abs()))
-}
-
-/// A rotated box has its rotated centre, and half sides by the absolute matrix; posing rounds in proportion to the lengths
-/// involved.
-fn posed_bounds(local: &Aabb, placement: &Placement) -> Aabb {
-    if *placement == Placement::IDENTITY {
-        return *local;
-    }
-    let slack = rounding(local, placement);
-    let rotation = placement.rotation();
-    let centre = std::array::from_fn(|k| local.min[k] / 2.0 + local.max[k] / 2.0);
-    let half: Point = std::array::from_fn(|k| local.max[k] / 2.0 - local.min[k] / 2.0);
-    let centre = placement.apply(centre);
-    let side = |i: usize| {
-        let [x, y, z] = rotation[i];
-        x.abs() * half[0] + y.abs() * half[1] + z.abs() * half[2] + slack
-    };
-    Aabb {
-        min: std::array::from_fn(|i| centre[i] - side(i)),
-        max: std::array::from_fn(|i| centre[i] + side(i)),
-    }
-}
-
-fn corners(local: &Aabb) -> [Point; 8] {
-    let sides = [local.min, local.max];
-    std::array::from_fn(|c| [sides[c & 1][0], sides[c >> 1 & 1][1], sides[c >> 2][2]])
-}
-
-fn rounding(local: &Aabb, placement: &Placement) -> f64 {
-    1e-14 * (largest(&local.min) + largest(&local.max) + largest(&placement.translation()))
-}
-
-/// How far no point of a box is from itself in two placements: the way is an affine function of the point, so that it is
-/// longest at a corner.
-fn farthest(local: &Aabb, one: &Placement, two: &Placement) -> f64 {
-    let square = |corner: Point| -> f64 {
-        let (old, new) = (one.apply(corner), two.apply(corner));
-        (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum()
-    };
-    let square = if one.rotation() == two.rotation() {
-        square(local.min)
-    } else {
-        corners(local).into_iter().map(square).fold(0.0, f64::max)
-    };
-    square.sqrt() * (1.0 + 1e-12) + 4.0 * (rounding(local, one) + rounding(local, two)) + 1e-153
 }

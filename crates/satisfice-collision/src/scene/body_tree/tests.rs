@@ -4,6 +4,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 use super::*;
+use crate::broad::inflate;
 
 fn meets(a: &Aabb, b: &Aabb) -> bool {
     (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
@@ -28,15 +29,68 @@ impl Boxes {
         Aabb { min, max }
     }
 
-    /// What the tree says holds everything that the list says, and little else.
-    fn check(&mut self) {
-        let all: Vec<(u32, Aabb)> = (0..)
+    /// Gives bodies other boxes, as a world does, and checks the pairs that are told.
+    fn change(&mut self, to: &[(u32, Aabb)]) {
+        let before: Vec<Box32> = (0..self.known.len() as u32)
+            .map(|n| self.tree.box_of(n))
+            .collect();
+        let mut changes: Vec<Change> = to
+            .iter()
+            .map(|(body, bounds)| Change {
+                body: *body,
+                is_recheck: false,
+                to: self.tree.place(bounds),
+                before: Box32::EMPTY,
+            })
+            .collect();
+        let is_new = self.tree.is_empty() || self.tree.has_left_frame();
+        if is_new {
+            for (n, bounds) in to {
+                self.known[*n as usize] = Some(*bounds);
+            }
+            let all: Vec<(u32, Aabb)> = self.all();
+            self.tree.build(&all);
+        } else {
+            self.tree.follow(&mut changes);
+            for change in &changes {
+                assert_eq!(change.before, before[change.body as usize]);
+                assert_eq!(self.tree.box_of(change.body), change.to);
+            }
+        }
+        for (n, bounds) in to {
+            self.known[*n as usize] = Some(*bounds);
+        }
+        let mut told = Vec::new();
+        self.tree.changed_pairs(|a, b| told.push((a.min(b), a.max(b))));
+        self.tree.forget_changes();
+        told.sort_unstable();
+        assert!(told.is_sorted_by(|a, b| a < b), "each once");
+        let is_changed = |n: u32| is_new || changes.iter().any(|change| change.body == n);
+        let all = self.all();
+        let mut expected = Vec::new();
+        for (at, &(n, _)) in all.iter().enumerate() {
+            for &(m, _) in &all[at + 1..] {
+                if (is_changed(n) || is_changed(m)) && self.tree.overlap(n, m) {
+                    expected.push((n, m));
+                }
+            }
+        }
+        assert_eq!(told, expected);
+    }
+
+    fn all(&self) -> Vec<(u32, Aabb)> {
+        (0..)
             .zip(&self.known)
             .filter_map(|(n, b)| b.map(|b| (n, b)))
-            .collect();
+            .collect()
+    }
+
+    /// What the tree says holds everything that the list says, and little else.
+    fn check(&mut self) {
+        let all = self.all();
         assert_eq!(self.tree.bodies, all.len());
         let slack = 1e-5 * (self.size + self.shift.abs());
-        let near = |a: &Aabb, b: &Aabb| meets(a, &crate::broad::inflate(b, slack));
+        let near = |a: &Aabb, b: &Aabb| meets(a, &inflate(b, slack));
         let mut stack = Vec::new();
         for _ in 0..5 {
             let question = self.any();
@@ -51,18 +105,11 @@ impl Boxes {
                 assert!(!is_found || near(b, &question));
             }
         }
-        let mut pairs = Vec::new();
-        self.tree.pairs(|a, b| pairs.push((a.min(b), a.max(b))));
-        pairs.sort_unstable();
-        assert!(pairs.is_sorted_by(|a, b| a < b), "each once");
         for (at, (n, a)) in all.iter().enumerate() {
             for (m, b) in &all[at + 1..] {
-                let is_found = pairs.binary_search(&(*n, *m)).is_ok();
-                assert_eq!(is_found, self.tree.overlap(*n, *m));
-                assert!(is_found || !meets(a, b));
+                assert!(self.tree.overlap(*n, *m) || !meets(a, b));
             }
         }
-        assert!(pairs.iter().all(|(a, b)| a != b));
         for (n, b) in &all {
             assert!(self.tree.holds(*n, b));
         }
@@ -79,26 +126,31 @@ fn a_changing_tree_finds_what_a_list_finds() {
             size,
             shift,
         };
-        let first: Vec<(u32, Aabb)> = (0..70).map(|n| (n, boxes.any())).collect();
-        boxes.known = first.iter().map(|(_, b)| Some(*b)).collect();
         boxes.known.resize(150, None);
-        boxes.tree.build(&first);
+        let first: Vec<(u32, Aabb)> = (0..70).map(|n| (n, boxes.any())).collect();
+        boxes.change(&first);
         boxes.check();
         for round in 0..300 {
-            for _ in 0..4 {
+            let mut to = Vec::new();
+            for _ in 0..[4, 4, 90][round % 3] {
                 let body = boxes.rng.next_u32() % 150;
-                let to = boxes.any();
-                match boxes.rng.next_u32() % 3 {
-                    0 => {
-                        boxes.tree.remove(body);
-                        boxes.known[body as usize] = None;
-                    }
-                    _ => {
-                        boxes.tree.put(body, &to);
-                        boxes.known[body as usize] = Some(to);
-                    }
+                let known = boxes.known[body as usize];
+                let next = match known {
+                    // near, so that it stays in its leaf
+                    Some(known) if boxes.unit() < 0.7 => inflate(&known, 0.01 * size),
+                    _ => boxes.any(),
+                };
+                if boxes.unit() < 0.2 {
+                    boxes.tree.remove(body);
+                    boxes.known[body as usize] = None;
+                } else {
+                    to.push((body, next));
                 }
             }
+            to.retain(|(body, _)| round % 2 == 0 || boxes.known[*body as usize].is_some());
+            to.sort_by_key(|(body, _)| *body);
+            to.dedup_by_key(|(body, _)| *body);
+            boxes.change(&to);
             if round % 10 == 0 {
                 boxes.check();
             }
@@ -111,21 +163,41 @@ fn a_changing_tree_finds_what_a_list_finds() {
         boxes.check();
         for body in 0..20 {
             let to = boxes.any();
-            boxes.tree.put(body, &to);
-            boxes.known[body as usize] = Some(to);
+            boxes.change(&[(body, to)]);
         }
         boxes.check();
+        // far away, where the frame is too coarse
+        for body in 0..20 {
+            let to = boxes.any();
+            let far = |c: [f64; 3]| c.map(|c| c + 1e5 * size);
+            let to = Aabb {
+                min: far(to.min),
+                max: far(to.max),
+            };
+            boxes.change(&[(body, to)]);
+        }
+        let to = boxes.any();
+        boxes.change(&[(0, to)]);
     }
 }
 
 #[test]
 fn boxes_in_one_place_are_all_found() {
     let one = Aabb::point([0.25; 3]);
-    let mut tree = BodyTree::default();
+    let mut boxes = Boxes {
+        rng: Xoshiro256PlusPlus::seed_from_u64(7),
+        tree: BodyTree::default(),
+        known: vec![None; 100],
+        size: 1.0,
+        shift: 0.0,
+    };
     for body in 0..100 {
-        tree.put(body, &one);
+        boxes.change(&[(body, one)]);
     }
     let mut pairs = 0;
-    tree.pairs(|_, _| pairs += 1);
+    boxes.change(&(0..100).map(|body| (body, one)).collect::<Vec<_>>());
+    for a in 0..100 {
+        pairs += (0..a).filter(|&b| boxes.tree.overlap(a, b)).count();
+    }
     assert_eq!(pairs, 100 * 99 / 2);
 }

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::{BodyTree, NONE, lanes};
+use super::{BodyTree, lanes};
 use crate::Aabb;
 use crate::broad::{Box32, Slabs};
 use crate::simd::{Lanes, Work, dispatch};
@@ -29,7 +29,12 @@ impl BodyTree {
         // of equal gaps, the pair nearest to the bodies first: few wait
         let mut open: BinaryHeap<Reverse<(u32, u32, u32, u32)>> = BinaryHeap::new();
         if let Some(root) = self.root {
-            open.push(Reverse((0, self.nodes[root as usize].level + 1, root, root)));
+            open.push(Reverse((
+                0,
+                u32::from(self.nodes[root as usize].level) + 1,
+                root,
+                root,
+            )));
         }
         while let Some(Reverse((gap, height, a, b))) = open.pop() {
             if self.way(gap) > reach {
@@ -69,7 +74,7 @@ impl BodyTree {
         let mut reach = f64::INFINITY;
         let mut open: BinaryHeap<Reverse<(u32, u32, u32)>> = BinaryHeap::new();
         if let Some(root) = self.root {
-            open.push(Reverse((0, self.nodes[root as usize].level + 1, root)));
+            open.push(Reverse((0, u32::from(self.nodes[root as usize].level) + 1, root)));
         }
         while let Some(Reverse((gap, height, at))) = open.pop() {
             if self.way(gap) > reach {
@@ -102,7 +107,7 @@ impl BodyTree {
         let mut bound = 1.0;
         let mut open: BinaryHeap<Reverse<(u64, u32, u32)>> = BinaryHeap::new();
         if let Some(root) = self.root {
-            open.push(Reverse((0, self.nodes[root as usize].level + 1, root)));
+            open.push(Reverse((0, u32::from(self.nodes[root as usize].level) + 1, root)));
         }
         while let Some(Reverse((entry, height, at))) = open.pop() {
             if f64::from_bits(entry) > bound {
@@ -130,30 +135,15 @@ impl BodyTree {
         (gap * (1.0 - 1e-6)).max(0.0) / self.scale
     }
 
-    /// Whether the box with which a body was put into the tree still holds `bounds`.
+    /// Whether the box of a body in the tree holds `bounds`.
     pub(in crate::scene) fn holds(&self, body: u32, bounds: &Aabb) -> bool {
-        let Some(&leaf) = self.leaf.get(body as usize).filter(|&&leaf| leaf != NONE) else {
-            return false;
-        };
-        let (leaf, b) = (&self.nodes[leaf as usize], self.place(bounds));
-        let known = leaf.lane_of(body).map(|lane| leaf.lane_box(lane));
-        known.is_some_and(|known| (0..3).all(|k| known.min[k] <= b.min[k] && b.max[k] <= known.max[k]))
+        let (known, b) = (self.box_of(body), self.place(bounds));
+        (0..3).all(|k| known.min[k] <= b.min[k] && b.max[k] <= known.max[k])
     }
 
     /// Whether the boxes of two bodies in the tree overlap.
     pub(in crate::scene) fn overlap(&self, a: u32, b: u32) -> bool {
-        let of = |body: u32| {
-            let leaf = &self.nodes[self.leaf[body as usize] as usize];
-            leaf.lane_of(body)
-                .map_or(Box32::EMPTY, |lane| leaf.lane_box(lane))
-        };
-        let (a, b) = (of(a), of(b));
-        (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
-    }
-
-    /// Visits every pair of bodies whose boxes overlap, each once.
-    pub(in crate::scene) fn pairs(&self, visit: impl FnMut(u32, u32)) {
-        dispatch(OverlappingPairs { tree: self, visit });
+        self.box_of(a).overlaps(&self.box_of(b))
     }
 }
 
@@ -177,37 +167,6 @@ impl<V: FnMut(u32)> Work for Overlapping<'_, V> {
                 match at.level {
                     0 => (self.visit)(at.child[lane]),
                     _ => self.stack.push(at.child[lane]),
-                }
-            }
-        }
-    }
-}
-
-struct OverlappingPairs<'a, V> {
-    tree: &'a BodyTree,
-    visit: V,
-}
-
-impl<V: FnMut(u32, u32)> Work for OverlappingPairs<'_, V> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(mut self, unit: L) {
-        let nodes = &self.tree.nodes;
-        let mut stack: Vec<(u32, u32)> = self.tree.root.map(|root| (root, root)).into_iter().collect();
-        while let Some((a, b)) = stack.pop() {
-            let (one, two) = (&nodes[a as usize], &nodes[b as usize]);
-            for (lane, child) in one.children() {
-                let mut mask = two.overlaps(unit, &one.lane_box(lane));
-                if a == b {
-                    // each pair once; a node with itself for its descendants, but no body
-                    mask &= u32::MAX << (lane + usize::from(one.level == 0));
-                }
-                for other in lanes(mask) {
-                    match one.level {
-                        0 => (self.visit)(child, two.child[other]),
-                        _ => stack.push((child, two.child[other])),
-                    }
                 }
             }
         }

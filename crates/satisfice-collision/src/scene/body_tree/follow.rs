@@ -1,0 +1,179 @@
+//! Boxes that change: many at once, from the bottom up, and which of them meet what they did not meet before.
+
+use super::{BodyTree, NONE, lane_in, lanes, node_of, size_of_box};
+use crate::broad::Box32;
+use crate::simd::{Lanes, Work, dispatch};
+
+/// The tree is built anew if its boxes have grown to so many times their size since it was built...
+const GROWN: f64 = 1.5;
+/// ...or if more than this share of the bodies have to be put elsewhere in a frame.
+const REBUILT: f64 = 0.3;
+/// A body stays in its leaf unless the leaf grows to more than so many times its size.
+const STAYS: f32 = 1.5;
+
+/// A body whose box changes, or whose partners have to be looked for anew.
+#[derive(Clone, Copy)]
+pub(in crate::scene) struct Change {
+    pub(in crate::scene) body: u32,
+    /// Whether it may have partners that it had not before although no box has changed.
+    pub(in crate::scene) is_recheck: bool,
+    /// Its next box in the tree.
+    pub(in crate::scene) to: Box32,
+    /// The one before; empty for a body that was not in the tree.
+    pub(in crate::scene) before: Box32,
+}
+
+impl BodyTree {
+    /// Whether the tree is empty, so that a frame has to be chosen for it.
+    pub(in crate::scene) fn is_empty(&self) -> bool {
+        self.root.is_none()
+    }
+
+    /// Gives bodies other boxes, and notes what their boxes were. A body is among `changes` once. Cost: linear in the changes, and
+    /// logarithmic in the bodies.
+    pub(in crate::scene) fn follow(&mut self, changes: &mut [Change]) {
+        let mut strangers = 0;
+        for change in changes.iter_mut() {
+            change.before = self.box_of(change.body);
+            strangers += usize::from(!self.stays(change));
+        }
+        let is_worn = self.moves + strangers > 4 * self.bodies + 64;
+        let has_grown = self.size > GROWN * self.least_size;
+        if is_worn || has_grown || strangers as f64 > REBUILT * self.bodies as f64 {
+            self.rebuild(changes);
+        } else if strangers > 0 {
+            // first, so that lanes are what they will be
+            self.moves += strangers;
+            for change in changes.iter() {
+                if !self.stays(change) {
+                    self.remove(change.body);
+                    self.insert(change.body, &change.to);
+                }
+            }
+        }
+        self.changed.clear();
+        for change in changes.iter() {
+            if let Some(place) = self.place_of(change.body) {
+                let node = &mut self.nodes[node_of(place) as usize];
+                node.set_box(lane_in(place), &change.to);
+                self.mark(place);
+            }
+        }
+        let mut next = 0;
+        // leaves, then the nodes above them: all leaves have one depth
+        while let Some(&node) = self.changed.get(next) {
+            next += 1;
+            let parent = self.nodes[node as usize].parent;
+            if parent != NONE {
+                let bounds = self.nodes[node as usize].bounds();
+                self.set_box(parent, &bounds);
+                self.mark(parent);
+            }
+        }
+        self.least_size = self.least_size.min(self.size);
+    }
+
+    /// Notes that a box has changed.
+    fn mark(&mut self, place: u32) {
+        let node = &mut self.nodes[node_of(place) as usize];
+        if node.changed == 0 {
+            self.changed.push(node_of(place));
+        }
+        node.changed |= 1 << lane_in(place);
+    }
+
+    /// Whether the leaf of a body can hold its next box.
+    fn stays(&self, change: &Change) -> bool {
+        let Some(place) = self.place_of(change.body) else {
+            return false;
+        };
+        let parent = self.nodes[node_of(place) as usize].parent;
+        if parent == NONE {
+            return true;
+        }
+        let known = self.box_at(parent);
+        known.union(&change.to).sum_of_sides() <= STAYS * known.sum_of_sides()
+    }
+
+    /// Builds the tree anew in its frame.
+    fn rebuild(&mut self, changes: &[Change]) {
+        let mut boxes = Vec::with_capacity(self.bodies + changes.len());
+        for change in changes {
+            match self.place_of(change.body) {
+                Some(place) => self.nodes[node_of(place) as usize].set_box(lane_in(place), &change.to),
+                None => boxes.push((change.body, change.to)),
+            }
+        }
+        for (body, &place) in (0..).zip(&self.places) {
+            if place != NONE {
+                boxes.push((body, self.box_at(place)));
+            }
+        }
+        self.arrange(&boxes);
+    }
+
+    /// Whether the boxes lie so far from the middle of the frame that another frame would hold them better.
+    pub(in crate::scene) fn has_left_frame(&self) -> bool {
+        let Some(root) = self.root else { return false };
+        let whole = self.nodes[root as usize].bounds();
+        let farthest = (0..3).fold(0.0, |most: f64, k| {
+            most.max(f64::from(whole.max[k]).abs())
+                .max(f64::from(whole.min[k]).abs())
+        });
+        farthest > 64.0 * size_of_box(&whole) || farthest > 1e30
+    }
+
+    /// Visits every pair of overlapping boxes of which one has changed at the last [`follow`](Self::follow), each once.
+    pub(in crate::scene) fn changed_pairs(&self, visit: impl FnMut(u32, u32)) {
+        dispatch(ChangedPairs { tree: self, visit });
+    }
+
+    /// No box counts as changed any more.
+    pub(in crate::scene) fn forget_changes(&mut self) {
+        for node in self.changed.drain(..) {
+            self.nodes[node as usize].changed = 0;
+        }
+    }
+}
+
+struct ChangedPairs<'a, V> {
+    tree: &'a BodyTree,
+    visit: V,
+}
+
+impl<V: FnMut(u32, u32)> Work for ChangedPairs<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, unit: L) {
+        let nodes = &self.tree.nodes;
+        let mut stack: Vec<(u32, u32)> = self.tree.root.map(|root| (root, root)).into_iter().collect();
+        while let Some((a, b)) = stack.pop() {
+            let (one, two) = (&nodes[a as usize], &nodes[b as usize]);
+            let mut meet = |a: u32, b: u32| match one.level {
+                0 => (self.visit)(a, b),
+                _ => stack.push((a, b)),
+            };
+            let changed = [u32::from(one.changed), u32::from(two.changed)];
+            for lane in lanes(changed[0]) {
+                let mut mask = two.overlaps(unit, &one.lane_box(lane));
+                if a == b {
+                    // each pair once; a node with itself for its descendants, but no body
+                    let later = u32::MAX << (lane + usize::from(one.level == 0));
+                    mask &= later | !changed[0];
+                }
+                for other in lanes(mask) {
+                    meet(one.child[lane], two.child[other]);
+                }
+            }
+            if a != b {
+                for lane in lanes(changed[1]) {
+                    let mask = one.overlaps(unit, &two.lane_box(lane)) & !changed[0];
+                    for other in lanes(mask) {
+                        meet(one.child[other], two.child[lane]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The box of a mesh, and what placements make of it.
+
+use crate::mesh::Point;
+use crate::{Aabb, Placement};
+
+/// The box of the vertices in the coordinates of the mesh.
+#[derive(Debug)]
+pub(super) struct Extent {
+    bounds: Aabb,
+    centre: Point,
+    /// Half of its sides.
+    half: Point,
+    /// The largest coordinates of its two corners, added up.
+    size: f64,
+}
+
+impl Extent {
+    pub(super) fn new(bounds: Aabb) -> Self {
+        Self {
+            centre: std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0),
+            half: std::array::from_fn(|k| bounds.max[k] / 2.0 - bounds.min[k] / 2.0),
+            size: largest(&bounds.min) + largest(&bounds.max),
+            bounds,
+        }
+    }
+
+    /// At least the largest coordinate.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Whether no vertex leaves the range of numbers, as far as that is seen at once.
+    pub(super) fn stays_finite(&self, placement: &Placement) -> bool {
+        (4.0 * self.size + largest(&placement.translation())).is_finite()
+    }
+
+    /// A box that holds the posed vertices. A rotated box has its rotated centre, and half sides by the absolute matrix; posing
+    /// rounds in proportion to the lengths involved.
+    pub(super) fn posed(&self, placement: &Placement) -> Aabb {
+        if *placement == Placement::IDENTITY {
+            return self.bounds;
+        }
+        let slack = self.rounding(placement);
+        let rotation = placement.rotation();
+        let centre = placement.apply(self.centre);
+        let sides: Point = std::array::from_fn(|i| {
+            let [x, y, z] = rotation[i];
+            x.abs() * self.half[0] + y.abs() * self.half[1] + z.abs() * self.half[2] + slack
+        });
+        Aabb {
+            min: std::array::from_fn(|i| centre[i] - sides[i]),
+            max: std::array::from_fn(|i| centre[i] + sides[i]),
+        }
+    }
+
+    /// How far no vertex is from itself in two placements: the way is an affine function of the point, so that it is
+    /// longest at a corner, and the same everywhere without a turn.
+    pub(super) fn motion(&self, one: &Placement, two: &Placement) -> f64 {
+        let square =
+            |old: Point, new: Point| -> f64 { (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum() };
+        let square = if one.rotation() == two.rotation() {
+            square(one.translation(), two.translation())
+        } else {
+            let ways = self
+                .corners()
+                .map(|corner| square(one.apply(corner), two.apply(corner)));
+            ways.into_iter().fold(0.0, f64::max)
+        };
+        square.sqrt() * (1.0 + 1e-12) + 4.0 * (self.rounding(one) + self.rounding(two)) + 1e-153
+    }
+
+    fn corners(&self) -> [Point; 8] {
+        let sides = [self.bounds.min, self.bounds.max];
+        std::array::from_fn(|c| [sides[c & 1][0], sides[c >> 1 & 1][1], sides[c >> 2][2]])
+    }
+
+    fn rounding(&self, placement: &Placement) -> f64 {
+        1e-14 * (self.size + largest(&placement.translation()))
+    }
+}
+
+/// The largest absolute coordinate.
+pub(super) fn largest(v: &[f64; 3]) -> f64 {
+    v.iter().fold(0.0_f64, |most, c| most.max(c.abs()))
+}
