@@ -319,7 +319,7 @@ impl<'s> Descent<'s> {
         let [a, b] = [(trees[0], of.a), (trees[1], of.b)]
             .map(|(tree, node)| &tree.levels[node.level as usize][node.group as usize]);
         let lanes = trees[0].lanes(of.a.level as usize, of.a.group);
-        a.meetings(lanes, self.margin, b)
+        a.meetings(lanes, self.margin, b, (self.best.time[1] as f32).next_up())
     }
 
     /// Looks at the pairs of features of two groups.

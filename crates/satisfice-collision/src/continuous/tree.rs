@@ -6,16 +6,13 @@
 //!
 //! Boxes are in single precision, rounded outwards, in a frame centred on the scene and scaled to its size.
 
+use crate::broad::{Box32, order_by_median};
 use crate::distance::Point;
-use crate::order::morton_key;
 use crate::simd::{self, Floats};
 
 /// Boxes of a group.
 pub(super) const LANES: usize = 8;
 type Lanes = [f32; LANES];
-
-/// Bits of a cell of the curve by which features are sorted, an axis.
-const BITS: u32 = 16;
 
 /// Where the frame of the boxes lies.
 #[derive(Debug, Clone, Copy)]
@@ -153,11 +150,16 @@ impl MovingBox {
         }
     }
 
-    fn middle(&self) -> Point {
-        std::array::from_fn(|k| {
-            let sum = |end: usize| f64::from(self.min[end][k]) + f64::from(self.max[end][k]);
+    /// The middle at half of the step.
+    fn middle(&self) -> Box32 {
+        let middle = std::array::from_fn(|k| {
+            let sum = |end: usize| self.min[end][k] + self.max[end][k];
             0.25 * (sum(0) + sum(1))
-        })
+        });
+        Box32 {
+            min: middle,
+            max: middle,
+        }
     }
 
     /// Bounds of the times at which two boxes meet, or `None` if they are apart all the time.
@@ -184,7 +186,7 @@ impl MovingBox {
 /// When the boxes of two groups first meet.
 #[derive(Debug, Clone)]
 pub(super) struct Meetings {
-    /// For each box of the first group those of the second that are not apart from it all the time, a bit each.
+    /// For each box of the first group those of the second that are not apart from it until the time asked for, a bit each.
     pub(super) masks: [u32; LANES],
     /// Lower bounds of the times at which they first meet, where the bit is set.
     pub(super) first: [Lanes; LANES],
@@ -196,18 +198,21 @@ struct Meet<'g> {
     b: &'g MovingGroup,
     lanes: usize,
     margin: f32,
+    until: f32,
 }
 
 impl simd::Work for Meet<'_> {
     type Output = Meetings;
 
     /// A gap is a difference of two numbers, so its sign is right and its value off by one rounding; a quotient of gaps is off by
-    /// less than four.
+    /// less than four. A gap above 0 that shrinks is above 0 until a time if it is so, as computed with four roundings, until
+    /// one that is later by a hundred roundings.
     #[inline(always)]
     fn run<L: simd::Lanes>(self, lanes: L) -> Meetings {
         let s = lanes.single();
         let zero = s.splat(0.0);
         let down = s.splat(1.0 - 8.0 * f32::EPSILON);
+        let until = s.splat(self.until * (1.0 + 100.0 * f32::EPSILON));
         let mut meetings = Meetings {
             masks: [0; LANES],
             first: [[0.0; LANES]; LANES],
@@ -223,8 +228,10 @@ impl simd::Work for Meet<'_> {
                     *after = s.sub(s.load(&self.b.min[end][k]), max);
                     *before = s.sub(min, s.load(&self.b.max[end][k]));
                 }
-                for gap in [after, before] {
-                    apart = s.max(s.min(gap[0], gap[1]), apart);
+                for [from, to] in [after, before] {
+                    let last = s.mul_add(until, s.sub(to, from), from);
+                    // in this order an empty box, whose last gap is no number, is apart
+                    apart = s.max(s.min(last, from), apart);
                 }
                 gaps[2 * k] = after;
                 gaps[2 * k + 1] = before;
@@ -246,14 +253,16 @@ impl simd::Work for Meet<'_> {
 }
 
 impl MovingGroup {
-    /// When each of the first `lanes` boxes of this group, grown by a margin, meets the boxes of another group.
+    /// When each of the first `lanes` boxes of this group, grown by a margin, meets the boxes of another group, if it does by the time
+    /// `until`.
     #[inline]
-    pub(super) fn meetings(&self, lanes: usize, margin: f32, other: &Self) -> Meetings {
+    pub(super) fn meetings(&self, lanes: usize, margin: f32, other: &Self, until: f32) -> Meetings {
         simd::dispatch(Meet {
             a: self,
             b: other,
             lanes,
             margin,
+            until,
         })
     }
 
@@ -316,18 +325,17 @@ impl MovingTree {
     /// The tree over features with these boxes: `body` gives the body of each, and again if it is rigid or [`MIXED`]. Features
     /// of a body stay together.
     pub(super) fn new(boxes: &[MovingBox], body: impl Fn(u32) -> (u32, u32)) -> Self {
-        let cell =
-            |x: f64| ((x + 0.5) * f64::from(1_u32 << BITS)).clamp(0.0, f64::from((1_u32 << BITS) - 1)) as u32;
-        // As one number: the body, the cell, the feature.
-        let mut keyed: Vec<u128> = (0..)
-            .zip(boxes)
-            .map(|(feature, of)| {
-                let cell = morton_key(of.middle().map(cell), BITS);
-                u128::from(body(feature).0) << 80 | u128::from(cell) << 32 | u128::from(feature)
-            })
-            .collect();
-        keyed.sort_unstable();
-        let order: Vec<u32> = keyed.into_iter().map(|key| key as u32).collect();
+        let middles: Vec<Box32> = boxes.iter().map(MovingBox::middle).collect();
+        let mut order = Vec::with_capacity(boxes.len());
+        while order.len() < boxes.len() {
+            // The features of a body follow each other.
+            let first = order.len();
+            let number = body(first as u32).0;
+            let rest = (first..boxes.len()).take_while(|&feature| body(feature as u32).0 == number);
+            let end = first + rest.count();
+            let within = order_by_median(&middles[first..end], false);
+            order.extend(within.into_iter().map(|feature| feature + first as u32));
+        }
         let mut rigid = vec![common(order.iter().map(|&feature| body(feature).1))];
         let sorted = order.iter().map(|&feature| boxes[feature as usize]);
         let mut levels = vec![groups(sorted)];
