@@ -85,14 +85,21 @@ pub(super) fn first_impact(report: &MotionReport<'_>) -> Option<String> {
     Some(match (first.proved, found) {
         (true, false) => "none: the step is free, that is proved".to_owned(),
         (true, true) if high == 0.0 => "at the start, that is proved".to_owned(),
-        (true, true) => format!("between {low} and {high} of the step, that is proved"),
+        (true, true) => format!(
+            "between {} and {} of the step, that is proved",
+            bound(low, Towards::Below),
+            bound(high, Towards::Above)
+        ),
         (false, true) => format!(
             "between {} and {} of the step so far; an earlier one may exist",
-            moment(low),
-            moment(high)
+            bound(low, Towards::Below),
+            bound(high, Towards::Above)
         ),
         (false, false) if report.head.stop_reason == StopReason::Covered => "none".to_owned(),
-        (false, false) => format!("not before {} of the step; none found so far", moment(low)),
+        (false, false) => format!(
+            "not before {} of the step; none found so far",
+            bound(low, Towards::Below)
+        ),
     })
 }
 
@@ -101,10 +108,66 @@ fn moment(time: f64) -> String {
     digits(time)
 }
 
+/// Where a bound may be rounded to.
+#[derive(Clone, Copy, PartialEq)]
+enum Towards {
+    Below,
+    Above,
+}
+
+/// A bound of a time with eight significant digits at most, rounded so that it remains a bound.
+fn bound(time: f64, towards: Towards) -> String {
+    let is_bound = |x: f64| match towards {
+        Towards::Below => x <= time,
+        Towards::Above => x >= time,
+    };
+    let text = format!("{time:.7e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let mut digits: i64 = digits.replace('.', "").parse().unwrap_or_default();
+    let exponent = exponent.parse::<i32>().unwrap_or_default() - 7;
+    let mut rounded = || {
+        let rounded = format!("{digits}e{exponent}").parse().unwrap_or(time);
+        digits += if towards == Towards::Below { -1 } else { 1 };
+        rounded
+    };
+    let shown = [rounded(), rounded()].into_iter().find(|&x| is_bound(x));
+    match shown.unwrap_or(time) {
+        0.0 => "0".to_owned(),
+        x if x < 1e-3 => format!("{x:e}"),
+        x => x.to_string(),
+    }
+}
+
 fn side(report: &MotionReport<'_>, kind: FeatureKind, side: &Side) -> String {
     let ends = side
         .vertices
         .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
     let body = &report.frames.bodies[side.body].name;
     format!("{} {}{ends} of {body}", kind.name(), side.feature)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_have_few_digits_and_remain_bounds() {
+        for (time, below, above) in [
+            (0.0, "0", "0"),
+            (1.0, "1", "1"),
+            (0.5, "0.5", "0.5"),
+            (0.449_999_999_983_1, "0.44999999", "0.45"),
+            (6.716_123_456_789e-6, "6.7161234e-6", "6.7161235e-6"),
+            (0.999_999_999_9, "0.9999999", "1"),
+        ] {
+            assert_eq!(bound(time, Towards::Below), below);
+            assert_eq!(bound(time, Towards::Above), above);
+        }
+        for n in 1..2000_u32 {
+            let time = 1.0 / f64::from(n);
+            let [low, high] =
+                [Towards::Below, Towards::Above].map(|towards| bound(time, towards).parse::<f64>());
+            assert!(low.is_ok_and(|low| low <= time) && high.is_ok_and(|high| time <= high));
+        }
+    }
 }
