@@ -50,14 +50,14 @@ fn main() {
 
 const INTRODUCTION: &str = "Spheres of 80 triangles and radius 0.4 that share one mesh; pairs of triangles within 0.01; one thread, \
     release build. Every moving body has a step of up to 0.005 along each axis; directions turn every eight frames. All methods \
-    follow the same motion in one run, one after the other in every frame; times are medians in milliseconds over the frames.
+    follow the same motion in one run, one after the other in every frame; times are medians over the frames, in milliseconds of processor time.
 
 - *bodies ms*: placing what moves and finding the pairs of bodies whose boxes meet (`World::place`, and a query of an empty region).
 - *worst*: the slowest of these frames, divided by *new*, the time of a world made anew (adding all bodies and finding the pairs).
 - *triangles ms*: the contacts of these pairs (`World::update` after that).
-- *parry kept*: `Bvh::insert_or_update_partially` with a margin of 0.02 for what moves, `refit`, `optimize_incremental`, \
-`traverse_bvtt_single_tree` with change detection: the pairs of which one left its box, as rapier3d's broad phase finds them. \
-Nothing is called in a frame in which nothing moves. *parry new*: `Bvh::from_iter` (binned) and a traversal. Boxes are `f32` and are \
+- *parry kept*: what rapier3d's broad phase does. `Bvh::insert_or_update_partially` with a margin of 0.02 for what moves, \
+`optimize_incremental`, `refit`, `traverse_bvtt_single_tree` with change detection into a table of pairs, from which those are \
+taken whose boxes are apart now, so that it is known, as in a world, which pairs there are, begin and end. Nothing is called in a frame in which nothing moves. *parry new*: `Bvh::from_iter` (binned) and a traversal. Boxes are `f32` and are \
 given; ours are computed from the placement in `f64`. *ratio*: the faster one, divided by *bodies ms*.
 - *bytes a body*: `World::bytes` beside meshes, of a scene of the same motion without pairs where there are many; *a pair*: what is \
 left, divided by the kept pairs.

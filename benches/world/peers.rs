@@ -1,5 +1,7 @@
-//! parry3d's `Bvh` over the boxes of the bodies.
+//! parry3d's `Bvh` over the boxes of the bodies, and a table of the pairs, as rapier3d's broad phase keeps them.
 
+use foldhash::fast::FixedState;
+use hashbrown::HashMap;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -25,10 +27,12 @@ pub(crate) fn anew(boxes: &[Aabb]) -> usize {
     pairs
 }
 
-/// A tree that follows the motion.
+/// A tree that follows the motion, and the pairs of bodies whose boxes meet with the frame in which they were last seen.
 pub(crate) struct Kept {
     tree: Bvh,
     workspace: BvhWorkspace,
+    pairs: HashMap<(u32, u32), u32, FixedState>,
+    frame: u32,
 }
 
 impl Kept {
@@ -36,26 +40,46 @@ impl Kept {
         let mut kept = Self {
             tree: Bvh::from_iter(BvhBuildStrategy::Binned, boxes.iter().copied().enumerate()),
             workspace: BvhWorkspace::default(),
+            pairs: HashMap::default(),
+            frame: 0,
         };
         kept.tree.refit(&mut kept.workspace);
+        let pairs = &mut kept.pairs;
+        let visit = &mut |a: u32, b: u32| {
+            pairs.insert((a.min(b), a.max(b)), 0);
+        };
+        kept.tree
+            .traverse_bvtt_single_tree::<false>(&mut kept.workspace, visit);
         kept
     }
 
-    /// Moves some boxes; the pairs of which one left its box.
+    /// Moves some boxes. Returns how many pairs began or ended.
     pub(crate) fn follow(&mut self, boxes: &[Aabb], moved: &[usize]) -> usize {
         if moved.is_empty() {
             return 0;
         }
+        self.frame += 1;
         for &body in moved {
             self.tree
                 .insert_or_update_partially(boxes[body], body as u32, MARGIN);
         }
-        self.tree.refit(&mut self.workspace);
         self.tree.optimize_incremental(&mut self.workspace);
-        let mut pairs = 0;
-        let visit = &mut |_, _| pairs += 1;
+        self.tree.refit(&mut self.workspace);
+        let (pairs, frame, mut events) = (&mut self.pairs, self.frame, 0);
+        let visit = &mut |a: u32, b: u32| {
+            events += usize::from(pairs.insert((a.min(b), a.max(b)), frame).is_none());
+        };
         self.tree
             .traverse_bvtt_single_tree::<true>(&mut self.workspace, visit);
-        pairs
+        let tree = &self.tree;
+        self.pairs.retain(|&(a, b), seen| {
+            let (Some(one), Some(two)) = (tree.leaf_node(a), tree.leaf_node(b)) else {
+                return false;
+            };
+            let ended = *seen != frame && (one.is_changed() || two.is_changed()) && !one.intersects(two);
+            events += usize::from(ended);
+            !ended
+        });
+        events
     }
 }

@@ -1,11 +1,12 @@
 """Times the continuous collision of ipctk (Tight Inclusion and additive CCD, default and best settings).
 
     python3 -m venv venv && venv/bin/pip install ipctk numpy
-    venv/bin/python benches/continuous_peers.py DATA
+    venv/bin/python benches/continuous/peers.py DATA PART
 
-DATA is a folder with `cloth_ball92.ply`, `cloth_ball93.ply` and `ccd/cloth-funnel` of the Sample-Scalable-CCD-Data (Apache-2.0). Prints
-microseconds a query without the cost of the call from Python, which is measured on features that are far apart at rest,
-and milliseconds for whole frames. One thread: ipctk is limited by its own call.
+DATA is a folder with `cloth_ball92.ply`, `cloth_ball93.ply` and `ccd/cloth-funnel` of the Sample-Scalable-CCD-Data (Apache-2.0). PART is
+`version`; `queries`: microseconds a query without the cost of the call from Python, which is measured on features that are far
+apart at rest; `candidates`: milliseconds for whole frames; or `free-step:NAME:METHODS`: the collision-free step of a frame and its
+milliseconds, a line for each of the methods ACCD (tuned) and TI. Processor time of one thread. `cargo bench --bench continuous` runs it.
 """
 
 import csv
@@ -22,7 +23,12 @@ METHODS = {
     "TI default": lambda: ipctk.TightInclusionCCD(),
     "TI 1e-9, 1e5": lambda: ipctk.TightInclusionCCD(1e-9, 100_000, 0.8),
     "ACCD default": lambda: ipctk.AdditiveCCD(),
-    "ACCD .9999999": lambda: ipctk.AdditiveCCD(10_000_000, 0.9999999),
+    "ACCD tuned": lambda: ipctk.AdditiveCCD(10_000_000, 0.9999999),
+}
+
+FRAMES = {
+    "cloth-funnel": ["ccd/cloth-funnel/227.ply", "ccd/cloth-funnel/228.ply"],
+    "cloth-ball": ["cloth_ball92.ply", "cloth_ball93.ply"],
 }
 
 
@@ -89,16 +95,21 @@ def queries(folder):
             print(f"| cloth-funnel {name} | {title} | {wrong} | {mean - base:.2f} | {longest - base:.0f} |")
 
 
-def frame(name, first, second, sample):
+def frame(data, name):
+    first, second = [data / path for path in FRAMES[name]]
     (v0, faces), (v1, _) = read_ply(first), read_ply(second)
     edges = ipctk.edges(faces)
     mesh = ipctk.CollisionMesh(np.asfortranarray(v0), edges, faces)
-    v0, v1 = np.asfortranarray(v0), np.asfortranarray(v1)
+    return mesh, np.asfortranarray(v0), np.asfortranarray(v1), edges, faces
+
+
+def whole(data, name, sample):
+    mesh, v0, v1, edges, faces = frame(data, name)
     start = time.process_time()
     candidates = ipctk.Candidates()
     candidates.build(mesh, v0, v1, 0.0, ipctk.LBVH())
     broad = (time.process_time() - start) * 1e3
-    print(f"{name}: {len(candidates)} candidates, broad phase {broad:.0f} ms")
+    print(f"| {name} | {len(candidates)} candidates | broad phase | | {broad:.0f} |")
     rng = np.random.default_rng(1)
     for title, make in METHODS.items():
         method = make()
@@ -111,19 +122,32 @@ def frame(name, first, second, sample):
             mean, _, _ = clock(method, is_edges, asked)
             mean -= overhead(method, is_edges)
             kind = "edge-edge" if is_edges else "vertex-face"
-            print(f"| {name} {kind} {len(all_of)} | {title} | {mean:.2f} us | all: {mean * len(all_of) / 1e3:.0f} ms |")
-    for title in ["TI default", "ACCD .9999999"]:
+            print(f"| {name} | {len(all_of)} {kind} | {title} | {mean:.2f} | {mean * len(all_of) / 1e3:.0f} |")
+
+
+def free_step(data, name, methods):
+    mesh, v0, v1, _, _ = frame(data, name)
+    for short in methods:
+        method = {"ACCD": METHODS["ACCD tuned"], "TI": METHODS["TI default"]}[short]()
         start = time.process_time()
-        step = ipctk.compute_collision_free_stepsize(mesh, v0, v1, 0.0, ipctk.LBVH(), METHODS[title]())
-        print(f"{name}: free step by {title} {step:.3e}, {(time.process_time() - start) * 1e3:.0f} ms")
+        step = ipctk.compute_collision_free_stepsize(mesh, v0, v1, 0.0, ipctk.LBVH(), method)
+        print(short, step, (time.process_time() - start) * 1e3)
 
 
 def main():
-    data = Path(sys.argv[1])
+    data, part = Path(sys.argv[1]), sys.argv[2]
     ipctk.set_num_threads(1)
-    queries(data / "ccd")
-    frame("cloth-funnel", data / "ccd/cloth-funnel/227.ply", data / "ccd/cloth-funnel/228.ply", 5000)
-    frame("cloth-ball", data / "cloth_ball92.ply", data / "cloth_ball93.ply", 20000)
+    if part == "version":
+        print(ipctk.__version__)
+    elif part == "queries":
+        queries(data / "ccd")
+    elif part == "candidates":
+        print("| step | | method | us a query | ms in all |\n|---|---|---|---|---|")
+        whole(data, "cloth-funnel", 5000)
+        whole(data, "cloth-ball", 20000)
+    else:
+        _, name, methods = part.split(":")
+        free_step(data, name, methods.split(","))
 
 
 if __name__ == "__main__":
