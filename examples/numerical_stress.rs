@@ -1,14 +1,18 @@
-//! The numerical stress study: every family of hard pairs against rational arithmetic, printed as a Markdown table.
+//! The numerical stress study: every family of hard pairs against rational arithmetic, and every family of motions against its known
+//! answer, printed as Markdown tables.
 //!
 //! `cargo run --release --example numerical_stress [PAIRS] > docs/results/numerical-stress.md` (PAIRS a family, default 300;
-//! under a minute). Exits with 1 if a decision is wrong or a distance is off by more than one unit in the last place.
+//! under a minute). Exits with 1 if a decision is wrong, a distance is off by more than one unit in the last place, or a time is out of its bounds.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../crates/satisfice-collision/tests/motions/mod.rs"]
+mod motions;
 #[path = "../crates/satisfice-collision/tests/stress/mod.rs"]
 mod stress;
 
 use std::process::ExitCode;
 
+use motions::Case;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 use satisfice_collision::distance::{DecidedBy, PairKind};
@@ -136,6 +140,103 @@ fn study(kind: PairKind, a: &[Point], b: &[Point], rng: &mut Xoshiro256PlusPlus)
     tally
 }
 
+/// The exponents of the powers of two by which motions are scaled.
+const SCALES: [i32; 25] = [
+    -498, -400, -300, -200, -100, -60, -40, -30, -20, -10, -5, -1, 0, 1, 5, 10, 20, 30, 40, 60, 100, 200,
+    300, 400, 498,
+];
+/// How close the bounds of a time are asked to be.
+const TOLERANCE: f64 = 1e-9;
+
+/// The counts of one family of motions.
+#[derive(Default)]
+struct Motions {
+    decisions: u64,
+    touching: u64,
+    by_filter: u64,
+    wrong: u64,
+    impacts: u64,
+    known: u64,
+}
+
+impl Motions {
+    /// Motions of a family at every scale, each asked about in every order of vertices and features and in both directions of time.
+    fn study(case: Case, count: usize, rng: &mut Xoshiro256PlusPlus) -> Self {
+        let mut tally = Self::default();
+        for exponent in SCALES {
+            for _ in 0..count {
+                let (query, touches) = case.sample(rng);
+                let query = query.scaled(exponent);
+                for variant in query.variants() {
+                    let decided = variant.decide();
+                    tally.decisions += 1;
+                    tally.touching += u64::from(touches);
+                    tally.by_filter += u64::from(decided.by == DecidedBy::Filter);
+                    if decided.within != touches {
+                        tally.wrong += 1;
+                        eprintln!("wrong: {variant:?}");
+                    }
+                }
+                let impact = query.impact(0.0, TOLERANCE);
+                tally.impacts += 1;
+                tally.known += u64::from(query.first_touch.is_some());
+                let is_right = match impact {
+                    None => !touches,
+                    Some(impact) => {
+                        let [low, high] = impact.time;
+                        let is_known = query
+                            .first_touch
+                            .is_none_or(|known| low <= known && known <= high);
+                        touches && low <= high && high - low <= TOLERANCE && is_known
+                    }
+                };
+                if !is_right {
+                    tally.wrong += 1;
+                    eprintln!("wrong time: {query:?} {impact:?}");
+                }
+            }
+        }
+        tally
+    }
+
+    fn row(&self, name: &str) -> String {
+        let percent = |part: u64| 100.0 * part as f64 / self.decisions.max(1) as f64;
+        format!(
+            "| {name} | {} | {:.1} | {} | {:.2} | {:.2} | {} | {} |",
+            self.decisions,
+            percent(self.touching),
+            self.wrong,
+            percent(self.by_filter),
+            percent(self.decisions - self.by_filter),
+            self.impacts,
+            self.known,
+        )
+    }
+}
+
+/// Prints the table of motions; returns how many answers were wrong.
+fn motions_in_time(pairs: usize, rng: &mut Xoshiro256PlusPlus) -> u64 {
+    let count = pairs.div_ceil(SCALES.len());
+    println!("\n# Numerical stress of motion\n");
+    println!(
+        "Touching during a step, {count} motions a family at each of {} scales from 2^{} to 2^{}, each in all orders of the vertices, both of \
+         the pair and both directions of time. Families have known answers by construction. Shares are in percent of the decisions. The time \
+         of each motion is asked for within {TOLERANCE:e}; *known* counts those whose first time is known and has to lie between the bounds.\n",
+        SCALES.len(),
+        SCALES[0],
+        SCALES[SCALES.len() - 1]
+    );
+    println!("| family | decisions | touching | wrong | filter | exact | times | known |");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|");
+    let mut wrong = 0;
+    for case in Case::ALL {
+        let tally = Motions::study(case, count, rng);
+        println!("{}", tally.row(case.name()));
+        wrong += tally.wrong;
+    }
+    wrong
+}
+
 fn main() -> ExitCode {
     let pairs = match std::env::args().nth(1).map(|count| count.parse()) {
         None => 300,
@@ -191,7 +292,8 @@ fn main() -> ExitCode {
     for (kind, tally) in PairKind::ALL.iter().zip(&by_kind) {
         println!("{}", tally.row(kind.name()));
     }
-    if all.wrong > 0 || all.off > 1.0 {
+    let wrong = motions_in_time(pairs, &mut rng);
+    if all.wrong + wrong > 0 || all.off > 1.0 {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS

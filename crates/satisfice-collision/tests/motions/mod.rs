@@ -4,7 +4,7 @@
 pub mod fuzzing;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
-use satisfice_collision::continuous::{Impact, Moving, Separation, impact, is_hit, touches};
+use satisfice_collision::continuous::{Decided, Impact, Moving, Separation, decide, impact, is_hit, touches};
 use satisfice_collision::distance::Threshold;
 
 use crate::stress::referee::squared_distance;
@@ -84,6 +84,11 @@ macro_rules! ask {
 impl Query {
     pub fn touches(&self) -> bool {
         ask!(self, |a, b| touches(&a, &b))
+    }
+
+    /// Whether the features touch, and who decided it.
+    pub fn decide(&self) -> Decided {
+        ask!(self, |a, b| decide(&a, &b, Separation::TOUCHING))
     }
 
     pub fn is_hit(&self, delta: f64) -> bool {
@@ -270,6 +275,18 @@ impl Case {
         Self::AtRest,
         Self::Degenerate,
     ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Touch => "touching at one time",
+            Self::PlanarTouch => "touching within a plane",
+            Self::NearMiss => "one step of a double beside a corner",
+            Self::Tangent => "double roots",
+            Self::AtStart => "touching at the start",
+            Self::AtRest => "at rest",
+            Self::Degenerate => "degenerate",
+        }
+    }
 
     /// A motion and whether it touches.
     pub fn sample(self, rng: &mut Xoshiro256PlusPlus) -> (Query, bool) {
