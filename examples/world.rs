@@ -1,7 +1,7 @@
 //! Ten thousand balls, of which some are thrown at the others: a world in which a frame costs what moves and touches. The balls
 //! bounce by the contacts that begin (`World::body_changes`). For each frame: bodies, how many moved, pairs whose boxes meet, pairs
 //! that were decided, contacts, time, memory; at the end a check against the distances of all pairs of centres, a few queries,
-//! and a picture of a slice.
+//! a picture of a slice, and a page on which the balls of the middle layer can be followed.
 //!
 //! `cargo run --release --example world`
 #![expect(clippy::disallowed_methods, reason = "an example asks the time")]
@@ -18,12 +18,15 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::scene::{Body, BodyId, ChangeKind, SharedMesh, World};
 use satisfice_collision::{Aabb, Mesh, Placement, generate};
+use satisfice_page::{Contact, Feature, FeatureKind, ScenePage};
 use satisfice_picture::{Picture, Up, View};
 
 const RADIUS: f64 = 0.4;
 const DELTA: f64 = 0.02;
 /// Balls slower than this stop.
 const SLOWEST: f64 = 0.003;
+/// The page lists so many contacts of a frame, evenly chosen.
+const LISTED: usize = 400;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let quick = env::var_os("SATISFICE_QUICK").is_some_and(|value| value != "0");
@@ -45,6 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("frame  bodies   moved  box pairs  decided  contacts      ms  memory kB");
     let progress = std::io::stderr().is_terminal();
+    let mut film = Film::new(&balls, &mesh, side);
     let mut most_moved = 0;
     for frame in 0..frames {
         let moved = balls.step();
@@ -75,6 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 world.contacts().count(),
                 world.bytes() / 1000
             );
+            film.add_frame(&world, frame, &balls)?;
         }
     }
     if progress {
@@ -88,7 +93,73 @@ fn main() -> Result<(), Box<dyn Error>> {
         touching.len()
     );
     questions(&mut world, side)?;
-    picture(&mut world, &mesh, side, &balls.ways)
+    picture(&mut world, &mesh, side, &balls.ways)?;
+    write("world.html", film.page.html()?.as_bytes())
+}
+
+/// The balls that begin in the middle layer, frame by frame.
+struct Film<'m> {
+    page: ScenePage,
+    mesh: &'m Mesh,
+    /// Which balls these are, and where each was last.
+    balls: Vec<(usize, [f64; 3])>,
+    /// The body of the page that shows a ball.
+    shown: Vec<Option<usize>>,
+}
+
+impl<'m> Film<'m> {
+    fn new(balls: &Balls, mesh: &'m Mesh, side: usize) -> Self {
+        let mut page = ScenePage::new("The middle layer of a world of balls");
+        page.threshold(DELTA);
+        let (mut layer, mut shown) = (Vec::new(), vec![None; balls.centres.len()]);
+        for (ball, &centre) in balls.centres.iter().enumerate() {
+            if ball / side / side == (balls.centres.len() / side / side) / 2 {
+                shown[ball] = Some(layer.len());
+                layer.push((ball, centre));
+                let vertices = Self::around(mesh, centre);
+                page.body(format!("ball {ball}"), &vertices, mesh.triangles(), mesh.lines());
+            }
+        }
+        Self {
+            page,
+            mesh,
+            balls: layer,
+            shown,
+        }
+    }
+
+    fn around(mesh: &Mesh, centre: [f64; 3]) -> Vec<[f64; 3]> {
+        let vertices = mesh.vertices().iter();
+        vertices
+            .map(|vertex| std::array::from_fn(|k| vertex[k] + centre[k]))
+            .collect()
+    }
+
+    fn add_frame(&mut self, world: &World, frame: usize, balls: &Balls) -> Result<(), Box<dyn Error>> {
+        self.page.frame(format!("frame {frame}"));
+        for (body, (ball, last)) in self.balls.iter_mut().enumerate() {
+            let centre = balls.centres[*ball];
+            if centre != *last {
+                self.page.move_body(body, &Self::around(self.mesh, centre))?;
+                *last = centre;
+            }
+        }
+        let shown = |body: BodyId| self.shown[body.index()];
+        let among: Vec<_> = world
+            .contacts()
+            .filter_map(|contact| Some((contact, [shown(contact.body_a)?, shown(contact.body_b)?])))
+            .collect();
+        for (contact, bodies) in among.iter().step_by(among.len().div_ceil(LISTED).max(1)) {
+            let near = world.proximity(*contact)?;
+            let kind = FeatureKind::Triangle;
+            let [a, b] = [(bodies[0], contact.a), (bodies[1], contact.b)];
+            let features = [a, b].map(|(body, number)| Feature { body, kind, number });
+            let listed = Contact::new(features, [near.point_a, near.point_b]);
+            self.page.contact(listed.distance(near.distance));
+        }
+        self.page.counts(Some(among.len() as u64), None);
+        Ok(())
+    }
 }
 
 /// What can be asked of a world without a list of contacts.
@@ -235,9 +306,13 @@ fn picture(world: &mut World, mesh: &Mesh, side: usize, ways: &[[f64; 3]]) -> Re
             }
         }
     }
+    write("world.png", &picture.png()?)
+}
+
+fn write(name: &str, content: &[u8]) -> Result<(), Box<dyn Error>> {
     let folder = env::var_os("SATISFICE_OUT").map_or_else(|| PathBuf::from("out/world"), PathBuf::from);
     fs::create_dir_all(&folder)?;
-    fs::write(folder.join("world.png"), picture.png()?)?;
-    println!("written: {}", folder.join("world.png").display());
+    fs::write(folder.join(name), content)?;
+    println!("written: {}", folder.join(name).display());
     Ok(())
 }

@@ -42,7 +42,7 @@ pub fn spec(checkpoint: &[u8]) -> Result<RunSpec, Error> {
 ///
 /// # Errors
 /// [`Error::Differs`] for the first part that differs.
-pub(crate) fn check_same(saved: &RunSpec, now: &RunSpec) -> Result<(), Error> {
+pub fn check_same(saved: &RunSpec, now: &RunSpec) -> Result<(), Error> {
     let [saved, now] = [saved, now].map(serde_json::to_value);
     difference("", &saved?, &now?).map_or(Ok(()), Err)
 }

@@ -65,6 +65,10 @@ pub(crate) fn html(report: &RunReport) -> anyhow::Result<String> {
     for point in &report.trace {
         page.trace(point.evaluations, point.elapsed_seconds, point.hits);
     }
+    page.sources(report.sources.names.iter().cloned());
+    for row in &report.sources.rows {
+        page.source_row(row.evaluations, &row.proposed, &row.hits);
+    }
     for index in evenly(report.solutions.len()) {
         let hit = &report.solutions[index];
         page.hit(&hit.solution, hit.fitness, hit.evaluation, hit.seconds);

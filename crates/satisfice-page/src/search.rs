@@ -11,7 +11,7 @@ use crate::shell;
 const COORDINATES: usize = 256;
 
 /// A page that shows a search: hits over any two axes and over all of them, filtered by brushing; hits against evaluations and
-/// time; a table of the hits sorted by F.
+/// time; which sources of the engine the candidates came from; a table of the hits sorted by F.
 ///
 /// Solutions are JSON of any kind. Where all of them have numbers in the same places, such as vectors of one length, each place
 /// is an axis; otherwise they are texts, and the axes are F, the evaluation and the time.
@@ -35,6 +35,9 @@ pub struct SearchPage {
     reference: Option<u64>,
     /// Evaluations, seconds, hits.
     trace: Vec<[f64; 3]>,
+    sources: Vec<String>,
+    /// Evaluations, and by source the candidates and the hits so far.
+    source_rows: Vec<(u64, Vec<u64>, Vec<u64>)>,
     hits: Vec<Hit>,
 }
 
@@ -56,6 +59,8 @@ impl SearchPage {
             total: None,
             reference: None,
             trace: Vec::new(),
+            sources: Vec::new(),
+            source_rows: Vec::new(),
             hits: Vec::new(),
         }
     }
@@ -73,6 +78,18 @@ impl SearchPage {
     /// So many hits were found after so many evaluations and seconds; in order.
     pub fn trace(&mut self, evaluations: u64, seconds: f64, hits: u64) {
         self.trace.push([evaluations as f64, seconds, hits as f64]);
+    }
+
+    /// The sources from which the engine took its candidates, if it has several.
+    pub fn sources(&mut self, names: impl IntoIterator<Item = String>) {
+        self.sources = names.into_iter().collect();
+    }
+
+    /// So many candidates were taken from each of the [sources](SearchPage::sources) after so many evaluations, and so many of them were
+    /// hits; in order.
+    pub fn source_row(&mut self, evaluations: u64, proposed: &[u64], hits: &[u64]) {
+        self.source_rows
+            .push((evaluations, proposed.to_vec(), hits.to_vec()));
     }
 
     /// A hit: its solution, F of it, the evaluation that found it, from 1, and after how many seconds.
@@ -105,6 +122,16 @@ impl SearchPage {
         {
             pack.exact(name, &self.trace.iter().map(|point| point[k]).collect::<Vec<_>>());
         }
+        let column = |of: &dyn Fn(&(u64, Vec<u64>, Vec<u64>)) -> u64| -> Vec<f64> {
+            self.source_rows.iter().map(|row| of(row) as f64).collect()
+        };
+        pack.exact("source evaluations", &column(&|row| row.0));
+        for k in 0..self.sources.len() {
+            let at = |counts: &[u64]| counts.get(k).copied().unwrap_or(0);
+            pack.exact(&format!("source proposed {k}"), &column(&|row| at(&row.1)));
+            pack.exact(&format!("source hits {k}"), &column(&|row| at(&row.2)));
+        }
+        let sources: &[String] = if self.source_rows.is_empty() { &[] } else { &self.sources };
         let is_vector = |hit: &Hit| {
             let list = hit.solution.as_array();
             list.is_some_and(|list| list.len() == axes.len() && list.iter().all(Value::is_number))
@@ -115,12 +142,17 @@ impl SearchPage {
             "facts": self.facts,
             "total": self.total.unwrap_or(self.hits.len() as u64),
             "reference": self.reference,
+            "sources": sources,
             "axes": axes.iter().map(|(name, _)| name).collect::<Vec<_>>(),
             // Vectors are shown from their coordinates.
             "texts": (!self.hits.iter().all(is_vector)).then_some(texts),
         });
         let data = pack.finish(header)?;
-        let scripts = [include_str!("web/chart.js"), include_str!("web/search.js")];
+        let scripts = [
+            include_str!("web/chart.js"),
+            include_str!("web/sources.js"),
+            include_str!("web/search.js"),
+        ];
         Ok(shell::page(
             &self.title,
             "search",
@@ -213,6 +245,14 @@ fn markup(title: &str) -> Markup {
                 }
                 section { h2 { "Against evaluations" } canvas #evaluations.plot role="img" aria-label="Hits against evaluations" {} }
                 section { h2 { "Against time" } canvas #times.plot role="img" aria-label="Hits against time" {} }
+            }
+            section #sources hidden {
+                h2 { "Sources of candidates" }
+                div.pair {
+                    canvas #sourceshares.plot role="img" aria-label="Which share of the candidates came from which source, against evaluations; the totals are in the table below" {}
+                    canvas #sourcehits.plot role="img" aria-label="Hits of each source against evaluations" {}
+                }
+                div.wide { table #sourcetable {} }
             }
             form #filter.row {
                 label { "Select by " select #faxis {} }

@@ -120,6 +120,52 @@ fn hits_are_brushed_sorted_and_copied() {
 }
 
 #[test]
+fn sources_are_shown_where_there_are_some() {
+    let Some(mut browser) = Browser::start(&[]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.html");
+    let mut page = vectors();
+    page.sources(["swarms", HOSTILE, "never used"].map(str::to_owned));
+    page.source_row(10, &[10, 0, 0], &[1, 0, 0]);
+    page.source_row(100, &[40, 60, 0], &[4, 30, 0]);
+    fs::write(&file, page.html().unwrap()).unwrap();
+    let mut tab = browser.open(&file);
+    assert_eq!(
+        tab.run("Array.from($('sourcetable').rows, row => Array.from(row.cells, cell => cell.textContent))"),
+        json!([["", "source", "candidates", "hits"], ["", "swarms", "40", "4"], ["", HOSTILE, "60", "30"]])
+    );
+    // The first ten came from the swarms alone, two of three from the other one afterwards.
+    let colour = "(v, y) => { const { shares } = page.data.by, r = shares.canvas.width / shares.canvas.clientWidth;
+         return Array.from(shares.to.getImageData(shares.px(v) * r, shares.py(y) * r, 1, 1).data).slice(0, 3); }";
+    let tones = json!([[0, 114, 178], [0, 114, 178], [0, 114, 178], [213, 94, 0]]);
+    assert_eq!(
+        tab.run(&format!("[[3, 0.1], [3, 0.9], [50, 0.2], [50, 0.8]].map(([v, y]) => ({colour})(v, y))")),
+        tones
+    );
+    tab.run("(() => { const { shares } = page.data.by, box = shares.canvas.getBoundingClientRect();
+         shares.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + shares.px(50), clientY: box.top + 50 })); })()");
+    assert_eq!(
+        tab.run("Array.from($('tip').children, line => line.textContent)"),
+        json!([
+            "evaluations 11 to 100",
+            format!("{HOSTILE}: 66.7 %, 30 hits so far"),
+            "swarms: 33.3 %, 4 hits so far"
+        ])
+    );
+    assert_eq!(
+        tab.run("[window.hacked ?? 0, document.images.length, document.documentElement.scrollWidth - innerWidth <= 0]"),
+        json!([0, 0, true])
+    );
+    assert_eq!(tab.complaints(), Vec::<String>::new());
+    drop(tab);
+    fs::write(&file, vectors().html().unwrap()).unwrap();
+    let mut tab = browser.open(&file);
+    assert_eq!(tab.run("$('sources').hidden"), json!(true));
+}
+
+#[test]
 fn engines_are_switched_on_and_off() {
     let Some(mut browser) = Browser::start(&[]) else {
         return;

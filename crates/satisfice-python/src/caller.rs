@@ -26,15 +26,16 @@ impl<'py> Caller<'py> {
         }
     }
 
-    /// Appends the values at points of so many coordinates, one after the other, to `values`; `false` if `interrupted` before
-    /// all are known. An exception leaves the values that were known before.
+    /// Appends the values at points of so many coordinates, one after the other, to `values`; `false` if `goes_on` says so before
+    /// all are known: it sees the values and the failures so far before every call but the first. An exception leaves the
+    /// values that were known before.
     pub(crate) fn evaluate(
         &mut self,
         py: Python<'py>,
         points: Vec<f64>,
         dimension: usize,
         values: &mut Vec<f64>,
-        interrupted: impl FnMut() -> bool,
+        goes_on: impl FnMut(&[f64], u64) -> PyResult<bool>,
     ) -> PyResult<bool> {
         let count = points.len() / dimension;
         // The function may keep or change its argument: it is a fresh array.
@@ -43,7 +44,7 @@ impl<'py> Caller<'py> {
             self.all(py, points.into_any(), count, values)?;
             return Ok(true);
         }
-        self.one_by_one(py, &points.into_any(), count, values, interrupted)
+        self.one_by_one(py, &points.into_any(), count, values, goes_on)
     }
 
     fn one_by_one(
@@ -52,10 +53,10 @@ impl<'py> Caller<'py> {
         points: &Bound<'py, PyAny>,
         count: usize,
         values: &mut Vec<f64>,
-        mut interrupted: impl FnMut() -> bool,
+        mut goes_on: impl FnMut(&[f64], u64) -> PyResult<bool>,
     ) -> PyResult<bool> {
         for index in 0..count {
-            if index > 0 && interrupted() {
+            if index > 0 && !goes_on(values, self.failed)? {
                 return Ok(false);
             }
             // A function written in C looks for no signals.

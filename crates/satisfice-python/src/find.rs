@@ -4,8 +4,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use satisfice::engine::ConfiguredEngine;
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
-use satisfice::{Axis, Cancel, Located, Search, Space, Stepper};
-use satisfice_catalogue::{RunReport, RunSpec, Settings};
+use satisfice::{Axis, Cancel, Search, Space, Stepper};
+use satisfice_catalogue::{RunSpec, Settings};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -13,6 +13,7 @@ use crate::arguments::{Run, budget};
 use crate::caller::Caller;
 use crate::refused;
 use crate::report::Report;
+use crate::saved::{Keeper, Saved, damaged};
 use crate::watch::Watcher;
 
 /// A function is called by Python, never by the search.
@@ -26,6 +27,8 @@ pub(crate) struct Question {
     axes: Vec<(f64, f64, bool)>,
     delta: f64,
     separation: Option<Vec<f64>>,
+    /// Points to evaluate first.
+    starts: Vec<Vec<f64>>,
     /// What a report says about the problem: its name, and its parameters as JSON.
     name: String,
     parameters: String,
@@ -56,6 +59,15 @@ impl Question {
         }
     }
 
+    /// A search by the engine of a complete specification.
+    pub(crate) fn search(&self, spec: &RunSpec) -> PyResult<Search<Function>> {
+        let mut search = Search::with(engine(spec)?).seed(spec.seed).islands(spec.islands);
+        if let Some(share) = spec.probes {
+            search = search.probes(share);
+        }
+        Ok(search.start_from(&self.starts))
+    }
+
     /// Enters the problem in a specification.
     pub(crate) fn enter(&self, spec: &mut RunSpec) -> PyResult<()> {
         spec.problem.clone_from(&self.name);
@@ -71,6 +83,7 @@ impl Question {
 
 /// Searches a function for all points with f(x) < delta. The Python function of the same name has the documentation.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the Python function has keywords")]
 pub(crate) fn find<'py>(
     py: Python<'py>,
     function: Bound<'py, PyAny>,
@@ -79,37 +92,56 @@ pub(crate) fn find<'py>(
     vectorized: bool,
     callback: Option<Py<PyAny>>,
     catch: Bound<'py, PyTuple>,
+    saved: Option<&[u8]>,
+    save: Option<Py<PyAny>>,
 ) -> PyResult<Report> {
     let mut spec = run.spec()?;
     let problem = question.problem()?;
-    let mut search = search(&spec)?;
     question.enter(&mut spec)?;
-
+    let mut caller = Caller::new(function, vectorized, catch);
     let cancel = Cancel::new();
     let mut watcher = Watcher::new(callback, cancel.clone());
-    let mut caller = Caller::new(function, vectorized, catch);
-    let budget = budget(&spec, &cancel);
-    let stepper = search.start(&problem, &budget).map_err(refused)?;
-    let (report, raised) = drive(py, stepper, &mut caller, &mut watcher, question.dimension())?;
+    let mut keeper = save.map(|write| Keeper::new(write, &question, &spec));
+    let mut search;
+    let stepper = match saved {
+        None => {
+            search = question.search(&spec)?;
+            search.start(&problem, &budget(&spec, &cancel))
+        }
+        Some(bytes) => {
+            let saved = Saved::read_for(bytes, &spec, false)?;
+            caller.failed = saved.failed;
+            search = Search::resume(saved.checkpoint, engine(&spec)?).map_err(damaged)?;
+            search.start_resumed_until(&problem, &cancel)
+        }
+    };
+    let mut stepper = stepper.map_err(refused)?;
+    let mut values = Vec::new();
+    let raised = drive(
+        py,
+        &mut stepper,
+        &mut caller,
+        &mut watcher,
+        question.dimension(),
+        &mut values,
+        &mut keeper,
+    )
+    .err();
+    // What is known of a batch that was cut short is in the file as well.
+    let raised = match &mut keeper {
+        Some(keeper) => keeper
+            .save(py, &mut stepper, &values, caller.failed)
+            .err()
+            .or(raised),
+        None => raised,
+    };
+    let report = stepper.finish_with(&values).map_err(refused)?;
 
-    let spec = RunSpec { threads: 1, ..spec };
-    let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value).map_err(refused)?;
-    report.slices.clear();
-    report.failed = caller.failed;
-    let report = Report::new(report);
+    let report = Report::of_function(spec, &report, caller.failed)?;
     match raised {
         None => Ok(report),
         Some(error) => Err(with_report(py, error, report)),
     }
-}
-
-/// A search by the engine of a complete specification.
-pub(crate) fn search(spec: &RunSpec) -> PyResult<Search<Function>> {
-    let mut search = Search::with(engine(spec)?).seed(spec.seed).islands(spec.islands);
-    if let Some(share) = spec.probes {
-        search = search.probes(share);
-    }
-    Ok(search)
 }
 
 /// The engine of a complete specification.
@@ -120,21 +152,23 @@ pub(crate) fn engine(spec: &RunSpec) -> PyResult<ConfiguredEngine<f64>> {
         .map_err(refused)
 }
 
-/// Runs a slice to its end, or to an exception. Engines work without the interpreter's lock.
-fn drive<'py>(
+/// Runs a slice to its end, to its pause, or to an exception. Engines work without the interpreter's lock. `values` are then what
+/// is known of a batch that was cut short, which is still to be told.
+pub(crate) fn drive<'py>(
     py: Python<'py>,
-    mut stepper: Stepper<'_, Function>,
+    stepper: &mut Stepper<'_, Function>,
     caller: &mut Caller<'py>,
     watcher: &mut Watcher,
     dimension: usize,
-) -> PyResult<(satisfice::Report<Located<f64>>, Option<PyErr>)> {
-    let mut values = Vec::new();
+    values: &mut Vec<f64>,
+    keeper: &mut Option<Keeper>,
+) -> PyResult<()> {
     let mut asked = false;
     loop {
         let points = py
             .detach(|| {
                 if asked {
-                    stepper.tell_with(&values, watcher)?;
+                    stepper.tell_with(values, watcher)?;
                 }
                 values.clear();
                 let points = stepper.ask_with(watcher)?;
@@ -142,23 +176,37 @@ fn drive<'py>(
                 points
                     .iter()
                     .for_each(|point| flat.extend_from_slice(&point.coordinates));
+                if !asked && !flat.is_empty() {
+                    // Only a slice that was saved knows some already.
+                    values.extend_from_slice(stepper.noted());
+                    flat.drain(..values.len() * dimension);
+                }
                 Ok::<_, satisfice::Error>(flat)
             })
             .map_err(refused)?;
         if let Some(error) = watcher.raised.take() {
-            return Ok((stepper.finish(), Some(error)));
+            return Err(error);
         }
-        if points.is_empty() {
-            return Ok((stepper.finish(), None));
+        if points.is_empty() && values.is_empty() {
+            return Ok(());
         }
         asked = true;
-        let evaluated = caller.evaluate(py, points, dimension, &mut values, || stepper.is_interrupted());
-        let raised = match evaluated {
-            Ok(true) => continue,
-            Ok(false) => None,
-            Err(error) => Some(error),
+        let goes_on = |values: &[f64], failed: u64| {
+            if let Some(keeper) = keeper
+                && keeper.is_due()
+            {
+                keeper.save(py, stepper, values, failed)?;
+            }
+            Ok(!stepper.is_interrupted())
         };
-        return Ok((stepper.finish_with(&values).map_err(refused)?, raised));
+        if !caller.evaluate(py, points, dimension, values, goes_on)? {
+            return Ok(());
+        }
+        if let Some(keeper) = keeper
+            && keeper.is_due()
+        {
+            keeper.save(py, stepper, values, caller.failed)?;
+        }
     }
 }
 

@@ -7,6 +7,8 @@ mod find;
 mod listing;
 mod problem;
 mod report;
+mod rounds;
+mod saved;
 mod search;
 mod watch;
 
@@ -25,6 +27,10 @@ mod _satisfice {
     use crate::problem::Problem;
     #[pymodule_export]
     use crate::report::{Best, Report};
+    #[pymodule_export]
+    use crate::rounds::{Rounds, run_island};
+    #[pymodule_export]
+    use crate::saved::saved_seed;
     #[pymodule_export]
     use crate::search::Search;
 }

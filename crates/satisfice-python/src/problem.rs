@@ -1,11 +1,12 @@
 //! Problems of the catalogue, with their parameters set.
 
 use core::time::Duration;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use satisfice::{Cancel, TracePoint};
 use satisfice_catalogue::{Instance, Progress, RunControl, RunReport, catalogue};
 
@@ -13,6 +14,7 @@ use crate::arguments::Run;
 use crate::find::with_report;
 use crate::refused;
 use crate::report::Report;
+use crate::saved::EVERY;
 use crate::watch::Watcher;
 
 /// How often the calling thread looks for signals while another one works.
@@ -96,21 +98,37 @@ impl Problem {
         run: Run,
         callback: Option<Py<PyAny>>,
         reference: bool,
+        saved: Option<&[u8]>,
+        save: Option<Py<PyAny>>,
     ) -> PyResult<Report> {
         let spec = run.spec()?;
         let cancel = Cancel::new();
         let mut watcher = Watcher::new(callback, cancel.clone());
         let (sender, mut receiver) = channel();
+        let unwritten = Mutex::new(None);
         let run = std::thread::scope(|scope| {
             let running = scope.spawn(|| {
                 let mut watch = move |progress: &Progress| {
                     // The receiver is there as long as this thread.
                     let _ = sender.send((progress.now, progress.share));
                 };
-                let control = RunControl {
+                let mut write = |bytes: &[u8]| {
+                    let Some(save) = &save else { return };
+                    let written = Python::attach(|py| save.call1(py, (PyBytes::new(py, bytes),)).map(drop));
+                    if let Err(error) = written {
+                        *unwritten.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                        cancel.cancel();
+                    }
+                };
+                let mut control = RunControl {
                     watch: Some(&mut watch),
+                    resume: saved,
+                    every: EVERY,
                     ..RunControl::until(&cancel)
                 };
+                if save.is_some() {
+                    control.save = Some(&mut write);
+                }
                 self.instance.run(&spec, control)
             });
             let mut seen = (
@@ -136,7 +154,8 @@ impl Problem {
         let report: Result<RunReport, _> =
             run.map_err(|_| PyRuntimeError::new_err("the problem panicked"))?;
         let mut report = report.map_err(refused)?;
-        if let Some(error) = watcher.raised {
+        let unwritten = unwritten.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let Some(error) = watcher.raised.or(unwritten) {
             return Err(with_report(py, error, Report::new(report)));
         }
         if reference {

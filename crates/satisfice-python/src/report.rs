@@ -5,8 +5,9 @@ use pyo3::exceptions::{PyImportError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyType};
+use satisfice_catalogue::black_box::Point;
 use satisfice_catalogue::report::FoundSolution;
-use satisfice_catalogue::{RunReport, json};
+use satisfice_catalogue::{RunReport, RunSpec, json};
 use serde_json::Value;
 
 use crate::refused;
@@ -52,6 +53,21 @@ impl Report {
             evaluation: PyOnceLock::new(),
             time: PyOnceLock::new(),
         }
+    }
+
+    /// The report of a search of a function, in one slice.
+    pub(crate) fn of_function(
+        spec: RunSpec,
+        report: &satisfice::Report<Point>,
+        failed: u64,
+    ) -> PyResult<Self> {
+        // Threads do not change a report, and JSON does not keep them.
+        let spec = RunSpec { threads: 1, ..spec };
+        let reports = core::slice::from_ref(report);
+        let mut report = RunReport::of_slices(spec, reports, serde_json::to_value).map_err(refused)?;
+        report.slices.clear();
+        report.failed = failed;
+        Ok(Self::new(report))
     }
 
     fn column<T: numpy::Element>(

@@ -6,14 +6,14 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, P
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use satisfice::{Cancel, Checkpoint, Located, Order, Ticket, Tickets, TracePoint};
-use satisfice_catalogue::{RunReport, RunSpec};
-use serde::{Deserialize, Serialize};
+use satisfice::{Cancel, Order, Ticket, Tickets, TracePoint};
+use satisfice_catalogue::RunSpec;
 
 use crate::arguments::{Run, budget};
-use crate::find::{Function, Question, engine, search};
+use crate::find::{Function, Question, engine};
 use crate::refused;
 use crate::report::Report;
+use crate::saved::{Saved, damaged};
 
 /// What is asked and told, and what it takes to write a report.
 struct Inner {
@@ -28,15 +28,6 @@ pub(crate) struct Search {
     inner: Mutex<Inner>,
     question: Question,
     spec: RunSpec,
-}
-
-/// A saved search.
-#[derive(Serialize, Deserialize)]
-struct Saved {
-    question: Question,
-    spec: RunSpec,
-    failed: u64,
-    checkpoint: Checkpoint<Located<f64>>,
 }
 
 impl Search {
@@ -60,7 +51,7 @@ impl Search {
     fn new(py: Python<'_>, question: Question, run: Run, ordered: bool) -> PyResult<Self> {
         let mut spec = run.spec()?;
         let problem = question.problem()?;
-        let search = search(&spec)?;
+        let search = question.search(&spec)?;
         question.enter(&mut spec)?;
         let order = if ordered { Order::Ordered } else { Order::Eager };
         let budget = budget(&spec, &Cancel::new());
@@ -205,13 +196,7 @@ impl Search {
     fn report(&self, py: Python<'_>) -> PyResult<Report> {
         py.detach(|| {
             let inner = self.lock();
-            let spec = RunSpec {
-                threads: 1,
-                ..self.spec.clone()
-            };
-            let mut report = RunReport::of_slices(spec, &[inner.tickets.report()], serde_json::to_value)?;
-            report.slices.clear();
-            report.failed = inner.failed;
+            let mut report = inner.tickets.report();
             // As at the end of a slice, whether or not this is it.
             let evaluations = report.counts.evaluations;
             if report
@@ -221,13 +206,12 @@ impl Search {
             {
                 report.trace.push(TracePoint {
                     evaluations,
-                    elapsed_seconds: report.elapsed_seconds,
-                    hits: report.hits,
+                    elapsed_seconds: report.elapsed.as_secs_f64(),
+                    hits: report.hit_count() as u64,
                 });
             }
-            Ok(Report::new(report))
+            Report::of_function(self.spec.clone(), &report, inner.failed)
         })
-        .map_err(|error: serde_json::Error| refused(error))
     }
 
     fn dimension(&self) -> usize {
@@ -237,34 +221,40 @@ impl Search {
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| {
             let inner = self.lock();
-            serde_json::to_vec(&Saved {
+            let saved = Saved {
                 question: self.question.clone(),
                 spec: self.spec.clone(),
                 failed: inner.failed,
+                tickets: true,
                 checkpoint: inner.tickets.checkpoint(),
-            })
+            };
+            saved.to_bytes()
         });
-        Ok(PyBytes::new(py, &bytes.map_err(refused)?))
+        Ok(PyBytes::new(py, &bytes?))
     }
 
     #[classmethod]
     fn load(_: &Bound<'_, PyType>, py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let wrong = |error: &dyn std::fmt::Display| {
-            PyValueError::new_err(format!("this is not a saved search: {error}"))
-        };
-        py.detach(|| {
-            let saved: Saved = serde_json::from_slice(bytes).map_err(|error| wrong(&error))?;
-            let problem = saved.question.problem()?;
-            let tickets = Tickets::resume(saved.checkpoint, engine(&saved.spec)?, problem)
-                .map_err(|error| wrong(&error))?;
-            Ok(Self {
-                inner: Mutex::new(Inner {
-                    tickets,
-                    failed: saved.failed,
-                }),
-                question: saved.question,
-                spec: saved.spec,
-            })
+        py.detach(|| Self::resume(Saved::read(bytes)?))
+    }
+
+    /// The saved search, which must be the same as this one.
+    fn load_same(&self, py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        py.detach(|| Self::resume(Saved::read_for(bytes, &self.spec, true)?))
+    }
+}
+
+impl Search {
+    fn resume(saved: Saved) -> PyResult<Self> {
+        let problem = saved.question.problem()?;
+        let tickets = Tickets::resume(saved.checkpoint, engine(&saved.spec)?, problem).map_err(damaged)?;
+        Ok(Self {
+            inner: Mutex::new(Inner {
+                tickets,
+                failed: saved.failed,
+            }),
+            question: saved.question,
+            spec: saved.spec,
         })
     }
 }

@@ -22,6 +22,14 @@ def _without_times(value):
     return value
 
 
+def same(one, two):
+    """Whether two reports differ in nothing but times and the name of the function."""
+    reports = [without_times(report.to_json()) for report in (one, two)]
+    for report in reports:
+        report["problem_parameters"].pop("function")
+    return reports[0] == reports[1]
+
+
 def command(*arguments, **options):
     """The command as a user runs it."""
     return subprocess.run(

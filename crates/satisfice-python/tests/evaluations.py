@@ -39,3 +39,24 @@ def kills(x):
     if x[0] > 1.9:
         os.kill(os.getpid(), signal.SIGKILL)
     return ring(x)
+
+
+def ring_of_all(x):
+    return abs((x[:, 0] ** 2 + x[:, 1] ** 2) ** 0.5 - 1.0)
+
+
+def slightly_slow(x):
+    time.sleep(0.001)
+    return ring(x)
+
+
+def kills_process_once(x):
+    """The first call outside the middle kills its process, once over all processes."""
+    if x[0] > 1.5:
+        try:
+            (Path(os.environ["SATISFICE_TEST_PLACE"]) / "killed").touch(exist_ok=False)
+        except FileExistsError:
+            pass
+        else:
+            os.kill(os.getpid(), signal.SIGKILL)
+    return ring(x)

@@ -8,7 +8,7 @@ import evaluations
 import numpy as np
 import pytest
 import satisfice
-from conftest import without_times
+from conftest import same
 
 SQUARE = [(-2, 2), (-2, 2)]
 RING = {"delta": 0.05, "separation": 0.1, "evaluations": 300, "seed": 1}
@@ -16,13 +16,6 @@ RING = {"delta": 0.05, "separation": 0.1, "evaluations": 300, "seed": 1}
 
 def alone(**changes):
     return satisfice.find(evaluations.ring, SQUARE, **{**RING, **changes})
-
-
-def same(one, two):
-    reports = [without_times(report.to_json()) for report in (one, two)]
-    for report in reports:
-        report["problem_parameters"].pop("function")
-    return reports[0] == reports[1]
 
 
 @pytest.mark.parametrize("ordered", [False, True])

@@ -46,11 +46,11 @@ pub use error::Error;
 pub use identity::{AxisSeparation, Identity, Located, Separation};
 pub use observer::Observer;
 pub use problem::{SatisficingProblem, from_fn};
-pub use report::{Completeness, Counts, Report, RunReport, TracePoint};
+pub use report::{Completeness, Counts, Report, RunReport, SourceCount, SourceRow, SourceTrace, TracePoint};
 pub use scalar::Real;
 pub use search::{
-    Asked, Checkpoint, Order, RunOptions, Search, Stepper, Ticket, TicketCounts, TicketEvent, TicketLog,
-    Tickets, Told,
+    Asked, Checkpoint, IslandRound, Order, Rounds, RunOptions, Search, Stepper, Ticket, TicketCounts,
+    TicketEvent, TicketLog, Tickets, Told,
 };
 pub use seed::SearchRng;
 pub use space::{Axis, AxisKind, Boundary, Region, Space};

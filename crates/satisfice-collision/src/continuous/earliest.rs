@@ -170,7 +170,19 @@ impl Step {
     /// # Errors
     /// None for a step that has bodies; see [`earliest`](Self::earliest).
     pub fn free_step(&self, separation: Separation) -> Result<f64, Error> {
-        Ok(self.earliest(separation, 1e-6)?.time[0])
+        self.free_step_until(separation, &mut || false)
+    }
+
+    /// The same, but `stop` ends it: then it is what is proved until then. It is asked about every 16 steps of the descent.
+    ///
+    /// # Errors
+    /// As [`earliest`](Self::earliest).
+    pub fn free_step_until(
+        &self,
+        separation: Separation,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<f64, Error> {
+        Ok(self.earliest_until(separation, 1e-6, stop)?.time[0])
     }
 
     /// The kinds of pairs in which the bodies of this step first meet: vertex-triangle and edge-edge for surfaces, and those

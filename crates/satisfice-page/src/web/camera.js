@@ -35,11 +35,11 @@ class Camera {
 
   /** Shows all points from the present direction. */
   fit(points, width, height) {
-    const { right, up, eye } = this.axes(), low = [9, 9, 9], high = [-9, -9, -9];
+    const { right, up, eye } = this.axes(), directions = [right, up, eye], low = [9, 9, 9], high = [-9, -9, -9];
     for (const list of points)
       for (let k = 0; k < list.length; k += 3)
-        for (const [axis, d] of [right, up, eye].entries()) {
-          const x = d[0] * list[k] + d[1] * list[k + 1] + d[2] * list[k + 2];
+        for (let axis = 0; axis < 3; axis++) {
+          const d = directions[axis], x = d[0] * list[k] + d[1] * list[k + 1] + d[2] * list[k + 2];
           if (x < low[axis]) low[axis] = x;
           if (x > high[axis]) high[axis] = x;
         }

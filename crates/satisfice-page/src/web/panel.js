@@ -239,10 +239,16 @@ start(header => {
     scene.stage = null;
     scene.say(`This browser shows no WebGL 2 (${error.message}): the scene cannot be drawn. The contacts are in the table below.`);
   }
-  scene.wire();
-  scene.show();
-  if (!scene.stage) return;
-  scene.reset();
-  scene.measure();
-  scene.draw();
+  if (scene.stage) {
+    scene.fit();
+    scene.first();
+  }
+  // The rest waits until the first picture is seen.
+  return new Promise(done => requestAnimationFrame(() => setTimeout(done))).then(() => {
+    scene.wire();
+    scene.show();
+    if (!scene.stage) return;
+    scene.measure();
+    scene.draw();
+  });
 });

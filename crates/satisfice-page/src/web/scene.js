@@ -7,13 +7,15 @@ const ROWS = 100;
 const PALE = [[.62, .80, .93], [.93, .88, .76], [.65, .86, .78], [.90, .76, .84], [.80, .80, .80], [.72, .74, .95]];
 const [VERMILION, PURPLE, BLUE, ORANGE] = [[.90, .32, 0], [.72, .38, .62], [0, .42, .75], [.96, .62, .05]];
 
-/** To a world in which z points upwards. */
-const upright = { x: (x, y, z) => [y, z, x], y: (x, y, z) => [x, -z, y], z: (x, y, z) => [x, y, z] };
+/** To a world in which z points upwards: which coordinate each one is, and its sign. */
+const upright = { x: [[1, 1], [2, 1], [0, 1]], y: [[0, 1], [2, -1], [1, 1]], z: [[0, 1], [1, 1], [2, 1]] };
 
 /** Positions between -1 and 1, three by three. */
 function positions(places, header) {
-  const all = new Float32Array(places.length), turn = upright[header.up], unit = 2 / (2 ** header.bits - 1);
-  for (let k = 0; k < all.length; k += 3) all.set(turn(places[k] * unit - 1, places[k + 1] * unit - 1, places[k + 2] * unit - 1), k);
+  const all = new Float32Array(places.length), unit = 2 / (2 ** header.bits - 1);
+  upright[header.up].forEach(([from, sign], to) => {
+    for (let k = 0; k < all.length; k += 3) all[k + to] = sign * (places[k + from] * unit - 1);
+  });
   return all;
 }
 
@@ -133,7 +135,7 @@ class Scene {
   open(canvas) {
     const { bodies, contacts } = this.scene;
     this.triangles = bodies.reduce((sum, body) => sum + body.triangles.length / 3, 0);
-    const stage = this.stage = new Stage(canvas, this.triangles + contacts.count < 100000), { gl } = stage;
+    const stage = this.stage = new Stage(canvas), { gl } = stage;
     for (const body of bodies) {
       body.indices = stage.indices(body.triangles);
       body.buffer = stage.buffer(body.places[0]);
@@ -175,8 +177,10 @@ class Scene {
   draw() {
     if (!this.stage) return;
     const { stage, scene, mode } = this, { gl } = stage, paper = JSON.parse(style("--paper"));
+    const less = this.moving || this.hurried;
+    stage.fine = this.smooth && !less;
     stage.begin(this.camera, paper);
-    const less = this.moving || this.hurried, see = mode === "clear" ? 0.3 : 1;
+    const see = mode === "clear" ? 0.3 : 1;
     scene.bodies.forEach((body, number) => {
       if (!body.shown) return;
       const places = body.places[this.frame], tone = PALE[number % PALE.length];
@@ -269,10 +273,17 @@ class Scene {
     return performance.now() - start;
   }
 
+  /** A first picture, before anything is known of how long one takes: of a large scene a sample. */
+  first() {
+    [this.hurried, this.slowLines, this.part, this.most] = [true, true, Math.min(1, 20000 / this.triangles), 2000];
+    this.draw();
+    [this.hurried, this.slowLines, this.part, this.most] = [false, false, 1, Infinity];
+  }
+
   /** Decides from a sample what is left out: while something moves, or always where one picture would take a second. */
   measure() {
     const { triangles, scene: { bodies, contacts } } = this, mode = this.mode;
-    if (triangles < 10000 && contacts.count < 1000) return;
+    if (triangles < 10000 && contacts.count < 1000) return void (this.smooth = true);
     [this.hurried, this.mode, this.most, this.part] = [true, "shaded", 1, Math.min(1, 10000 / triangles)];
     this.took();
     const one = this.took() / (this.part * triangles || 1);
@@ -288,6 +299,7 @@ class Scene {
     }
     if (pair * this.found() > half) this.most = Math.max(300, Math.floor(half / pair));
     this.hurried = all > 1000;
+    this.smooth = all < 200;
     $("everything").hidden = !this.hurried;
     $("everything").textContent = `Draw all, about ${duration(all / 1000)} a picture`;
   }
@@ -296,6 +308,12 @@ class Scene {
 
   reset() {
     if (!this.stage) return;
+    this.fit();
+    this.later();
+  }
+
+  /** Looks at everything. */
+  fit() {
     const { width, height } = this.stage.size();
     const { bodies, contacts, frames } = this.scene, vertices = bodies.reduce((sum, body) => sum + body.places[0].length, 0);
     // Everything of every frame, so that nothing leaves the window; of long films some frames.
@@ -303,7 +321,6 @@ class Scene {
     for (let f = 0; f < frames.length; f += step) for (const body of bodies) all.add(body.places[f]);
     for (const body of bodies) all.add(body.places[this.frame]);
     this.camera.fit([...all, contacts.ends], width, height);
-    this.later();
   }
 
   /** The contact at a place of the canvas, in pixels of the page; -1 for none. */

@@ -10,7 +10,7 @@ function decode(header) {
   const axes = header.axes.map((name, k) => ({ name, values: arrays[`axis ${k}`] }));
   const own = [["F", "fitness"], ["evaluation", "evaluation"], ["seconds", "seconds"]].map(([name, key]) => ({ name, values: arrays[key], own: true }));
   const n = arrays.fitness.length;
-  return { ...header, axes: [...axes, ...own], n, trace: growth(arrays, n === header.total), arrays: undefined };
+  return { ...header, axes: [...axes, ...own], n, trace: growth(arrays, n === header.total), by: Sources.of(header), arrays: undefined };
 }
 
 /** Evaluations, seconds and hits, in order: what the search noted now and then, and every hit if all are listed. */
@@ -96,6 +96,7 @@ class SearchPage {
     this.scatter();
     this.parallel();
     this.growth();
+    this.data.by?.draw();
   }
 
   /** F between 0 and 1, for colours. */

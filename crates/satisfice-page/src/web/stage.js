@@ -47,9 +47,12 @@ void main() {
 }`;
 
 class Stage {
-  /** `smooth`: with edges that are not stepped, which takes longer. */
-  constructor(canvas, smooth) {
-    const gl = canvas.getContext("webgl2", { antialias: smooth, alpha: false });
+  /** Whether to draw with more pixels than the screen has. */
+  fine = false;
+
+  constructor(canvas) {
+    // Edges are smoothed by drawing at rest with twice the pixels: every picture with several samples would be slow in software.
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
     if (!gl) throw new Error("no WebGL 2");
     this.gl = gl;
     this.canvas = canvas;
@@ -94,7 +97,7 @@ class Stage {
 
   /** The size of the window in pixels of the screen. */
   size() {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2), { clientWidth, clientHeight } = this.canvas;
+    const ratio = this.fine ? 2 : Math.min(window.devicePixelRatio || 1, 2), { clientWidth, clientHeight } = this.canvas;
     const [width, height] = [Math.max(1, Math.round(clientWidth * ratio)), Math.max(1, Math.round(clientHeight * ratio))];
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     return { width, height, ratio };

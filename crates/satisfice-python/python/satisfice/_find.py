@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
+import os
 import secrets
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from . import _satisfice
+import numpy as np
+
+from . import _files, _satisfice
 from ._names import texts
 
 _MOST = 2.0**53
@@ -51,11 +55,14 @@ def find(
     threads: int = 1,
     integrality: Any = None,
     categories: Mapping[int, Sequence[Any]] | None = None,
+    x0: Any = None,
     vectorized: bool = False,
     workers: Any = 1,
+    executor: Any = None,
     ordered: bool = False,
     callback: Callable[[Progress], Any] | None = None,
     catch: type[BaseException] | tuple[type[BaseException], ...] = (),
+    checkpoint: str | os.PathLike[str] | None = None,
     reference: bool = False,
 ) -> _satisfice.Report:
     """Find as many distinct x with f(x) < delta as possible.
@@ -66,7 +73,8 @@ def find(
         The function, ``f(x) -> float`` with `x` of shape (d,), or with `vectorized` ``f(X) -> values`` with `X` of shape
         (n, d) and values of shape (n,). It is called on the calling thread, with a fresh float64 array that it may change.
         A value that is NaN or infinite is never a hit, and is counted. Or a problem of the catalogue (see `problem`),
-        for which `bounds`, `delta`, `separation`, `integrality`, `categories`, `vectorized` and `catch` do not apply.
+        for which `bounds`, `delta`, `separation`, `integrality`, `categories`, `x0`, `vectorized`, `workers`, `executor` and
+        `catch` do not apply.
     bounds : sequence of (lower, upper), or scipy.optimize.Bounds
         The range of each axis, both ends included. ``None`` for an axis in `categories`.
     delta : float
@@ -94,18 +102,25 @@ def find(
         The share of the evaluations, from 0 to 0.5, spent on uniform points, from which the report estimates the number of
         hits not seen. By default as the engine prefers.
     islands : int, default 1
-        The number of engines side by side that share their hits.
+        The number of engines side by side that share their hits: after 256 evaluations of each, then 512, then every 1,024.
     threads : int, default 1
         For a problem of the catalogue: the threads that evaluate, 0 for one per core. It does not change the report.
     integrality : bool or sequence of bool, optional
         Which axes are integers (as in `scipy.optimize.differential_evolution`).
     categories : mapping of int to sequence, optional
         Labels of axes that are categories: ``{2: ["steel", "brass"]}``. `f` gets the index of the label.
+    x0 : array-like of shape (d,) or (m, d), optional
+        Points to evaluate first, inside the bounds: good guesses, or hits of another run. Engines start from the best ones.
     vectorized : bool, default False
         Whether `f` takes all points of a batch at once.
     workers : int, map-like, or Executor, default 1
         Where `f` is evaluated: so many processes, a function such as ``pool.map``, or a `concurrent.futures.Executor` (Dask's,
         mpi4py's, ...). See `Search.run`. A `callback` is not called then.
+    executor : int, Executor or Dask client, optional
+        Where the islands run: an island and `f` with it, a round of it a task. For an `f` that is cheap beside what it costs
+        to send a point away. A number starts so many processes. A round that is lost with its worker is run again elsewhere;
+        under a budget of evaluations the report is that of the same islands on this process. Exceptions keep what was found
+        until the last exchange of the islands. With one island, the same as `workers`.
     ordered : bool, default False
         With several workers: whether the report does not depend on the order of their values. See `Search`.
     callback : callable, optional
@@ -113,6 +128,11 @@ def find(
     catch : exception type or tuple of them, default ()
         Exceptions of `f` that count as a value of NaN. They are counted in ``report.failed``; with `vectorized` an
         exception fails its whole batch.
+    checkpoint : path, optional
+        Keep the search in this file: at the beginning, after a second, then every five, and at the end, however it comes. If
+        the file is there, the search goes on from it, and all other arguments must be the same (`seed` may be left out).
+        Under a budget of evaluations the report is then that of one uninterrupted search, except with `workers`
+        that are not `ordered`.
     reference : bool, default False
         For a problem of the catalogue: also count all its hits, for the recall. It can take long.
 
@@ -145,6 +165,14 @@ def find(
     if callback is not None and not callable(callback):
         raise TypeError("callback must be callable")
     told = None if callback is None else _told(callback)
+    saved = _files.read(checkpoint)
+    if seed is None and saved is not None:
+        seed = _satisfice.saved_seed(saved)
+    if executor is not None:
+        if not _is_one(workers):
+            raise ValueError("workers evaluate, and an executor runs islands: give one of them")
+        if islands == 1:
+            workers, executor = executor, None
     run = run_arguments(engine, options, seed, time, evaluations, hits, slices, probes, islands, threads)
     if isinstance(f, _satisfice.Problem):
         given = {
@@ -153,52 +181,52 @@ def find(
             "separation": separation is not None,
             "integrality": integrality is not None,
             "categories": categories is not None,
+            "x0": x0 is not None,
             "vectorized": vectorized,
             "catch": catch != (),
             "workers": not _is_one(workers),
+            "executor": executor is not None,
         }
         for name, is_given in given.items():
             if is_given:
                 raise ValueError(f"{name} does not apply: a problem of the catalogue has its own")
-        return f._run(run, told, reference)
+        return f._run(run, told, reference, saved, _writer(checkpoint))
     if not callable(f):
         raise TypeError(f"f must be callable or a satisfice.Problem, not {type(f).__name__}")
     for name, value, default in [("threads", threads, 1), ("slices", slices, 1), ("reference", reference, False)]:
         if value != default:
             raise ValueError(f"{name} applies to problems of the catalogue only; a function is called on the calling thread")
+    catch = catch if isinstance(catch, tuple) else (catch,)
+    asked = question(_name(f), bounds, delta, separation, integrality, categories, x0)
+    if executor is not None:
+        from ._islands import find_with_islands
+
+        return find_with_islands(
+            f,
+            asked,
+            run,
+            executor,
+            vectorized=bool(vectorized),
+            told=told,
+            catch=catch,
+            checkpoint=checkpoint,
+            saved=saved,
+        )
     if not _is_one(workers):
         if vectorized or callback is not None:
             raise ValueError("vectorized and callback apply to calls on this thread: leave workers out, or them")
         from ._search import Search
 
-        search = Search(
-            bounds,
-            delta=delta,  # type: ignore[arg-type]
-            separation=separation,
-            time=time,
-            evaluations=evaluations,
-            hits=hits,
-            engine=engine,
-            options=options,
-            seed=run["seed"],
-            probes=probes,
-            islands=islands,
-            integrality=integrality,
-            categories=categories,
-            ordered=ordered,
-            name=_name(f),
-        )
-        if hasattr(workers, "submit"):
-            return search.run(f, executor=workers, catch=catch)
-        return search.run(f, workers=workers, catch=catch)
-    return _satisfice.find(
-        f,
-        question(_name(f), bounds, delta, separation, integrality, categories),
-        run,
-        bool(vectorized),
-        told,
-        catch if isinstance(catch, tuple) else (catch,),
-    )
+        search = Search._begin(asked, run, ordered)
+        if saved is not None:
+            search._set(search._search.load_same(saved))
+        on = {"executor": workers} if hasattr(workers, "submit") else {"workers": workers}
+        return search.run(f, **on, catch=catch, checkpoint=checkpoint)
+    return _satisfice.find(f, asked, run, bool(vectorized), told, catch, saved, _writer(checkpoint))
+
+
+def _writer(path: str | os.PathLike[str] | None) -> Callable[[bytes], None] | None:
+    return None if path is None else functools.partial(_files.write, path)
 
 
 def _told(callback: Callable[[Progress], Any]) -> Callable[[int, int, float, float], bool]:
@@ -245,6 +273,7 @@ def question(
     separation: float | Sequence[float] | None,
     integrality: Any,
     categories: Mapping[int, Sequence[Any]] | None,
+    x0: Any,
 ) -> dict[str, Any]:
     """What is searched, as the native part takes it."""
     if bounds is None:
@@ -271,13 +300,32 @@ def question(
         parameters["categories"] = {str(axis): [str(label) for label in words] for axis, words in labels.items()}
     if widths is not None:
         parameters["separation"] = widths
+    starts = _starts(x0, len(axes))
+    if starts:
+        parameters["x0"] = starts
     return {
         "axes": axes,
         "delta": float(delta),
         "separation": widths,
+        "starts": starts,
         "name": "function",
         "parameters": json.dumps(parameters),
     }
+
+
+def _starts(x0: Any, dimension: int) -> list[list[float]]:
+    if x0 is None:
+        return []
+    points = np.asarray(x0, dtype=np.float64)
+    shape = points.shape
+    points = points.reshape(1, -1) if points.ndim == 1 else points
+    if points.ndim != 2 or points.shape[1] != dimension:
+        raise ValueError(f"x0 has shape {shape}: give ({dimension},) for one point, or (m, {dimension})")
+    for index, finite in enumerate(np.isfinite(points).all(axis=1)):
+        if not finite:
+            raise ValueError(f"start point {index} is not finite: {points[index]}")
+    starts: list[list[float]] = points.tolist()
+    return starts
 
 
 def _axes(

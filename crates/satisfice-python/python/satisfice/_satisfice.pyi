@@ -13,6 +13,7 @@ __all__ = [
     "Mesh",
     "Problem",
     "Report",
+    "Rounds",
     "Search",
     "Step",
     "World",
@@ -20,6 +21,8 @@ __all__ = [
     "command",
     "find",
     "listing",
+    "run_island",
+    "saved_seed",
     "version",
 ]
 
@@ -45,8 +48,38 @@ def find(
     vectorized: bool,
     callback: Callable[[int, int, float, float], bool] | None,
     catch: tuple[type[BaseException], ...],
+    saved: bytes | None,
+    save: Callable[[bytes], None] | None,
 ) -> Report:
     """Search a function; `satisfice.find` is the way to call it."""
+
+def saved_seed(bytes: bytes) -> int:
+    """The seed of a saved search."""
+
+def run_island(
+    function: Callable[[Any], Any],
+    plan: bytes,
+    island: bytes,
+    vectorized: bool,
+    catch: tuple[type[BaseException], ...],
+) -> tuple[bytes, int]:
+    """Run an island for a round: what it then is, and how many values were lost to exceptions that were caught."""
+
+@final
+class Rounds:
+    """A search whose islands run elsewhere; `satisfice.find` with an executor uses it."""
+
+    def __new__(cls, question: dict[str, Any], run: dict[str, Any], saved: bytes | None) -> Rounds: ...
+    def plan(self) -> bytes: ...
+    def round(self) -> list[int]: ...
+    def island(self, island: int) -> bytes: ...
+    def take(self, done: bytes, failed: int) -> None: ...
+    def probes(self) -> NDArray[np.float64]: ...
+    def tell_probes(self, values: NDArray[np.float64], failed: int) -> None: ...
+    def end(self, reason: str) -> None: ...
+    def progress(self) -> tuple[int, int, float]: ...
+    def save(self) -> bytes: ...
+    def report(self) -> Report: ...
 
 @final
 class Problem:
@@ -64,6 +97,8 @@ class Problem:
         run: dict[str, Any],
         callback: Callable[[int, int, float, float], bool] | None,
         reference: bool,
+        saved: bytes | None,
+        save: Callable[[bytes], None] | None,
     ) -> Report: ...
     def __reduce__(self) -> tuple[Any, tuple[str, list[tuple[str, str]]]]: ...
 
@@ -286,7 +321,7 @@ class Step:
     def earliest(
         self, delta: float, tolerance: float, time: float | None
     ) -> tuple[list[float], tuple[str, list[int]] | None, bool]: ...
-    def free_step(self, delta: float) -> float: ...
+    def free_step(self, delta: float, time: float | None) -> float: ...
 
 @final
 class Search:
@@ -308,3 +343,4 @@ class Search:
     def save(self) -> bytes: ...
     @classmethod
     def load(cls, bytes: bytes) -> Search: ...
+    def load_same(self, bytes: bytes) -> Search: ...

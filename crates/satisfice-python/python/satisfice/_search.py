@@ -7,32 +7,23 @@ import concurrent.futures as futures
 import contextlib
 import math
 import os
-import pickle
 import queue
-import signal
 import time as clock
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _satisfice
+from ._files import Keeper, write
+from ._workers import LOOK_EVERY, MOST_LOSSES, ExecutorLike, Given, Guarded, Own, check_pickle, is_killed, shaped
 
-#: How often a search that waits for values looks for its time and for Ctrl-C, in seconds.
-_LOOK_EVERY = 0.05
-#: An evaluation that was lost with its worker so often is given up.
-_MOST_LOSSES = 3
 #: Points out at a time where nothing says how many workers there are.
 _IN_FLIGHT = 64
-
-
-class ExecutorLike(Protocol):
-    """What `Search.run` needs of an executor: `concurrent.futures.Executor`, Dask's, mpi4py's and others have it."""
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Any:
-        """Start a call; the future returned has ``result`` and ``add_done_callback``."""
+#: Seconds of an evaluation that is short beside what it costs to wait for the next point.
+_SHORT = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +50,7 @@ class Search:
 
     Parameters
     ----------
-    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, integrality, categories
+    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, integrality, categories, x0
         As for `find`.
     time : float, optional
         Wall time in seconds from now on.
@@ -95,17 +86,25 @@ class Search:
         islands: int = 1,
         integrality: Any = None,
         categories: Any = None,
+        x0: Any = None,
         ordered: bool = False,
         name: str = "function",
     ) -> None:
         from ._find import question, run_arguments
 
         self._search = _satisfice.Search(
-            question(name, bounds, delta, separation, integrality, categories),
+            question(name, bounds, delta, separation, integrality, categories, x0),
             run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1),
             bool(ordered),
         )
         self._deadline = math.inf if time is None else clock.monotonic() + float(time)
+
+    @classmethod
+    def _begin(cls, question: dict[str, Any], run: dict[str, Any], ordered: bool) -> Search:
+        search = cls.__new__(cls)
+        search._search = _satisfice.Search(question, run, bool(ordered))
+        search._deadline = math.inf if run["time"] is None else clock.monotonic() + run["time"]
+        return search
 
     def ask(self, n: int = 1) -> Batch:
         """At most `n` points to evaluate.
@@ -163,12 +162,7 @@ class Search:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the search to a file, from which `load` continues it. It replaces the file when all is written."""
-        partial = f"{os.fspath(path)}.{os.getpid()}.partial"
-        with open(partial, "wb") as file:
-            file.write(self._search.save())
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, path)
+        write(path, self._search.save())
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Search:
@@ -179,11 +173,15 @@ class Search:
     @classmethod
     def _from_bytes(cls, state: bytes) -> Search:
         search = cls.__new__(cls)
-        search._search = _satisfice.Search.load(state)
+        search._set(_satisfice.Search.load(state))
+        return search
+
+    def _set(self, search: _satisfice.Search) -> None:
+        """Be this search, which was saved."""
+        self._search = search
         report = search.report()
         limit = report.to_dict()["budget"]["time_seconds"]
-        search._deadline = math.inf if limit is None else clock.monotonic() + limit - report.elapsed
-        return search
+        self._deadline = math.inf if limit is None else clock.monotonic() + limit - report.elapsed
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
         return Search._from_bytes, (self._search.save(),)
@@ -197,6 +195,7 @@ class Search:
         in_flight: int | None = None,
         time: float | None = None,
         catch: type[BaseException] | tuple[type[BaseException], ...] = (),
+        checkpoint: str | os.PathLike[str] | None = None,
     ) -> _satisfice.Report:
         """Evaluate `f` on workers until the search is over. Points that are pending come first.
 
@@ -212,11 +211,15 @@ class Search:
             Without `executor`: the number of processes, 1 for none but this one; one that dies is replaced, and what it had is evaluated again. Or a
             function such as ``pool.map``, which is given one batch after the other.
         in_flight : int, optional
-            The number of points out at a time; by default the number of processes, and 64 otherwise.
+            The number of points out at a time; by default the number of processes, twice as many if evaluations take less
+            than 0.1 s, and 64 for other workers.
         time : float, optional
             Stop after so many seconds; what is out then stays pending.
         catch : exception type or tuple of them
             Exceptions of `f` that count as a value of NaN.
+        checkpoint : path, optional
+            Save the search to this file at the beginning, after a second, then every five, and at the end, however it comes.
+            `load` reads it.
 
         Returns
         -------
@@ -230,20 +233,26 @@ class Search:
         catch = catch if isinstance(catch, tuple) else (catch,)
         deadline = math.inf if time is None else clock.monotonic() + float(time)
         deadline = min(deadline, self._deadline)
+        keeper = Keeper(checkpoint, self._search.save)
         try:
             if executor is None and workers == 1:
-                self._map(f, map, 1, deadline, catch)
+                self._map(f, map, 1, deadline, catch, keeper)
             elif executor is None and not isinstance(workers, int):
-                self._map(f, workers, in_flight or _IN_FLIGHT, deadline, catch)
+                self._map(f, workers, in_flight or _IN_FLIGHT, deadline, catch, keeper)
             elif executor is not None:
-                _Drive(self, f, _Given(executor), in_flight or _IN_FLIGHT, deadline, catch).run()
+                pool, _ = shaped(executor)
+                _Drive(self, f, pool, in_flight or _IN_FLIGHT, deadline, catch, keeper).run()
             elif isinstance(workers, int):
-                _check_pickle(f)
-                with _Own(workers) as pool:
-                    _Drive(self, f, pool, in_flight or workers, deadline, catch).run()
+                check_pickle(f)
+                with Own(workers) as own:
+                    drive = _Drive(self, f, own, in_flight or workers, deadline, catch, keeper)
+                    drive.prefetch = 0 if in_flight else workers
+                    drive.run()
             if clock.monotonic() >= self._deadline:
                 self._end()
+            keeper.save()
         except BaseException as error:
+            keeper.save()
             with contextlib.suppress(AttributeError):
                 error.report = self.report()  # type: ignore[attr-defined]
                 error.add_note("satisfice: what was found until then is in the attribute `report` of this exception")
@@ -262,9 +271,10 @@ class Search:
         size: int,
         deadline: float,
         catch: tuple[type[BaseException], ...],
+        keeper: Keeper,
     ) -> None:
         """Evaluate one batch after the other."""
-        guarded = _Guarded(f, catch)
+        guarded = Guarded(f, catch)
         batch = self.pending
         while True:
             if len(batch) == 0:
@@ -276,90 +286,15 @@ class Search:
                 raise ValueError(f"the map gave {len(values)} values for {len(batch)} points")
             for ticket, value in zip(batch.tickets.tolist(), values, strict=True):
                 self._take(ticket, value)
+            keeper.save_if_due()
             batch = self.ask(0)
 
     def _take(self, ticket: int, value: Any) -> None:
-        """Tell a value of `_Guarded`."""
+        """Tell a value of `Guarded`."""
         if value is None:
             self._search.fail(ticket)
         else:
             self.tell([ticket], [value])
-
-
-class _Guarded:
-    """The user's function where it is called: a caught exception becomes None."""
-
-    def __init__(self, f: Callable[[Any], Any], catch: tuple[type[BaseException], ...]) -> None:
-        self.f, self.catch = f, catch
-
-    def __call__(self, x: NDArray[np.float64]) -> float | None:
-        try:
-            value = self.f(x)
-        except self.catch:
-            return None
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            kind = type(value).__name__
-            raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
-
-
-def _check_pickle(f: Callable[[Any], Any]) -> None:
-    try:
-        pickle.dumps(f)
-    except Exception as error:
-        raise TypeError(
-            f"{f!r} cannot be sent to another process: define it at the top level of a module, or pass an executor that "
-            "sends functions by value, such as Dask's"
-        ) from error
-
-
-class _Given:
-    """An executor of the user. When it breaks, the search ends; it can go on with another one."""
-
-    generation = 0
-
-    def __init__(self, executor: ExecutorLike) -> None:
-        self.submit = executor.submit
-
-    def replace(self, error: BaseException) -> None:
-        raise error
-
-
-class _Own:
-    """Processes of our own, which are replaced when one dies."""
-
-    def __init__(self, workers: int) -> None:
-        if workers < 1:
-            raise ValueError(f"workers = {workers} is not allowed: at least 1")
-        self.workers, self.generation = workers, 0
-        self.pool = self._start()
-
-    def _start(self) -> futures.ProcessPoolExecutor:
-        # Ctrl-C is for the process that searches.
-        return futures.ProcessPoolExecutor(
-            self.workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
-        )
-
-    def __enter__(self) -> _Own:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._end()
-
-    def _end(self) -> None:
-        processes = list((getattr(self.pool, "_processes", None) or {}).values())
-        self.pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.terminate()
-
-    def submit(self, f: Callable[..., Any], /, *args: Any) -> Any:
-        return self.pool.submit(f, *args)
-
-    def replace(self, error: BaseException) -> None:
-        self._end()
-        self.pool = self._start()
-        self.generation += 1
 
 
 class _Drive:
@@ -369,16 +304,20 @@ class _Drive:
         self,
         search: Search,
         f: Callable[[Any], Any],
-        pool: _Given | _Own,
+        pool: Given | Own,
         in_flight: int,
         deadline: float,
         catch: tuple[type[BaseException], ...],
+        keeper: Keeper,
     ) -> None:
         self.search, self.pool, self.in_flight, self.deadline = search, pool, in_flight, deadline
-        self.f = _Guarded(f, catch)
+        self.keeper = keeper
+        #: So many more points are out if evaluations are so short that workers would wait for the next.
+        self.prefetch = 0
+        self.f = Guarded(f, catch)
         self.done: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        #: Ticket, point and generation of the pool by future.
-        self.out: dict[Any, tuple[int, NDArray[np.float64], int]] = {}
+        #: Ticket, point, generation of the pool and start by future.
+        self.out: dict[Any, tuple[int, NDArray[np.float64], int, float]] = {}
         pending = search.pending
         self.waiting = list(zip(pending.tickets.tolist(), pending.x, strict=True))
         self.known = set(pending.tickets.tolist())
@@ -389,8 +328,9 @@ class _Drive:
     def run(self) -> None:
         try:
             while self._fill() and clock.monotonic() < self.deadline:
+                self.keeper.save_if_due()
                 try:
-                    future = self.done.get(timeout=_LOOK_EVERY)
+                    future = self.done.get(timeout=LOOK_EVERY)
                 except queue.Empty:
                     continue
                 if future in self.out:
@@ -421,12 +361,14 @@ class _Drive:
         except futures.BrokenExecutor as error:
             self.pool.replace(error)
             future = self.pool.submit(self.f, x.copy())
-        self.out[future] = (ticket, x, self.pool.generation)
+        self.out[future] = (ticket, x, self.pool.generation, clock.monotonic())
         future.add_done_callback(self.done.put)
 
     def _take(self, future: Any) -> None:
         alone = len(self.out) == 1
-        ticket, x, generation = self.out.pop(future)
+        ticket, x, generation, begun = self.out.pop(future)
+        if self.prefetch and clock.monotonic() - begun < _SHORT:
+            self.in_flight, self.prefetch = self.in_flight + self.prefetch, 0
         try:
             value = future.result()
         except (futures.BrokenExecutor, futures.CancelledError) as error:
@@ -434,7 +376,7 @@ class _Drive:
                 self.pool.replace(error)
             self._lost(ticket, x, alone)
         except Exception as error:
-            if type(error).__name__ != "KilledWorker":  # of Dask, which has tried it on several workers
+            if not is_killed(error):
                 raise
             self._lost(ticket, x, alone)
         else:
@@ -443,7 +385,7 @@ class _Drive:
     def _lost(self, ticket: int, x: NDArray[np.float64], alone: bool) -> None:
         """Evaluate a point again that was lost with its worker, unless it has killed several."""
         self.losses[ticket] += alone
-        if self.losses[ticket] >= _MOST_LOSSES:
+        if self.losses[ticket] >= MOST_LOSSES:
             self.search._take(ticket, None)
         else:
             self.suspects.append((ticket, x))

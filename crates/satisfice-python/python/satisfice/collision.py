@@ -648,9 +648,10 @@ class Step:
         )
         return Impacts(body_a, body_b, a, b, np.column_stack(times), point_a, point_b, normal, complete)
 
-    def free_step(self, *, threshold: float = 0.0) -> float:
-        """A time up to which the step is proved free of impacts; 1 if the whole step is."""
-        return self._step.free_step(float(threshold))
+    def free_step(self, *, threshold: float = 0.0, time: float | None = None) -> float:
+        """A time up to which the step is proved free of impacts; 1 if the whole step is. After `time` seconds it is what is
+        proved until then: the step is free up to it, and may be for longer."""
+        return self._step.free_step(float(threshold), time)
 
     def earliest(
         self, *, threshold: float = 0.0, tolerance: float = 1e-6, time: float | None = None
@@ -690,11 +691,14 @@ def impacts(
     return step.impacts(threshold=threshold, pairs=pairs, tolerance=tolerance, time=time, threads=threads)
 
 
-def free_step(start: Any, end: Any, faces: Any = None, *, threshold: float = 0.0) -> float:
+def free_step(
+    start: Any, end: Any, faces: Any = None, *, threshold: float = 0.0, time: float | None = None
+) -> float:
     """The part of a step, from 0 to 1, that a mesh can move without an impact with itself; several bodies go into a `Step`.
 
-    It is proved: up to that time no two features touch (for a threshold: come nearer than it).
+    It is proved: up to that time no two features touch (for a threshold: come nearer than it). After `time` seconds it is what
+    is proved until then.
     """
     step = Step()
     step.add(start, end, faces, self_collision=True)
-    return step.free_step(threshold=threshold)
+    return step.free_step(threshold=threshold, time=time)

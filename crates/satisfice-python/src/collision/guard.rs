@@ -14,6 +14,11 @@ use crate::refused;
 /// How often signals are looked for.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
+/// Time that is kept for measuring each pair that is found before a deadline.
+const MEASURING: Duration = Duration::from_nanos(500);
+/// So long after the deadline pairs are still measured, where that was not enough.
+const MEASURED_LATE: Duration = Duration::from_millis(30);
+
 /// Says when to stop, from any thread.
 pub(super) struct Guard {
     begun: Instant,
@@ -54,11 +59,15 @@ impl Guard {
 
     /// Whether to stop, with so many pairs found.
     pub(super) fn stops(&self, found: usize) -> bool {
-        if self.interrupted.load(Ordering::Relaxed) || found >= self.limit {
+        found >= self.limit || self.stops_at(self.deadline)
+    }
+
+    fn stops_at(&self, deadline: Option<Instant>) -> bool {
+        if self.interrupted.load(Ordering::Relaxed) {
             return true;
         }
         let now = now();
-        if self.deadline.is_some_and(|deadline| now >= deadline) {
+        if deadline.is_some_and(|deadline| now >= deadline) {
             return true;
         }
         let passed = (now - self.begun).as_millis() as u64;
@@ -68,6 +77,21 @@ impl Guard {
             Python::attach(|py| self.look(py));
         }
         self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// Whether to stop a query that finds pairs, so that those found can still be measured in time.
+    pub(super) fn stops_before_measuring(&self, found: usize) -> bool {
+        if self.stops(found) {
+            return true;
+        }
+        let measuring = MEASURING.saturating_mul(u32::try_from(found).unwrap_or(u32::MAX));
+        self.deadline
+            .is_some_and(|deadline| now().checked_add(measuring).is_none_or(|end| end >= deadline))
+    }
+
+    /// Whether to stop measuring: Ctrl-C, or long after the deadline.
+    pub(super) fn stops_measuring(&self) -> bool {
+        self.stops_at(self.deadline.and_then(|deadline| deadline.checked_add(MEASURED_LATE)))
     }
 
     fn look(&self, py: Python<'_>) {

@@ -7,6 +7,9 @@ use satisfice_collision::scene::{Body, BodyId, Completeness, Contact, World};
 use super::guard::{Guard, pool};
 use super::{Mesh, Pose, kind, placement, rows, threshold};
 
+/// So many distances are measured between two looks at the clock.
+const LOOK_AFTER: usize = 256;
+
 /// Columns of the pairs: features, distances, closest points where they are wanted, and whether these are all.
 type Columns = (
     Py<PyArray1<u32>>,
@@ -51,7 +54,7 @@ pub(crate) fn close_pairs(
         world.add(second).map_err(crate::refused)?;
     }
     let found = guard.run(py, pool.as_ref(), || {
-        let mut frame = world.frame_until(&|found| guard.stops(found))?;
+        let mut frame = world.frame_until(&|found| guard.stops_before_measuring(found))?;
         // The first feature is one of `a`.
         frame.contacts.retain(|contact| contact.body_a == BodyId::nth(0));
         let mut complete = frame.completeness == Completeness::Proved;
@@ -61,7 +64,10 @@ pub(crate) fn close_pairs(
             frame.contacts.truncate(limit);
             complete = false;
         }
-        measure(&world, &frame.contacts, witnesses).map(|measured| (frame.contacts, measured, complete))
+        let measured = measure(&world, &frame.contacts, witnesses, &guard)?;
+        complete &= measured.distances.len() == frame.contacts.len();
+        frame.contacts.truncate(measured.distances.len());
+        Ok((frame.contacts, measured, complete))
     })?;
     let (contacts, measured, complete) = found;
     let column = |of: fn(&Contact) -> u32| {
@@ -90,14 +96,18 @@ pub(super) struct Measured {
     pub(super) points_b: Vec<[f64; 3]>,
 }
 
-/// Measures contacts in the last frame.
+/// Measures contacts in the last frame: all of them, or the first ones if the guard stops it.
 pub(super) fn measure(
     world: &World,
     contacts: &[Contact],
     witnesses: bool,
+    guard: &Guard,
 ) -> Result<Measured, satisfice_collision::Error> {
     let mut measured = Measured::default();
-    for &contact in contacts {
+    for (number, &contact) in contacts.iter().enumerate() {
+        if number % LOOK_AFTER == 0 && guard.stops_measuring() {
+            break;
+        }
         let proximity = world.proximity(contact)?;
         measured.distances.push(proximity.distance);
         if witnesses {

@@ -132,12 +132,17 @@ impl Step {
             let bodies = self.lock();
             let hits = bodies.step.hits_until(kind, separation, &mut || guard.stops(0))?;
             let mut found = Vec::with_capacity(hits.pairs.len());
+            let mut complete = hits.undecided == 0;
             for pair in hits.pairs {
+                if guard.stops_measuring() {
+                    complete = false;
+                    break;
+                }
                 if let Some(impact) = bodies.impact(kind, pair, separation, tolerance)? {
                     found.push((pair, impact));
                 }
             }
-            Ok((found, hits.undecided == 0))
+            Ok((found, complete))
         })?;
         let numbers: [fn(&MovingContact) -> u32; 4] = [
             |pair| pair.a.body,
@@ -184,9 +189,14 @@ impl Step {
         Ok((earliest.time, first, earliest.is_proved))
     }
 
-    fn free_step(&self, py: Python<'_>, delta: f64) -> PyResult<f64> {
+    /// A time up to which the step is free of impacts.
+    fn free_step(&self, py: Python<'_>, delta: f64, time: Option<f64>) -> PyResult<f64> {
         let separation = Separation::new(delta).map_err(refused)?;
-        let guard = Guard::new(None, None)?;
-        guard.run(py, None, || self.lock().step.free_step(separation))
+        let guard = Guard::new(time, None)?;
+        guard.run(py, None, || {
+            self.lock()
+                .step
+                .free_step_until(separation, &mut || guard.stops(0))
+        })
     }
 }

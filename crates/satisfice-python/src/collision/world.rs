@@ -248,10 +248,10 @@ impl World {
         py: Python<'_>,
         measured: bool,
     ) -> PyResult<([Py<PyArray1<u32>>; 4], Option<Py<PyArray1<f64>>>)> {
-        let (contacts, distances) = self.change(py, |world| {
+        let (contacts, distances) = self.ask(py, None, None, |world, guard| {
             let contacts = world.sorted_contacts();
             let distances = if measured {
-                Some(measure(world, &contacts, false)?.distances)
+                Some(measure(world, &contacts, false, guard)?.distances)
             } else {
                 None
             };

@@ -260,7 +260,7 @@ impl<T> Ledger<T> {
 }
 
 /// The next evaluation count of the trace: 1, 2, 3, …, 10, 12, 15, 19, 24, …: about ten a decade, the same in every run.
-fn next_count(count: u64) -> u64 {
+pub(crate) fn next_count(count: u64) -> u64 {
     count.saturating_add((count / 4).max(1))
 }
 

@@ -4,6 +4,7 @@
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::error::Error;
+use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
@@ -121,6 +122,12 @@ pub trait Engine<S: Real>: Send {
     /// The share of the evaluations that this engine wants spent on [uniform probes](crate::Search::probes), 0 to 0.5.
     fn probes(&self) -> f64 {
         0.0
+    }
+
+    /// What its sources of candidates have proposed and found since the slice began, always in the same order; empty, the default,
+    /// for an engine that has no sources to tell apart.
+    fn sources(&self) -> Vec<SourceCount> {
+        Vec::new()
     }
 
     /// Appends all that changes while the engine runs.

@@ -136,6 +136,7 @@ impl<'de, T: Deserialize<'de> + Identity> Deserialize<'de> for Report<T> {
             ),
             best: run.best,
             trace: run.trace,
+            sources: run.sources,
             version: run.version,
             archive: Arc::new(archive),
         })

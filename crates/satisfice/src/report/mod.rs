@@ -2,8 +2,10 @@
 
 mod json;
 mod run_report;
+mod sources;
 
 pub use run_report::{FoundSolution, RunReport, SliceReport, recall};
+pub use sources::{SourceCount, SourceRow, SourceTrace};
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -126,6 +128,8 @@ pub struct Report<T> {
     pub best: Option<Best<T>>,
     /// Hits at fixed evaluation counts (about ten a decade) and, under a time budget, at each hundredth of it.
     pub trace: Vec<TracePoint>,
+    /// What the sources of the engine proposed and found, for an engine that has several.
+    pub sources: SourceTrace,
     /// The version of this crate.
     pub version: String,
     /// The hits.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Completeness, Counts, Report, TracePoint};
+use super::{Completeness, Counts, Report, SourceTrace, TracePoint};
 use crate::archive::Archive;
 use crate::best::Best;
 use crate::budget::StopReason;
@@ -75,6 +75,9 @@ pub struct RunReport<Spec, S> {
     pub best: Option<Best<S>>,
     /// Distinct hits against evaluations and time, over all slices.
     pub trace: Vec<TracePoint>,
+    /// What the sources of the engine proposed and found, over all slices, for an engine that has several.
+    #[serde(default, skip_serializing_if = "SourceTrace::is_empty")]
+    pub sources: SourceTrace,
     /// The slices one by one, where several were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slices: Vec<SliceReport>,
@@ -214,6 +217,7 @@ impl<Spec, S> RunReport<Spec, S> {
             }
         }
         self.hits = self.solutions.len() as u64;
+        self.sources.append(&report.sources, before);
         let solutions = &self.solutions;
         self.trace.extend(report.trace.iter().map(|point| {
             let evaluations = before + point.evaluations;
@@ -289,6 +293,7 @@ impl<Spec, S> RunReport<Spec, S> {
             probe_hits: None,
             best: None,
             trace: Vec::new(),
+            sources: SourceTrace::default(),
             slices: Vec::new(),
             solutions: Vec::new(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -358,6 +363,7 @@ impl<Spec, S> RunReport<Spec, S> {
     /// Adds the report of a run on another problem, whose solutions are all different, as if it had followed this one.
     pub fn append(&mut self, next: Self) {
         let (evaluations, seconds, hits) = (self.counts.evaluations, self.elapsed_seconds, self.hits);
+        self.sources.append(&next.sources, evaluations);
         self.trace.extend(next.trace.into_iter().map(|point| TracePoint {
             evaluations: evaluations + point.evaluations,
             elapsed_seconds: seconds + point.elapsed_seconds,

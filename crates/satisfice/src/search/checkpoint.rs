@@ -194,7 +194,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         let exchange = running.and_then(|running| {
             let exchange = running.exchange.as_ref()?;
             let slices = running.lanes.iter().map(|lane| lane.slice.save());
-            Some((slices.collect(), exchange.progress.clone()))
+            Some((slices.collect(), exchange.progress.to_go_on()))
         });
         Checkpoint {
             contents: Contents {
@@ -236,6 +236,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.to_verify.end.save(&mut state);
         self.pending().save(&mut state);
         self.starts.save(&mut state);
+        self.sources.save(&mut state);
+        self.next_row.save(&mut state);
         let ledger = &self.ledger;
         Unfinished {
             budget: Budget {

@@ -155,6 +155,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
         let view = slice.view(problem, previous);
         lane.engine
             .tell(&view, &slice.batch, &slice.candidates.outcomes, origin);
+        slice.record_sources(core::iter::once_with(|| lane.engine.sources()));
     }
 
     /// Runs until the slice is over or pauses. `keep` is given if a checkpoint may be wanted: then a batch that a

@@ -58,6 +58,14 @@ impl Progress {
         self.until
     }
 
+    /// The progress to resume from: what was cancelled goes on.
+    pub(super) fn to_go_on(&self) -> Self {
+        Self {
+            ended: self.ended.filter(|&reason| reason != StopReason::Cancelled),
+            ..self.clone()
+        }
+    }
+
     /// Whether it fits a search of so many lanes.
     pub(super) fn fits(&self, lanes: usize) -> bool {
         self.told.len() == lanes
@@ -144,6 +152,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         progress.duplicates = counts.duplicates;
         counts.duplicates += twice;
         common.ledger.sync_counts(counts, observer);
+        common.record_sources(lanes.iter().map(|lane| lane.lane.engine.sources()));
         let known = common.ledger.archive.len();
         let mut finders = Vec::new();
         for (i, lane) in lanes.iter().enumerate() {

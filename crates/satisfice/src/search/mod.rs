@@ -6,6 +6,7 @@ mod lanes;
 mod options;
 mod reporting;
 mod resume;
+mod rounds;
 mod running;
 mod slice;
 mod stage;
@@ -30,6 +31,7 @@ use crate::threads::Threads;
 
 pub use checkpoint::{Checkpoint, Contents, Fingerprint, Unfinished};
 pub use options::RunOptions;
+pub use rounds::{IslandRound, Rounds};
 pub use stepper::Stepper;
 pub use tickets::{Asked, Order, Ticket, TicketCounts, TicketEvent, TicketLog, Tickets, Told};
 

@@ -29,6 +29,9 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         running: Running<P::Scalar, P::Solution>,
     ) -> Report<P::Solution> {
         let (mut slice, lanes) = running.into_parts();
+        let evaluations = slice.ledger.counts.evaluations;
+        let engines = lanes.iter().map(|lane| lane.engine.sources());
+        slice.sources.record(evaluations, engines);
         self.lanes = lanes;
         let times = slice.ledger.close();
         self.shared_calls = slice.ledger.shared_calls();
@@ -79,6 +82,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             unseen,
             best: slice.ledger.best.get().cloned(),
             trace: slice.ledger.trace.clone(),
+            sources: slice.sources.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             archive: Arc::default(),
         }

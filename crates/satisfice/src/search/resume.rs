@@ -128,6 +128,23 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     }
 }
 
+impl<P: SatisficingProblem + ?Sized> Search<P> {
+    /// The same, with a flag that cancels the slice, in place of the one that it began with.
+    ///
+    /// # Errors
+    /// As [`Search::run_resumed`].
+    pub fn start_resumed_until<'a>(
+        &'a mut self,
+        problem: &'a P,
+        cancel: &Cancel,
+    ) -> Result<Stepper<'a, P>, Error> {
+        if let Some(running) = &mut self.unfinished {
+            running.set_cancel(Some(cancel));
+        }
+        self.start_resumed(problem)
+    }
+}
+
 /// The slice of all lanes.
 pub(super) fn restore<S: Real, T: Identity + Clone + Send + Sync>(
     saved: Contents<T>,
@@ -187,6 +204,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let (from, to): (usize, usize) = (reader.read()?, reader.read()?);
         let pending: Option<Pending<S>> = reader.read()?;
         let starts: Vec<S> = reader.read()?;
+        let (sources, next_row) = (reader.read()?, reader.read()?);
         reader.finish()?;
         saved.check(previous, from, to)?;
         if pending
@@ -216,6 +234,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let mut slice = Self::begin(&saved.budget, dimension, probes, from..to, reached);
         slice.last = last;
         slice.starts = starts;
+        (slice.sources, slice.next_row) = (sources, next_row);
         if let Some(pending) = pending {
             slice.stage = Stage::Repeat(pending);
         }

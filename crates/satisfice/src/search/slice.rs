@@ -1,7 +1,7 @@
 //! What a slice holds between its beginning and its end, and the stage it is at.
 
 use super::stage::{BatchSource, Pending, Stage};
-use crate::accounting::{Ledger, Reached};
+use crate::accounting::{Ledger, Reached, next_count};
 use crate::archive::Archive;
 use crate::batch::Batch;
 use crate::budget::Budget;
@@ -10,7 +10,7 @@ use crate::engine::Ask;
 use crate::identity::Identity;
 use crate::probes::Probes;
 use crate::problem::SatisficingProblem;
-use crate::report::Counts;
+use crate::report::{Counts, SourceCount, SourceTrace};
 use crate::scalar::Real;
 use crate::view::{Calls, Scratches, View};
 
@@ -32,6 +32,9 @@ pub(super) struct Slice<S, T> {
     pub(super) starts: Vec<S>,
     /// Evaluations after which nothing is proposed for the time being.
     pub(super) pause: u64,
+    /// What the engine's sources proposed and found, and the evaluations at which the next row is due.
+    pub(super) sources: SourceTrace,
+    pub(super) next_row: u64,
     pub(super) calls: Calls,
     pub(super) scratches: Scratches<S, T>,
 }
@@ -58,8 +61,20 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             to_verify,
             starts: Vec::new(),
             pause: u64::MAX,
+            sources: SourceTrace::default(),
+            next_row: 1,
             calls,
             scratches: Scratches::default(),
+        }
+    }
+
+    /// Writes down what the sources of the engines have proposed and found, if that is due.
+    #[inline]
+    pub(super) fn record_sources(&mut self, engines: impl Iterator<Item = Vec<SourceCount>>) {
+        let evaluations = self.ledger.counts.evaluations;
+        if evaluations >= self.next_row {
+            self.sources.record(evaluations, engines);
+            self.next_row = next_count(evaluations);
         }
     }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Search;
 use super::checkpoint::Checkpoint;
 use super::lane::RunningLane;
+use super::lanes::Exchange;
 use super::options::{Keeper, RunOptions};
 use super::running::{Running, Turn};
 use super::stage::Stage;
@@ -41,12 +42,12 @@ use crate::threads::Threads;
 /// # Ok::<(), satisfice::Error>(())
 /// ```
 pub struct Stepper<'a, P: SatisficingProblem + ?Sized> {
-    search: &'a mut Search<P>,
-    problem: &'a P,
+    pub(super) search: &'a mut Search<P>,
+    pub(super) problem: &'a P,
     /// Taken by `finish`.
-    running: Option<Running<P::Scalar, P::Solution>>,
+    pub(super) running: Option<Running<P::Scalar, P::Solution>>,
     /// The batch that is out.
-    turn: Turn,
+    pub(super) turn: Turn,
 }
 
 impl<P: SatisficingProblem + ?Sized> core::fmt::Debug for Stepper<'_, P> {
@@ -152,6 +153,57 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
         Ok(())
     }
 
+    /// Enters the fitness of the first of the candidates that [`ask`](Stepper::ask) gave, as far as they are evaluated, so that a
+    /// [checkpoint](Stepper::checkpoint) keeps it. All of the batch is still to be told.
+    ///
+    /// # Errors
+    /// [`Error::Tell`] for more values than candidates.
+    pub fn note(&mut self, fitness: &[P::Scalar]) -> Result<(), Error> {
+        let turn = self.turn;
+        match self.running.as_mut().and_then(|running| running.slice_at(turn)) {
+            Some(slice) => slice.candidates.take_first(fitness),
+            None if fitness.is_empty() => Ok(()),
+            None => Err(Error::Tell {
+                wanted: 0,
+                got: fitness.len(),
+            }),
+        }
+    }
+
+    /// The fitness of the first of the candidates that [`ask`](Stepper::ask) gave, where it was [noted](Stepper::note) before the
+    /// slice was saved. After [`start_resumed`](Search::start_resumed) only the others need to be evaluated.
+    ///
+    /// ```
+    /// use satisfice::{engine, from_fn, Budget, SatisficingProblem, Search, Space};
+    /// let problem = from_fn(Space::lattice(2, 50)?, 3.0, |x: &[f64]| x[0] + x[1]);
+    /// let mut search = Search::named("random")?;
+    /// let mut slice = search.start(&problem, &Budget::evaluations(5000))?;
+    /// slice.ask()?;
+    /// slice.note(&[81.0, 7.0])?; // that took an hour
+    /// let saved = slice.checkpoint();
+    ///
+    /// let mut search = Search::resume(saved, engine::build("random")?)?;
+    /// let mut slice = search.start_resumed(&problem)?;
+    /// let batch = slice.ask()?.to_vec();
+    /// let mut fitness = slice.noted().to_vec();
+    /// assert_eq!(fitness, [81.0, 7.0]);
+    /// fitness.extend(batch[2..].iter().map(|candidate| problem.fitness(candidate)));
+    /// slice.tell(&fitness)?;
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn noted(&self) -> &[P::Scalar] {
+        let slice = self.running.as_ref().and_then(|running| match self.turn {
+            Turn::Lane(lane) => running.lanes.get(lane).map(|lane| &lane.slice),
+            Turn::Probes => running.exchange.as_ref().map(|exchange| &exchange.common),
+            Turn::Over => None,
+        });
+        slice.map_or(&[], |slice| {
+            let known = slice.candidates.ready.min(slice.candidates.live);
+            &slice.candidates.fitness[..known]
+        })
+    }
+
     /// Whether the time is up or the slice is cancelled. To be asked between the evaluations of a batch, which
     /// [`finish_with`](Stepper::finish_with) can end early.
     pub fn is_interrupted(&mut self) -> bool {
@@ -178,11 +230,22 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
     /// # Errors
     /// [`Error::Tell`] for more values than candidates.
     pub fn finish_with(mut self, fitness: &[P::Scalar]) -> Result<Report<P::Solution>, Error> {
-        let turn = self.turn;
-        let slice = self.running.as_mut().and_then(|running| running.slice_at(turn));
-        match slice {
+        self.end_with(fitness)?;
+        Ok(self.finish())
+    }
+
+    /// Ends the slice in the middle of a batch as [`finish_with`](Stepper::finish_with) does, without the report yet.
+    pub(super) fn end_with(&mut self, fitness: &[P::Scalar]) -> Result<(), Error> {
+        let turn = core::mem::replace(&mut self.turn, Turn::Over);
+        let Some(running) = &mut self.running else {
+            return Ok(());
+        };
+        match running.slice_at(turn) {
             Some(slice) => {
-                slice.candidates.take_first(fitness)?;
+                if let Err(error) = slice.candidates.take_first(fitness) {
+                    self.turn = turn;
+                    return Err(error);
+                }
                 slice.ledger.evaluated_elsewhere(fitness.len());
                 slice.ledger.stop.get_or_insert(StopReason::Cancelled);
             }
@@ -194,15 +257,13 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
                 });
             }
         }
-        if let Some(running) = &mut self.running {
-            running.settle(turn, self.problem, &self.search.previous, &mut ());
-            if running.exchange.is_some() {
-                let reason = running.slice_at(turn).and_then(|slice| slice.ledger.stop);
-                running.end(reason.unwrap_or(StopReason::Cancelled));
-            }
+        running.settle(turn, self.problem, &self.search.previous, &mut ());
+        let searching = running.exchange.as_ref().is_some_and(Exchange::is_searching);
+        if searching || (running.exchange.is_some() && turn != Turn::Over) {
+            let reason = running.slice_at(turn).and_then(|slice| slice.ledger.stop);
+            running.end(reason.unwrap_or(StopReason::Cancelled));
         }
-        self.turn = Turn::Over;
-        Ok(self.finish())
+        Ok(())
     }
 
     /// The search and the slice as they are now; a batch that is out is asked for again after resuming. Cost: a copy of the

@@ -5,6 +5,7 @@ use crate::context::Context;
 use crate::engine::local::flood::Flood;
 use crate::engine::{Answers, Ask, Engine, Origin, WarmStart};
 use crate::error::Error;
+use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Part, Reader, Saved, State};
@@ -86,6 +87,9 @@ impl<S: Real> Engine<S> for FloodFill<S> {
     }
     fn probes(&self) -> f64 {
         self.inner.probes()
+    }
+    fn sources(&self) -> Vec<SourceCount> {
+        self.inner.sources()
     }
 
     fn save(&self, state: &mut State) {

@@ -5,6 +5,7 @@ use crate::context::Context;
 use crate::engine::exact::region_tree::{Split, Splitter};
 use crate::engine::{Answers, Ask, Engine, Origin, WarmStart};
 use crate::error::Error;
+use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::{Region, Space};
@@ -291,6 +292,9 @@ impl<S: Real> Engine<S> for Pruned<S> {
     }
     fn probes(&self) -> f64 {
         self.inner.probes()
+    }
+    fn sources(&self) -> Vec<SourceCount> {
+        self.inner.sources()
     }
 
     fn save(&self, state: &mut State) {

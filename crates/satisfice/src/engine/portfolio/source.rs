@@ -1,5 +1,9 @@
 //! The sources of candidates, and which of them are arms of the bandit.
 
+use crate::batch::Outcome;
+use crate::report::SourceCount;
+use crate::scalar::Real;
+
 /// Where a candidate comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(super) enum Source {
@@ -18,6 +22,38 @@ pub(super) enum Source {
     Neighbour,
     /// A near miss of the slice before.
     NearMiss,
+}
+
+/// The names of all sources, in their order.
+const NAMES: [&str; 9] = [
+    "uniform",
+    "swarms",
+    "climbers",
+    "steps",
+    "trial steps",
+    "recombination",
+    "populations",
+    "neighbours",
+    "near misses",
+];
+
+/// What each source has proposed and found since the slice began.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Tally([[u64; 2]; NAMES.len()]);
+
+impl Tally {
+    pub(super) fn count<S: Real>(&mut self, source: Source, outcome: Outcome<S>) {
+        let [proposed, hits] = &mut self.0[source as usize];
+        *proposed += u64::from(outcome != Outcome::NotEvaluated);
+        *hits += u64::from(outcome.is_hit());
+    }
+
+    pub(super) fn counts(&self) -> Vec<SourceCount> {
+        let counts = NAMES.iter().zip(&self.0);
+        counts
+            .map(|(&name, &[proposed, hits])| SourceCount { name, proposed, hits })
+            .collect()
+    }
 }
 
 /// A candidate's source, and which swarm, climber, step or trial of it.

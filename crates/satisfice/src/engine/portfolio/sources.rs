@@ -6,7 +6,7 @@ use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
 use super::scan::Scan;
-use super::source::{ARMS, CROSS, MEMBER, Source, TRIAL, Tag, arm_of};
+use super::source::{ARMS, CROSS, MEMBER, Source, TRIAL, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -16,6 +16,7 @@ use crate::context::Context;
 use crate::engine::local::recombination::recombine;
 use crate::engine::{Ask, Engine, Origin};
 use crate::error::Error;
+use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, Saved, State};
@@ -46,6 +47,7 @@ pub(super) struct Sources<S> {
     neighbourhoods: Neighbourhoods<S>,
     near_misses: NearMisses<S>,
     tags: Vec<Tag>,
+    tally: Tally,
     trials: Vec<S>,
     position: Vec<S>,
 }
@@ -73,6 +75,7 @@ impl<S: Real> Sources<S> {
             neighbourhoods: Neighbourhoods::new(settings.neighbours == NeighbourTiming::Late),
             near_misses: NearMisses::new(),
             tags: Vec::new(),
+            tally: Tally::default(),
             trials: Vec::new(),
             position: Vec::new(),
         }
@@ -318,6 +321,10 @@ impl<S: Real> Engine<S> for Sources<S> {
         PROBES
     }
 
+    fn sources(&self) -> Vec<SourceCount> {
+        self.tally.counts()
+    }
+
     fn begin(&mut self, context: &dyn Context<S>) {
         let space = context.space();
         let dimension = space.dimension();
@@ -326,6 +333,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.begin(dimension, follows);
         self.position = vec![S::zero(); dimension];
         self.hits.clear();
+        self.tally = Tally::default();
         let lattice = space.axes().iter().all(crate::Axis::is_integer);
         self.visited = lattice.then(|| Visited::new(space));
         self.scan = Scan::new(space);
@@ -438,6 +446,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
             let hit = outcome.is_hit();
+            self.tally.count(source, *outcome);
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
             }
@@ -451,7 +460,7 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn save(&self, state: &mut State) {
-        (self.arms, self.hits.clone()).save(state);
+        (self.tally, self.arms, self.hits.clone()).save(state);
         self.visited.save(state);
         self.scan.save(state);
         self.swarms.save(state);
@@ -465,7 +474,7 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        (self.arms, self.hits) = from.read()?;
+        (self.tally, self.arms, self.hits) = from.read()?;
         self.visited = from.read()?;
         self.scan = from.read()?;
         self.swarms.restore(from)?;

@@ -301,6 +301,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             let view = self.slice.view(problem, previous);
             lane.engine.tell(&view, batch, &progress.outcomes, Origin::Engine);
         }
+        let engines = self.lanes.iter().map(|lane| lane.lane.engine.sources());
+        self.slice.record_sources(engines);
     }
 
     /// Lets a lane, the probes, or all engines know what became of a candidate that is not out any more.

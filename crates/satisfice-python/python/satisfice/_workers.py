@@ -1,0 +1,118 @@
+"""Where functions are evaluated: executors, processes of our own, and what happens when one of these dies."""
+
+from __future__ import annotations
+
+import concurrent.futures as futures
+import pickle
+import signal
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: How often a search that waits for values looks for its time and for Ctrl-C, in seconds.
+LOOK_EVERY = 0.05
+#: What was lost with its worker so often is given up.
+MOST_LOSSES = 3
+
+
+class ExecutorLike(Protocol):
+    """What `Search.run` needs of an executor: `concurrent.futures.Executor`, Dask's, mpi4py's and others have it."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Any:
+        """Start a call; the future returned has ``result`` and ``add_done_callback``."""
+
+
+class Guarded:
+    """The user's function where it is called: a caught exception becomes None."""
+
+    def __init__(self, f: Callable[[Any], Any], catch: tuple[type[BaseException], ...]) -> None:
+        self.f, self.catch = f, catch
+
+    def __call__(self, x: NDArray[np.float64]) -> float | None:
+        try:
+            value = self.f(x)
+        except self.catch:
+            return None
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            kind = type(value).__name__
+            raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
+
+
+def check_pickle(f: Callable[[Any], Any]) -> None:
+    try:
+        pickle.dumps(f)
+    except Exception as error:
+        raise TypeError(
+            f"{f!r} cannot be sent to another process: define it at the top level of a module, or pass an executor that "
+            "sends functions by value, such as Dask's"
+        ) from error
+
+
+def is_killed(error: BaseException) -> bool:
+    """Whether Dask gave a task up because it was lost with several workers."""
+    return type(error).__name__ == "KilledWorker"
+
+
+def shaped(executor: Any) -> tuple[Given, int | None]:
+    """An executor of the user, or that of a Dask client, and how many workers it has, where that is known."""
+    if hasattr(executor, "get_executor"):
+        threads = executor.nthreads()
+        return Given(executor.get_executor()), sum(threads.values()) or None
+    if not hasattr(executor, "submit"):
+        raise TypeError(f"{executor!r} is no executor: it has no method submit")
+    workers = getattr(executor, "_max_workers", None)
+    return Given(executor), workers if isinstance(workers, int) else None
+
+
+class Given:
+    """An executor of the user. When it breaks, the search ends; it can go on with another one."""
+
+    generation = 0
+
+    def __init__(self, executor: ExecutorLike) -> None:
+        self.submit = executor.submit
+
+    def replace(self, error: BaseException) -> None:
+        raise error
+
+
+class Own:
+    """Processes of our own, which are replaced when one dies."""
+
+    def __init__(self, workers: int) -> None:
+        if workers < 1:
+            raise ValueError(f"workers = {workers} is not allowed: at least 1")
+        self.workers, self.generation = workers, 0
+        self.pool = self._start()
+
+    def _start(self) -> futures.ProcessPoolExecutor:
+        # Ctrl-C is for the process that searches.
+        return futures.ProcessPoolExecutor(
+            self.workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
+        )
+
+    def __enter__(self) -> Own:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+
+    def _end(self) -> None:
+        processes = list((getattr(self.pool, "_processes", None) or {}).values())
+        self.pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()
+
+    def submit(self, f: Callable[..., Any], /, *args: Any) -> Any:
+        return self.pool.submit(f, *args)
+
+    def replace(self, error: BaseException) -> None:
+        self._end()
+        self.pool = self._start()
+        self.generation += 1
+
+
