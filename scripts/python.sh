@@ -15,7 +15,7 @@ if ! "${PYTHON:-python3}" -c 'import sys, venv, ensurepip; sys.exit(sys.version_
 fi
 [ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment"
 tools=(maturin pytest pandas)
-[ "${FULL:-0}" = 1 ] && tools+=(abi3audit mypy distributed scipy trimesh)
+[ "${FULL:-0}" = 1 ] && tools+=(abi3audit mypy distributed scipy trimesh hyperqueue)
 "$python" -m pip install --quiet --disable-pip-version-check "${tools[@]}"
 
 cargo fmt --check

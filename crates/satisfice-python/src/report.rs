@@ -5,7 +5,6 @@ use pyo3::exceptions::{PyImportError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyType};
-use satisfice_catalogue::black_box::Point;
 use satisfice_catalogue::report::FoundSolution;
 use satisfice_catalogue::{RunReport, RunSpec, json};
 use serde_json::Value;
@@ -58,7 +57,7 @@ impl Report {
     /// The report of a search of a function, in one slice.
     pub(crate) fn of_function(
         spec: RunSpec,
-        report: &satisfice::Report<Point>,
+        report: &satisfice::Report<satisfice::Located<f64>>,
         failed: u64,
     ) -> PyResult<Self> {
         // Threads do not change a report, and JSON does not keep them.

@@ -9,7 +9,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use satisfice::{Cancel, IslandRound, StopReason};
 use satisfice_catalogue::RunSpec;
-use satisfice_catalogue::black_box::Point;
 use serde::{Deserialize, Serialize};
 
 use crate::arguments::{Run, budget};
@@ -31,7 +30,7 @@ struct Inner {
     /// Taken by `report`.
     rounds: Option<satisfice::Rounds<Function>>,
     /// The islands that have to run until the next exchange.
-    due: Vec<IslandRound<Point>>,
+    due: Vec<IslandRound<satisfice::Located<f64>>>,
     failed: u64,
 }
 
@@ -122,7 +121,7 @@ impl Rounds {
     /// Enters what `run_island` returned.
     fn take(&self, py: Python<'_>, done: &[u8], failed: u64) -> PyResult<()> {
         self.with(py, |inner, rounds| {
-            let done: IslandRound<Point> = serde_json::from_slice(done).map_err(damaged)?;
+            let done: IslandRound<satisfice::Located<f64>> = serde_json::from_slice(done).map_err(damaged)?;
             inner.failed += failed;
             rounds.take(done).map_err(refused)
         })
@@ -206,7 +205,7 @@ pub(crate) fn run_island<'py>(
     catch: Bound<'py, PyTuple>,
 ) -> PyResult<(Bound<'py, PyBytes>, u64)> {
     let plan: Plan = serde_json::from_slice(plan).map_err(damaged)?;
-    let round: IslandRound<Point> = serde_json::from_slice(island).map_err(damaged)?;
+    let round: IslandRound<satisfice::Located<f64>> = serde_json::from_slice(island).map_err(damaged)?;
     let problem = plan.question.problem()?;
     let mut search = round.search::<Function>(engine(&plan.spec)?).map_err(damaged)?;
     let cancel = Cancel::new();

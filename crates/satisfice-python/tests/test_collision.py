@@ -191,9 +191,69 @@ def test_a_limit_and_a_time_end_a_query_early():
     above = (fine[0] + [0, 0, 0.001], fine[1])
     some = collision.close_pairs(fine, above, threshold=0.02, limit=1000)
     assert not some.complete and len(some) == 1000 and (some.distance < 0.02).all()
-    begun = time.monotonic()
-    some = collision.close_pairs(fine, above, threshold=0.2, pairs="vertex-vertex", time=0.05)
-    assert not some.complete and time.monotonic() - begun < 5.0
+
+
+def at_last(limit, ask):
+    """Whether a query ends within 100 ms of its limit; a machine that is busy with other things has three tries."""
+    for _ in range(3):
+        begun = time.monotonic()
+        answer = ask()
+        late = time.monotonic() - begun - limit
+        if late < 0.1:
+            return answer
+    raise AssertionError(f"{late} s late")
+
+
+def test_a_deadline_is_kept_with_millions_of_pairs_found():
+    mesh = collision.mesh(*sheet(400))
+    above = collision.mesh(sheet(400)[0] + [0, 0, 0.001], sheet(400)[1])
+    collision.any_closer(mesh, above, threshold=1e-6)  # builds the trees
+    some = at_last(
+        0.3, lambda: collision.close_pairs(mesh, above, threshold=0.2, pairs="vertex-vertex", witnesses=True, time=0.3)
+    )
+    assert not some.complete and 1000 < len(some.i) == len(some.distance) == len(some.point_a)
+    assert (some.distance < 0.2).all()
+
+
+def crumpled(n):
+    """A sheet that is moved into itself, so that the descent to its first impact is long."""
+    vertices, faces = sheet(n, noise=0.3)
+    return vertices, -vertices, faces
+
+
+def test_a_free_step_can_be_cut_short():
+    start, end, faces = crumpled(60)
+    step = collision.Step()
+    step.add(start, end, faces, self_collision=True)
+    whole = step.free_step(threshold=1e-9)
+    cut = at_last(0.02, lambda: step.free_step(threshold=1e-9, time=0.02))
+    assert 0 <= cut <= whole
+
+
+@pytest.mark.parametrize("query", ["pairs", "step"])
+def test_ctrl_c_ends_long_queries_soon(query):
+    if query == "pairs":
+        mesh = collision.mesh(*sheet(400))
+        above = collision.mesh(sheet(400)[0] + [0, 0, 0.001], sheet(400)[1])
+        collision.any_closer(mesh, above, threshold=1e-6)
+
+        def ask():
+            collision.close_pairs(mesh, above, threshold=0.5, pairs="vertex-vertex", limit=10**9)
+    else:
+        start, end, faces = crumpled(300)
+        step = collision.Step()
+        step.add(start, end, faces, self_collision=True)
+
+        def ask():
+            while True:
+                step.free_step(threshold=1e-9)
+
+    def interrupted():
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            ask()
+
+    at_last(0.3, interrupted)
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -1,61 +1,45 @@
 """The recipe for HyperQueue in docs/python/cluster.md, with a server and a worker on this machine."""
 
 import json
-import os
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from conftest import command, without_times
+from conftest import command
 
-HQ = shutil.which("hq") or shutil.which("hq", path=str(Path(sys.executable).parent))
 SUITE = """
-seeds = [1, 2]
-budget = { evaluations = 300 }
-[[problem]]
+title = "Mine"
+seeds = "0..2"
+
+[[part]]
 name = "queens"
-n = 6
-[[engine]]
-name = "random"
-[[engine]]
-name = "pso"
+engines = ["random", "pso"]
+problems = [{ name = "queens", n = 6 }]
+evaluations = 300
 """
 
 
-@pytest.mark.skipif(HQ is None, reason="HyperQueue is not installed (pip install hyperqueue)")
-def test_a_sweep_in_shards_on_hyperqueue(tmp_path):
-    environment = {**os.environ, "HQ_SERVER_DIR": str(tmp_path / "hq"), "PYTHON": sys.executable}
+def runs(folder):
+    """Engine, seed and counts of each run, in any order."""
+    lines = (Path(folder) / "results.jsonl").read_text().splitlines()
+    reports = [json.loads(line) for line in lines]
+    return sorted((report["engine"], report["seed"], report["evaluations"], report["hits"]) for report in reports)
+
+
+def test_a_sweep_in_shards(tmp_path):
+    hyperqueue = pytest.importorskip("hyperqueue")
+    from hyperqueue.cluster import LocalCluster, WorkerConfig
+
     (tmp_path / "mine.toml").write_text(SUITE)
-
-    def hq(*arguments, start=False):
-        run = subprocess.Popen if start else subprocess.run
-        options = {} if start else {"check": True, "timeout": 60}
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL} if start else {"capture_output": True, "text": True}
-        return run([HQ, *arguments], cwd=tmp_path, env=environment, **quiet, **options)
-
-    server = hq("server", "start", "--host", "127.0.0.1", start=True)
-    worker = None
-    try:
-        hq("server", "wait", "--timeout", "30s")
-        worker = hq("worker", "start", "--cpus", "2", start=True)
-        job = '"$PYTHON" -m satisfice bench mine.toml --shard "$HQ_TASK_ID/2" --out "shard-$HQ_TASK_ID"'
-        hq("submit", "--array", "1-2", "--wait", "sh", "-c", job)
-    finally:
-        for process in (worker, server):
-            if process is not None:
-                process.terminate()
-                process.wait()
-    shards = sorted(str(path) for path in tmp_path.glob("shard-*"))
-    assert len(shards) == 2
-    merged = command("bench", "merge", *shards, "--out", tmp_path / "merged")
+    job = hyperqueue.Job(default_workdir=tmp_path)
+    for shard in (1, 2):
+        job.program(
+            [sys.executable, "-m", "satisfice", "bench", "mine.toml", "--shard", f"{shard}/2", "--out", f"shard-{shard}"]
+        )
+    with LocalCluster(server_dir=str(tmp_path / "hq"), worker_config=WorkerConfig(cores=2)) as cluster:
+        client = cluster.client()
+        assert client.wait_for_jobs([client.submit(job)])
+    merged = command("bench", "merge", tmp_path / "shard-1", tmp_path / "shard-2", "--out", tmp_path / "merged")
     assert merged.returncode == 0, merged.stderr
-    whole = command("bench", tmp_path / "mine.toml", "--out", tmp_path / "whole")
-    assert whole.returncode == 0, whole.stderr
-
-    def runs(folder):
-        lines = [line for path in sorted(Path(folder).glob("*.jsonl")) for line in path.read_text().splitlines()]
-        return sorted(json.dumps(without_times(line), sort_keys=True) for line in lines)
-
-    assert len(runs(tmp_path / "merged")) == 4 and runs(tmp_path / "merged") == runs(tmp_path / "whole")
+    assert [run[:3] for run in runs(tmp_path / "merged")] == [(engine, seed, 300) for engine in ("pso", "random") for seed in (0, 1)]
+    assert runs(tmp_path / "merged") == sorted(runs(tmp_path / "shard-1") + runs(tmp_path / "shard-2"))
