@@ -6,6 +6,7 @@ import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
 
 import evaluations
 import numpy as np
@@ -101,12 +102,12 @@ def test_a_time_and_a_callback_end_the_search():
 def test_islands_on_dask(tmp_path, here):
     distributed = pytest.importorskip("distributed")
     with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path) as client:
-        client.upload_file(evaluations.__file__)
+        client.upload_file(str(Path(__file__).with_name("evaluations.py")))
         assert same(satisfice.find(evaluations.ring, SQUARE, **RING, executor=client), here)
         victim = next(iter(client.run(os.getpid).values()))
         timer = threading.Timer(0.4, os.kill, (victim, 9))
         timer.start()
-        slow = {**RING, "evaluations": 4000}
+        slow = {**RING, "evaluations": 2000}
         report = satisfice.find(evaluations.slightly_slow, SQUARE, **slow, executor=client)
         timer.join()
         assert same(report, satisfice.find(evaluations.ring, SQUARE, **slow))

@@ -110,6 +110,11 @@ impl Budget {
                 "nothing limits it: give a time, a number of evaluations or of hits",
             ));
         }
+        if self.time.is_some() && !crate::clock::PASSES {
+            return Err(Error::Budget(
+                "there is no clock here: limit the evaluations or the hits",
+            ));
+        }
         if self.time == Some(Duration::ZERO) {
             return Err(Error::Budget("the time is zero: give at least a microsecond"));
         }

@@ -3,16 +3,58 @@
 use core::time::Duration;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 use std::time::Instant;
 
 use crate::budget::Cancel;
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+use still::Instant;
+
+/// Whether time passes here: the web's plain WebAssembly has no clock, and asking for it there panics.
+pub(crate) const PASSES: bool = cfg!(not(all(target_family = "wasm", target_os = "unknown")));
+
+/// A clock that stands still.
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+mod still {
+    use core::ops::Sub;
+    use core::time::Duration;
+
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub(crate) struct Instant;
+
+    impl Instant {
+        pub(crate) fn now() -> Self {
+            Self
+        }
+
+        pub(crate) fn elapsed(self) -> Duration {
+            Duration::ZERO
+        }
+
+        #[cfg(feature = "rayon")]
+        pub(crate) fn checked_add(self, _: Duration) -> Option<Self> {
+            None
+        }
+    }
+
+    impl Sub for Instant {
+        type Output = Duration;
+
+        fn sub(self, _: Self) -> Duration {
+            Duration::ZERO
+        }
+    }
+}
 
 /// About this much time may pass between two looks at the clock...
 const LOOK_EVERY: Duration = Duration::from_micros(20);
 /// ...and at most this many evaluations, so that a fitness that suddenly becomes slow is noticed.
 const LOOK_AFTER: u64 = 4096;
 
-#[expect(clippy::disallowed_methods, reason = "this is clock.rs")]
+#[cfg_attr(
+    not(all(target_family = "wasm", target_os = "unknown")),
+    expect(clippy::disallowed_methods, reason = "this is clock.rs")
+)]
 fn now() -> Instant {
     Instant::now()
 }

@@ -321,10 +321,10 @@ def _starts(x0: Any, dimension: int) -> list[list[float]]:
     points = points.reshape(1, -1) if points.ndim == 1 else points
     if points.ndim != 2 or points.shape[1] != dimension:
         raise ValueError(f"x0 has shape {shape}: give ({dimension},) for one point, or (m, {dimension})")
-    for index, finite in enumerate(np.isfinite(points).all(axis=1)):
-        if not finite:
-            raise ValueError(f"start point {index} is not finite: {points[index]}")
     starts: list[list[float]] = points.tolist()
+    for index, start in enumerate(starts):
+        if not all(map(math.isfinite, start)):
+            raise ValueError(f"start point {index} is not finite: {start}")
     return starts
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import collections
 import concurrent.futures as futures
 import contextlib
+import functools
 import math
 import os
 import queue
 import time as clock
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,9 @@ def find_with_islands(
     def island(number: int) -> tuple[Any, ...]:
         return _run_island, f, plan, rounds.island(number), vectorized, catch
 
+    def probes(part: NDArray[np.float64]) -> tuple[Any, ...]:
+        return _evaluate, f, part, vectorized, catch
+
     def stops() -> bool:
         keeper.save_if_due()
         if told is None:
@@ -57,24 +61,23 @@ def find_with_islands(
         if isinstance(executor, int):
             check_pickle(f)
             pool: Own | Given = stack.enter_context(Own(executor))
-            in_flight = executor
+            workers: int | None = executor
         else:
-            pool, in_flight = shaped(executor)
-        crew = _Crew(pool, in_flight or run["islands"], latest)
+            pool, workers = shaped(executor)
+        crew = _Crew(pool, workers or run["islands"], latest)
         try:
             while due := rounds.round():
                 if stops():
                     rounds.end("observer")
                     break
-                for _, (state, failed) in crew.run({number: lambda number=number: island(number) for number in due}):
+                for _, (state, failed) in crew.run({number: functools.partial(island, number) for number in due}):
                     rounds.take(state, failed)
                     keeper.save_if_due()
             while len(points := rounds.probes()):
                 parts = np.array_split(points, min(len(points), run["islands"]))
-                jobs = {i: lambda part=part: (_evaluate, f, part, vectorized, catch) for i, part in enumerate(parts)}
-                values = dict(crew.run(jobs))
-                told_values = np.concatenate([values[i][0] for i in range(len(parts))])
-                rounds.tell_probes(told_values, sum(failed for _, failed in values.values()))
+                answers = dict(crew.run({number: functools.partial(probes, part) for number, part in enumerate(parts)}))
+                values = np.concatenate([answers[number][0] for number in range(len(parts))])
+                rounds.tell_probes(values, sum(failed for _, failed in answers.values()))
             keeper.save()
         except _TimeIsUp:
             rounds.end("time")
@@ -120,14 +123,14 @@ class _Crew:
     def __init__(self, pool: Own | Given, in_flight: int, latest: float) -> None:
         self.pool, self.in_flight, self.latest = pool, in_flight, latest
 
-    def run(self, jobs: Mapping[Hashable, Callable[[], tuple[Any, ...]]]) -> Iterator[tuple[Any, Any]]:
+    def run(self, jobs: Mapping[int, Callable[[], tuple[Any, ...]]]) -> Iterator[tuple[int, Any]]:
         """Results by key, as they come. A job is made when there is room for it: a function and its arguments."""
         waiting = collections.deque(jobs)
-        losses: collections.Counter[Hashable] = collections.Counter()
-        out: dict[Any, tuple[Hashable, int]] = {}
+        losses: collections.Counter[int] = collections.Counter()
+        out: dict[Any, tuple[int, int]] = {}
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
-        def lost(key: Hashable, generation: int, error: BaseException) -> None:
+        def lost(key: int, generation: int, error: BaseException) -> None:
             losses[key] += 1
             if losses[key] >= MOST_LOSSES:
                 raise error
