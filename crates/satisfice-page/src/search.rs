@@ -36,9 +36,16 @@ pub struct SearchPage {
     /// Evaluations, seconds, hits.
     trace: Vec<[f64; 3]>,
     sources: Vec<String>,
-    /// Evaluations, and by source the candidates and the hits so far.
-    source_rows: Vec<(u64, Vec<u64>, Vec<u64>)>,
+    source_rows: Vec<SourceRow>,
     hits: Vec<Hit>,
+}
+
+/// What each source had proposed and found after so many evaluations.
+#[derive(Debug, Clone)]
+struct SourceRow {
+    evaluations: u64,
+    proposed: Vec<u64>,
+    hits: Vec<u64>,
 }
 
 #[derive(Debug, Clone)]
@@ -88,8 +95,11 @@ impl SearchPage {
     /// So many candidates were taken from each of the [sources](SearchPage::sources) after so many evaluations, and so many of them were
     /// hits; in order.
     pub fn source_row(&mut self, evaluations: u64, proposed: &[u64], hits: &[u64]) {
-        self.source_rows
-            .push((evaluations, proposed.to_vec(), hits.to_vec()));
+        self.source_rows.push(SourceRow {
+            evaluations,
+            proposed: proposed.to_vec(),
+            hits: hits.to_vec(),
+        });
     }
 
     /// A hit: its solution, F of it, the evaluation that found it, from 1, and after how many seconds.
@@ -122,16 +132,20 @@ impl SearchPage {
         {
             pack.exact(name, &self.trace.iter().map(|point| point[k]).collect::<Vec<_>>());
         }
-        let column = |of: &dyn Fn(&(u64, Vec<u64>, Vec<u64>)) -> u64| -> Vec<f64> {
+        let column = |of: &dyn Fn(&SourceRow) -> u64| -> Vec<f64> {
             self.source_rows.iter().map(|row| of(row) as f64).collect()
         };
-        pack.exact("source evaluations", &column(&|row| row.0));
+        pack.exact("source evaluations", &column(&|row| row.evaluations));
         for k in 0..self.sources.len() {
             let at = |counts: &[u64]| counts.get(k).copied().unwrap_or(0);
-            pack.exact(&format!("source proposed {k}"), &column(&|row| at(&row.1)));
-            pack.exact(&format!("source hits {k}"), &column(&|row| at(&row.2)));
+            pack.exact(&format!("source proposed {k}"), &column(&|row| at(&row.proposed)));
+            pack.exact(&format!("source hits {k}"), &column(&|row| at(&row.hits)));
         }
-        let sources: &[String] = if self.source_rows.is_empty() { &[] } else { &self.sources };
+        let sources: &[String] = if self.source_rows.is_empty() {
+            &[]
+        } else {
+            &self.sources
+        };
         let is_vector = |hit: &Hit| {
             let list = hit.solution.as_array();
             list.is_some_and(|list| list.len() == axes.len() && list.iter().all(Value::is_number))

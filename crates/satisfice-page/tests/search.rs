@@ -134,14 +134,20 @@ fn sources_are_shown_where_there_are_some() {
     let mut tab = browser.open(&file);
     assert_eq!(
         tab.run("Array.from($('sourcetable').rows, row => Array.from(row.cells, cell => cell.textContent))"),
-        json!([["", "source", "candidates", "hits"], ["", "swarms", "40", "4"], ["", HOSTILE, "60", "30"]])
+        json!([
+            ["", "source", "candidates", "hits"],
+            ["", "swarms", "40", "4"],
+            ["", HOSTILE, "60", "30"]
+        ])
     );
     // The first ten came from the swarms alone, two of three from the other one afterwards.
     let colour = "(v, y) => { const { shares } = page.data.by, r = shares.canvas.width / shares.canvas.clientWidth;
          return Array.from(shares.to.getImageData(shares.px(v) * r, shares.py(y) * r, 1, 1).data).slice(0, 3); }";
     let tones = json!([[0, 114, 178], [0, 114, 178], [0, 114, 178], [213, 94, 0]]);
     assert_eq!(
-        tab.run(&format!("[[3, 0.1], [3, 0.9], [50, 0.2], [50, 0.8]].map(([v, y]) => ({colour})(v, y))")),
+        tab.run(&format!(
+            "[[3, 0.1], [3, 0.9], [50, 0.2], [50, 0.8]].map(([v, y]) => ({colour})(v, y))"
+        )),
         tones
     );
     tab.run("(() => { const { shares } = page.data.by, box = shares.canvas.getBoundingClientRect();
