@@ -1,25 +1,26 @@
 //! The closest pairs of features of two posed trees, best first: the pairs of boxes with the least gap are opened first, until
 //! no gap is left below the distances found (Hjaltason and Samet 1998, doi:10.1145/276304.276326, for pairs).
 //!
-//! Boxes are compared in `f64`, so that bodies may be far apart: what is wrong by a rounding of `f32` is the box of a feature in
-//! the frame of its own body, not the way between the bodies. With the names of `relative`, a side is wrong by at most
-//! e = e_b + sqrt(3) r e_a and 2^-45 times all lengths involved, and the gap g of two boxes proves a distance of at least
-//! (g - 2 sqrt(3) e) / s_b.
+//! Equal distances are ordered by number. Boxes cannot tell them apart, so that a search that goes on for long also asks for the
+//! numbers in a subtree: see [`Subtrees`].
+
+mod gaps;
+mod subtrees;
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::boxes::{Dirty, Group};
 use super::features::FeatureTree;
-use super::frame::power_of_two;
 use super::pair::Pair;
 use super::pair_query::{Keep, PairQuery};
-use super::relative::Composition;
 use super::traverse::{Trees, Visit, next};
 use super::watch::Watch;
 use crate::distance::{self, ACCURACY, Proximity, Threshold};
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, Placement, Shape};
+use gaps::Gaps;
+use subtrees::Subtrees;
 
 /// Visits between two looks at the watch.
 const LOOK: u64 = 256;
@@ -88,14 +89,29 @@ impl<T: Ord + Copy> Closest<T> {
         self.wanted == 0 || (self.any_contact && self.found.len() == 1 && self.bound() == 0.0)
     }
 
+    /// Whether what is at least so far away, and has at least this key if it is not further, is of no interest any more.
+    pub(crate) fn excludes(&self, distance: f64, key: T) -> bool {
+        let last = self.found.peek().filter(|_| self.found.len() >= self.wanted);
+        last.is_some_and(|last| Ranked { distance, key } >= *last)
+    }
+
     /// Takes a pair, if it is close enough.
     fn offer(&mut self, a: &Shape, b: &Shape, key: T) {
-        if distance::measure(a, b) * (1.0 - 2.0 * ACCURACY) > self.bound()
-            || self.cutoff.is_some_and(|cutoff| !distance::within(a, b, cutoff))
-        {
+        if self.excludes(0.0, key) || distance::measure(a, b) * (1.0 - 2.0 * ACCURACY) > self.bound() {
             return;
         }
-        let distance = distance::proximity(a, b).distance;
+        if let Some(distance) = self.distance(a, b) {
+            self.insert(distance, key);
+        }
+    }
+
+    /// The distance of a pair; `None` beyond the cutoff.
+    fn distance(&self, a: &Shape, b: &Shape) -> Option<f64> {
+        let is_beyond = self.cutoff.is_some_and(|cutoff| !distance::within(a, b, cutoff));
+        (!is_beyond).then(|| distance::proximity(a, b).distance)
+    }
+
+    fn insert(&mut self, distance: f64, key: T) {
         self.found.push(Ranked { distance, key });
         if self.found.len() > self.wanted {
             self.found.pop();
@@ -112,7 +128,8 @@ impl<T: Ord + Copy> Closest<T> {
 /// there are fewer pairs. The distance is that of the posed coordinates as [`Placement::apply`] rounds them.
 ///
 /// Cost: for small `k` usually logarithmic in the number of features; with thousands of equal distances, such as parallel faces
-/// have, linear in these.
+/// have, linear in these. Pairs at distance 0, and pairs of features that are several times at the same place, cost as much as
+/// if there were `k` of them.
 ///
 /// # Errors
 /// [`Error::NonFiniteVertex`] if a pose takes a vertex out of range.
@@ -153,7 +170,7 @@ pub fn closest_pairs(
 }
 
 /// Adds the closest pairs of a query, whose threshold does not matter, to what has been found elsewhere; those of before the
-/// watch stopped it.
+/// watch stopped it. Of two pairs, the lesser has the lesser key.
 pub(crate) fn find_closest<T: Ord + Copy>(
     query: &PairQuery<'_>,
     closest: &mut Closest<T>,
@@ -168,13 +185,14 @@ pub(crate) fn find_closest<T: Ord + Copy>(
         };
         let mut first = Vec::new();
         trees.start(&mut first);
-        let open = first.into_iter().map(|visit| Open { gap: 0, visit });
+        let open = first.into_iter().map(Open::first);
         dispatch(ClosestSearch {
             query,
             trees,
             flip,
             gaps,
             open: open.collect(),
+            subtrees: None,
             closest,
             key,
             watch,
@@ -183,116 +201,45 @@ pub(crate) fn find_closest<T: Ord + Copy>(
 }
 
 /// Two groups of boxes, or of items, that have not been compared yet.
-#[derive(PartialEq, Eq)]
 struct Open {
     /// The bits of the square of a lower bound of their distance.
     gap: u64,
+    /// Of equal gaps, the least comes first: the one nearest to the items, or the one with the least numbers.
+    rank: u64,
     visit: Visit,
+    /// The distance of all pairs of their items, where it is the same for all and known.
+    distance: Option<f64>,
+}
+
+impl Open {
+    fn first(visit: Visit) -> Self {
+        Self {
+            gap: 0,
+            rank: 0,
+            visit,
+            distance: None,
+        }
+    }
 }
 
 impl Ord for Open {
-    /// The greatest is the closest one; of equals, the one nearest to the items.
+    /// The greatest is opened first.
     fn cmp(&self, other: &Self) -> Ordering {
-        let height = |open: &Self| open.visit.level_a + open.visit.level_b;
-        (other.gap, height(other), other.visit).cmp(&(self.gap, height(self), self.visit))
+        (other.gap, other.rank, other.visit).cmp(&(self.gap, self.rank, self.visit))
     }
 }
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Open {}
 
 impl PartialOrd for Open {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
-    }
-}
-
-/// Eight boxes in `f64`.
-struct Wide {
-    lower: [[f64; 8]; 3],
-    upper: [[f64; 8]; 3],
-}
-
-/// How the first tree lies in the frame of the second, and what gaps of boxes prove there.
-struct Gaps {
-    matrix: [[f64; 3]; 3],
-    shift: [f64; 3],
-    /// A gap exceeds the distance by at most this.
-    error: f64,
-    scale: f64,
-}
-
-impl Gaps {
-    fn new(way: &Composition) -> Self {
-        let side = way.b_error
-            + 1.7321 * way.ratio * way.a_error
-            + power_of_two(-45) * way.lengths
-            + power_of_two(-140);
-        // squares of larger numbers could overflow, and then nothing is proved
-        let sane = way.lengths < power_of_two(500);
-        Self {
-            matrix: way.matrix.map(|row| row.map(|m| m * way.ratio)),
-            shift: way.shift,
-            error: if sane { 3.4642 * side } else { f64::INFINITY },
-            scale: way.scale,
-        }
-    }
-
-    /// Of a body with itself.
-    fn within(query: &PairQuery<'_>) -> Self {
-        let frame = &query.a.0.frame;
-        Self {
-            matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            shift: [0.0; 3],
-            error: 3.4642 * (frame.error + power_of_two(-45) * frame.half) + power_of_two(-140),
-            scale: frame.scale,
-        }
-    }
-
-    /// Boxes with a gap whose square is greater are further apart than `distance`.
-    fn limit(&self, distance: f64) -> f64 {
-        let limit = (distance * self.scale + self.error) * (1.0 + power_of_two(-48));
-        limit * limit
-    }
-
-    /// Boxes of the first tree in the frame of the second.
-    #[inline(always)]
-    fn bring(&self, of: &Group) -> Wide {
-        let mut wide = Wide {
-            lower: [[0.0; 8]; 3],
-            upper: [[0.0; 8]; 3],
-        };
-        for i in 0..3 {
-            for l in 0..8 {
-                let (mut centre, mut half) = (self.shift[i], 0.0);
-                for k in 0..3 {
-                    let (low, high) = (f64::from(of.lower[k][l]), f64::from(of.upper[k][l]));
-                    centre += self.matrix[i][k] * (0.5 * (low + high));
-                    half += self.matrix[i][k].abs() * (0.5 * (high - low));
-                }
-                wide.lower[i][l] = centre - half;
-                wide.upper[i][l] = centre + half;
-            }
-        }
-        wide
-    }
-
-    /// The squared gaps between eight boxes and eight others.
-    #[inline(always)]
-    fn squares(&self, a: &Group, b: &Group) -> [[f64; 8]; 8] {
-        let a = self.bring(a);
-        let mut squares = [[0.0; 8]; 8];
-        for k in 0..3 {
-            for (i, row) in squares.iter_mut().enumerate() {
-                let (low, high) = (a.lower[k][i], a.upper[k][i]);
-                for (l, square) in row.iter_mut().enumerate() {
-                    let below = f64::from(b.lower[k][l]) - high;
-                    let above = low - f64::from(b.upper[k][l]);
-                    let gap = if below > above { below } else { above };
-                    // not NaN, which proves nothing
-                    let gap = if gap > 0.0 { gap } else { 0.0 };
-                    *square += gap * gap;
-                }
-            }
-        }
-        squares
     }
 }
 
@@ -302,6 +249,8 @@ struct ClosestSearch<'a, T, K> {
     flip: bool,
     gaps: Gaps,
     open: BinaryHeap<Open>,
+    /// Looked through as soon as that costs no more than the visits made.
+    subtrees: Option<[Subtrees; 2]>,
     closest: &'a mut Closest<T>,
     key: K,
     watch: &'a Watch<'a>,
@@ -312,33 +261,119 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> Work for ClosestSearch<'_, T, K> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, _: L) {
+        let items = (self.trees.a.len() + self.trees.b.len()) as u64;
         let mut visits = 0;
         let mut limit = self.gaps.limit(self.closest.bound());
-        while let Some(Open { gap, visit }) = self.open.pop() {
-            if f64::from_bits(gap) > limit || self.closest.is_settled() {
+        while let Some(open) = self.open.pop() {
+            if f64::from_bits(open.gap) > limit || self.closest.is_settled() {
                 return;
             }
             visits += 1;
             if visits % LOOK == 0 && self.watch.ask(0) {
                 return;
             }
+            if self.subtrees.is_none() && visits * 64 > items {
+                self.look_through();
+                self.push(open);
+                continue;
+            }
+            if self.excludes(&open) {
+                continue;
+            }
+            let visit = open.visit;
             let mut rooms = [Group::EMPTY; 2];
             let [room_a, room_b] = &mut rooms;
             let a = self.trees.a.group(visit.level_a, visit.a, room_a);
             let b = self.trees.b.group(visit.level_b, visit.b, room_b);
             let squares = self.gaps.squares(a, b);
             match visit.level_a.cmp(&visit.level_b) {
-                Ordering::Equal if visit.level_a == 0 => limit = self.measure(visit, &squares, limit),
-                Ordering::Equal => self.open_both(visit, &squares, limit),
-                taller => self.open_one(visit, &squares, limit, taller == Ordering::Greater),
+                Ordering::Equal if visit.level_a == 0 => limit = self.measure(&open, &squares, limit),
+                Ordering::Equal => self.open_both(&open, &squares, limit),
+                taller => self.open_one(&open, &squares, limit, taller == Ordering::Greater),
             }
         }
     }
 }
 
 impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
+    /// Looks through the subtrees, and orders by them what is open.
+    fn look_through(&mut self) {
+        let (a, b) = (self.query.a.0, self.query.b.0);
+        let (first, second) = if self.flip { (b, a) } else { (a, b) };
+        self.subtrees = Some([first, second].map(|tree| Subtrees::new(&tree.tree, |i| tree.shape(i))));
+        for open in std::mem::take(&mut self.open) {
+            self.push(open);
+        }
+    }
+
+    /// Puts aside what is to be opened later, unless nothing in it is of interest.
+    fn push(&mut self, mut open: Open) {
+        let visit = open.visit;
+        open.rank = u64::from(visit.level_a) + u64::from(visit.level_b);
+        if let Some([a, b]) = &self.subtrees {
+            if open.distance.is_none()
+                && a.is_uniform(visit.level_a, visit.a)
+                && b.is_uniform(visit.level_b, visit.b)
+            {
+                let (i, j) = (a.least(visit.level_a, visit.a), b.least(visit.level_b, visit.b));
+                match self.common_distance(i, j) {
+                    Common::Beyond => return,
+                    Common::At(distance) => open.distance = Some(distance),
+                    Common::Unknown => {}
+                }
+            }
+            if self.excludes(&open) {
+                return;
+            }
+            if !self.closest.any_contact {
+                let Pair { a, b } = self.least(visit).unwrap_or_default();
+                open.rank = u64::from(a) << 32 | u64::from(b);
+            }
+        }
+        self.open.push(open);
+    }
+
+    /// The distance of two items, each of which stands for all in its subtree.
+    fn common_distance(&self, first: u32, second: u32) -> Common {
+        let [one, two] = self.query.shapes(self.pair(first, second));
+        match self.closest.distance(&one, &two) {
+            None => Common::Beyond,
+            // The first of a pair of one body may be in either subtree; rounding may tell them apart.
+            Some(distance) if self.query.one_body && self.closest.distance(&two, &one) != Some(distance) => {
+                Common::Unknown
+            }
+            Some(distance) => Common::At(distance),
+        }
+    }
+
+    /// Whether nothing below is of interest any more, as distances and numbers tell.
+    fn excludes(&self, open: &Open) -> bool {
+        self.least(open.visit).is_some_and(|least| {
+            self.closest
+                .excludes(open.distance.unwrap_or(0.0), (self.key)(least))
+        })
+    }
+
+    /// No pair below a visit is less than this.
+    fn least(&self, visit: Visit) -> Option<Pair> {
+        let [a, b] = self.subtrees.as_ref()?;
+        Some(self.pair(a.least(visit.level_a, visit.a), b.least(visit.level_b, visit.b)))
+    }
+
+    /// Items of the first and of the second tree as a pair.
+    fn pair(&self, first: u32, second: u32) -> Pair {
+        let swap = if self.query.one_body {
+            first > second
+        } else {
+            self.flip
+        };
+        let (a, b) = if swap { (second, first) } else { (first, second) };
+        Pair { a, b }
+    }
+
     /// Measures the items of two groups, the closest boxes first. Returns the new limit.
-    fn measure(&mut self, at: Visit, squares: &[[f64; 8]; 8], mut limit: f64) -> f64 {
+    fn measure(&mut self, open: &Open, squares: &[[f64; 8]; 8], mut limit: f64) -> f64 {
+        let at = open.visit;
         let mut wanted = self.trees.wanted(at);
         let mut near = [(0_u64, 0_usize, 0_usize); 64];
         let mut count = 0;
@@ -358,44 +393,43 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
             if f64::from_bits(gap) > limit || self.closest.is_settled() {
                 break;
             }
-            let (first, second) = (ids_a[i], ids_b[j]);
-            let swap = if self.query.one_body {
-                first > second
-            } else {
-                self.flip
-            };
-            let (a, b) = if swap { (second, first) } else { (first, second) };
-            if self.query.keeps(a, b) {
-                let pair = Pair { a, b };
-                let [one, two] = self.query.shapes(pair);
-                self.closest.offer(&one, &two, (self.key)(pair));
-                limit = self.gaps.limit(self.closest.bound());
+            let pair = self.pair(ids_a[i], ids_b[j]);
+            let key = (self.key)(pair);
+            if self.closest.excludes(open.distance.unwrap_or(0.0), key) || !self.query.keeps(pair.a, pair.b) {
+                continue;
             }
+            if let Some(distance) = open.distance {
+                self.closest.insert(distance, key);
+            } else {
+                let [one, two] = self.query.shapes(pair);
+                self.closest.offer(&one, &two, key);
+            }
+            limit = self.gaps.limit(self.closest.bound());
         }
         limit
     }
 
     /// Opens both groups of two on the same level.
-    fn open_both(&mut self, at: Visit, squares: &[[f64; 8]; 8], limit: f64) {
+    fn open_both(&mut self, open: &Open, squares: &[[f64; 8]; 8], limit: f64) {
+        let at = open.visit;
         let mut wanted = self.trees.wanted(at);
         while wanted != 0 {
             let (i, j) = next(&mut wanted);
             if squares[i][j] <= limit {
-                self.open.push(Open {
-                    gap: squares[i][j].to_bits(),
-                    visit: Visit {
-                        level_a: at.level_a - 1,
-                        level_b: at.level_b - 1,
-                        a: at.a * 8 + i as u32,
-                        b: at.b * 8 + j as u32,
-                    },
-                });
+                let visit = Visit {
+                    level_a: at.level_a - 1,
+                    level_b: at.level_b - 1,
+                    a: at.a * 8 + i as u32,
+                    b: at.b * 8 + j as u32,
+                };
+                self.push_below(open, squares[i][j], visit);
             }
         }
     }
 
     /// Opens the group of the taller tree.
-    fn open_one(&mut self, at: Visit, squares: &[[f64; 8]; 8], limit: f64, first: bool) {
+    fn open_one(&mut self, open: &Open, squares: &[[f64; 8]; 8], limit: f64, first: bool) {
+        let at = open.visit;
         let mut wanted = self.trees.wanted(at);
         let mut least = [f64::INFINITY; 8];
         let mut any = 0_u32;
@@ -423,12 +457,28 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
                     ..at
                 }
             };
-            self.open.push(Open {
-                gap: gap.to_bits(),
-                visit,
-            });
+            self.push_below(open, gap, visit);
         }
     }
+
+    /// Puts aside a part of what is opened.
+    fn push_below(&mut self, open: &Open, gap: f64, visit: Visit) {
+        self.push(Open {
+            gap: gap.to_bits(),
+            rank: 0,
+            visit,
+            distance: open.distance,
+        });
+    }
+}
+
+/// The distance of all pairs of two subtrees.
+enum Common {
+    At(f64),
+    /// Beyond the cutoff.
+    Beyond,
+    /// Perhaps not one.
+    Unknown,
 }
 
 #[cfg(test)]

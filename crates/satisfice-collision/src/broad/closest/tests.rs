@@ -187,3 +187,77 @@ fn few_pairs_are_measured() {
         ball.len() * ball.len()
     );
 }
+
+/// Corners of a small lattice, most of them several times: nearly all distances are equal to others.
+fn lattice(rng: &mut Xoshiro256PlusPlus, corners: usize, side: f64) -> Mesh {
+    let vertices: Vec<_> = (0..corners)
+        .map(|_| [0; 3].map(|_| (rng.random::<f64>() * side).floor()))
+        .collect();
+    let mut corner = || rng.random_range(0..corners as u32);
+    let triangles = (0..corners).map(|_| [corner(), corner(), corner()]).collect();
+    Mesh::new(vertices, Vec::new(), triangles).unwrap()
+}
+
+#[test]
+fn equal_distances_are_ordered_by_number() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(8);
+    for round in 0..18 {
+        let side = [1.0, 2.0, 3.0][round % 5 % 3];
+        let meshes = [60, 40].map(|corners| lattice(&mut rng, corners, side));
+        let kinds = [FeatureKind::ALL[round % 3], FeatureKind::ALL[round / 3 % 3]];
+        let trees = [0, 1].map(|n| FeatureTree::new(&meshes[n], kinds[n]));
+        let there = Placement::from_translation([[0.0; 3], [0.5, 0.25, 7.0]][round % 2]).unwrap();
+        let (a, b) = ((&trees[0], &Placement::IDENTITY), (&trees[1], &there));
+        let odd = |i: u32, j: u32| (i + j) % 3 > 0;
+        for keep in [None, Some(&odd as &(dyn Fn(u32, u32) -> bool + Sync))] {
+            let all = brute_force(a, b, keep);
+            for k in [1, 5, 100] {
+                let found = closest_pairs(a, b, k, keep).unwrap();
+                let found: Vec<_> = found.iter().map(|(pair, near)| (*pair, near.distance)).collect();
+                assert_eq!(found, all[..k], "{round} {k}");
+            }
+        }
+        // of one body with itself
+        let ordered = |i: u32, j: u32| i < j;
+        let all = brute_force(a, a, Some(&ordered));
+        let query = PairQuery {
+            a,
+            b: a,
+            one_body: true,
+            threshold: Threshold::LARGEST,
+            keep: None,
+            moved: [Dirty::All; 2],
+        };
+        for k in [1, 5, 100] {
+            let mut closest = Closest::new(k, None);
+            find_closest(&query, &mut closest, |pair| pair, &Watch::none());
+            let found = closest.into_sorted().into_iter();
+            let found: Vec<_> = found.map(|found| (found.key, found.distance)).collect();
+            assert_eq!(found, all[..k], "{round} {k}");
+        }
+    }
+}
+
+/// 24,000 vertices at one place, and as many at another: 576 million pairs at one distance.
+#[test]
+fn coincident_features_are_not_looked_at_one_by_one() {
+    let all_at = |place: [f64; 3]| {
+        let mesh = Mesh::new(vec![place; 24_000], Vec::new(), Vec::new()).unwrap();
+        FeatureTree::new(&mesh, FeatureKind::Vertex)
+    };
+    let here = all_at([0.1, 0.2, 0.3]);
+    for (there, far) in [([0.1, 0.2, 0.3], 0.0), ([0.1, 0.2, 4.3], 4.0)] {
+        let there = all_at(there);
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        let keep = |_: u32, _: u32| {
+            asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            true
+        };
+        let pose = Placement::IDENTITY;
+        let found = closest_pairs((&here, &pose), (&there, &pose), 5, Some(&keep)).unwrap();
+        let expected: Vec<_> = (0..5).map(|b| (Pair { a: 0, b }, far)).collect();
+        let found: Vec<_> = found.iter().map(|(pair, near)| (*pair, near.distance)).collect();
+        assert_eq!(found, expected);
+        assert!(asked.into_inner() < 1_000_000);
+    }
+}

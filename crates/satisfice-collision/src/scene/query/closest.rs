@@ -231,7 +231,8 @@ impl World {
             if watch.ask(0) {
                 return Ok(f64::NEG_INFINITY);
             }
-            if self.collides(a, b) && self.gap(a, b) <= closest.bound() {
+            let (gap, least) = (self.gap(a, b), ([a.min(b), a.max(b)], Pair::default()));
+            if self.collides(a, b) && gap <= closest.bound() && !closest.excludes(gap, least) {
                 self.closest_of([a, b], &mut closest, watch)?;
             }
             Ok(reach(&closest))
