@@ -1,9 +1,14 @@
 //! Welding: points with equal coordinates become one vertex.
 
+use std::hash::BuildHasher;
+
+use foldhash::fast::RandomState;
+use hashbrown::HashTable;
+
 /// Merges points whose coordinates are exactly equal (0.0 and -0.0 are equal), keeping the order of first appearance.
 ///
 /// Returns the distinct points and, for every given point, the number of its distinct point. There is no tolerance: points
-/// that differ in the last bit stay separate. The coordinates must be finite. Cost: O(n log n).
+/// that differ in the last bit stay separate. The coordinates must be finite. Cost: O(n).
 ///
 /// ```
 /// use satisfice_collision::mesh::weld;
@@ -13,31 +18,24 @@
 /// ```
 #[must_use]
 pub fn weld(points: &[[f64; 3]]) -> (Vec<[f64; 3]>, Vec<usize>) {
-    // Adding 0.0 turns -0.0 into 0.0 and changes nothing else.
-    let points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c + 0.0)).collect();
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    let compare = |a: &[f64; 3], b: &[f64; 3]| {
-        a[0].total_cmp(&b[0])
-            .then(a[1].total_cmp(&b[1]))
-            .then(a[2].total_cmp(&b[2]))
-    };
-    order.sort_unstable_by(|&a, &b| compare(&points[a], &points[b]).then(a.cmp(&b)));
-
-    let mut first: Vec<usize> = (0..points.len()).collect();
-    for pair in order.windows(2) {
-        if compare(&points[pair[0]], &points[pair[1]]).is_eq() {
-            first[pair[1]] = first[pair[0]];
+    // Seeded anew each time, so that no file can be made to collide; the result does not depend on it.
+    let state = RandomState::default();
+    let bits = |point: &[f64; 3]| point.map(f64::to_bits);
+    let hash = |point: &[f64; 3]| state.hash_one(bits(point));
+    let mut known: HashTable<usize> = HashTable::new();
+    let mut distinct: Vec<[f64; 3]> = Vec::new();
+    let mut number = Vec::with_capacity(points.len());
+    for point in points {
+        // Adding 0.0 turns -0.0 into 0.0 and changes nothing else.
+        let point = point.map(|c| c + 0.0);
+        let next = distinct.len();
+        let is_same = |&other: &usize| bits(&distinct[other]) == bits(&point);
+        let entry = known.entry(hash(&point), is_same, |&other| hash(&distinct[other]));
+        let at = *entry.or_insert(next).get();
+        if at == next {
+            distinct.push(point);
         }
-    }
-    let mut distinct = Vec::new();
-    let mut number: Vec<usize> = Vec::with_capacity(points.len());
-    for (i, &f) in first.iter().enumerate() {
-        if f == i {
-            number.push(distinct.len());
-            distinct.push(points[i]);
-        } else {
-            number.push(number[f]);
-        }
+        number.push(at);
     }
     (distinct, number)
 }

@@ -96,7 +96,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
 
     let mut draft = Draft::default();
     let mut rest = bytes;
-    for number in 1.. {
+    let mut number = 0;
+    loop {
+        number += 1;
         let Some(end) = memchr::memchr(end_of_line, rest) else {
             let reason = if number == 1 {
                 "it does not begin with a line \"ply\""
@@ -114,7 +116,6 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
             return Ok((header, rest));
         }
     }
-    unreachable!("the loop ends at the last line")
 }
 
 #[derive(Default)]
