@@ -61,6 +61,16 @@ pub enum Error {
         /// How many vertices there are.
         vertices: usize,
     },
+    /// A surface with a hole encloses nothing.
+    #[error("the surface is not closed: edges at which an odd number of triangles meet: {edges}, the first of vertices {} and {} with {triangles}; close its holes", edge[0], edge[1])]
+    NotClosed {
+        /// The vertices of the first edge at which an odd number of triangles meet.
+        edge: [usize; 2],
+        /// How many meet there.
+        triangles: usize,
+        /// How many such edges there are.
+        edges: usize,
+    },
     /// Vertices are numbered by `u32`.
     #[error("{vertices} vertices are too many: at most {} can be numbered", u32::MAX)]
     TooManyVertices {

@@ -14,6 +14,7 @@ pub mod problem;
 pub mod sampling;
 pub mod scene;
 mod simd;
+pub mod solid;
 
 pub use error::{Element, Error};
 pub use mesh::{Aabb, Adjacency, FeatureKind, Mesh, Shape};

@@ -35,7 +35,7 @@ pub use pair::Pair;
 pub use pair_query::Keep;
 pub(crate) use pair_query::PairQuery;
 pub use points::{PointGrid, PointWork};
-pub(crate) use ray::{FirstHit, Slabs};
+pub(crate) use ray::{FirstHit, Slabs, near_segment};
 pub(crate) use traverse::Visit;
 pub use trees::{TreeJoin, TreeWork};
 pub(crate) use watch::{Stop, Watch};

@@ -137,6 +137,31 @@ impl<T: Ord + Copy> FirstHit<T> {
     }
 }
 
+/// Visits all triangles that a segment meets, and others near it, in no order.
+pub(crate) fn near_segment(
+    (tree, pose): (&FeatureTree, &Placement),
+    segment: &Segment,
+    mut visit: impl FnMut(u32),
+) {
+    let slabs = in_body(tree, pose, segment);
+    let mut open: Vec<_> = tree.tree.root().map(|root| (root, 0)).into_iter().collect();
+    while let Some((level, group)) = open.pop() {
+        let mut room = Group::EMPTY;
+        let boxes = tree.tree.group(level, group, &mut room);
+        for lane in 0..tree.tree.lanes(level, group) {
+            let side = |of: &[[f32; 8]; 3]| std::array::from_fn(|k| of[k][lane]);
+            if slabs.entry(side(&boxes.lower), side(&boxes.upper)).is_none() {
+                continue;
+            }
+            let below = group * 8 + lane as u32;
+            match level.checked_sub(1) {
+                Some(level) => open.push((level, below)),
+                None => visit(tree.tree.order[below as usize]),
+            }
+        }
+    }
+}
+
 /// A segment of the world in the frame of a body.
 fn in_body(tree: &FeatureTree, pose: &Placement, segment: &Segment) -> Slabs {
     let frame = &tree.frame;

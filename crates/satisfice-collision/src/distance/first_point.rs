@@ -125,14 +125,14 @@ enum Meeting {
 
 /// A number with a bound of its error.
 #[derive(Clone, Copy)]
-struct Volume {
+pub(super) struct Volume {
     value: f64,
     error: f64,
 }
 
 impl Volume {
     /// `a . (b x c)`
-    fn new(a: Point, b: Point, c: Point) -> Self {
+    pub(super) fn new(a: Point, b: Point, c: Point) -> Self {
         let permanent: f64 = (0..3)
             .map(|k| {
                 let (l, m) = ((k + 1) % 3, (k + 2) % 3);
@@ -151,7 +151,7 @@ impl Volume {
     }
 
     /// 1, -1, or 0 if it is not certain; infinite and NaN are not.
-    fn sign(self) -> i32 {
+    pub(super) fn sign(self) -> i32 {
         let certain = self.value.abs() > self.error && self.value.is_finite();
         if certain { self.value.signum() as i32 } else { 0 }
     }

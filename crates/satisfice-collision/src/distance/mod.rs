@@ -40,6 +40,7 @@ mod gjk;
 mod kernel;
 mod kind;
 mod measure;
+pub(crate) mod orientation;
 mod precision;
 mod resolve;
 mod threshold;
