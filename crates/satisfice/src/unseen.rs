@@ -69,16 +69,18 @@ impl Unseen {
     }
 }
 
+/// How many, in words that "hits not seen" follows: `12 (3 to 40)`, `0 to 40`.
 impl core::fmt::Display for Unseen {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let (lower, upper) = self.interval;
-        // Without a supporting probe, an estimate of 0 says less than its interval.
-        if self.estimate >= 0.5 || upper.is_some_and(|upper| upper < 1.0) {
-            write!(f, "{} ", Whole(self.estimate))?;
-        }
-        match upper {
-            Some(upper) => write!(f, "[{}, {}]", Whole(lower), Whole(upper)),
-            None => write!(f, "[{}, ?]", Whole(lower)),
+        let (estimate, lower) = (Whole(self.estimate), Whole(lower));
+        // Without a probe that supports it, an estimate of 0 says less than its interval.
+        let is_supported = self.estimate >= 0.5 || upper.is_some_and(|upper| upper < 1.0);
+        match (is_supported, upper.map(Whole)) {
+            (true, Some(upper)) => write!(f, "{estimate} ({lower} to {upper})"),
+            (true, None) => write!(f, "{estimate} (at least {lower})"),
+            (false, Some(upper)) => write!(f, "{lower} to {upper}"),
+            (false, None) => write!(f, "an unknown number of"),
         }
     }
 }

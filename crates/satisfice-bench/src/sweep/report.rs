@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use satisfice_catalogue::quantity::shown;
 
 use super::plan::Plan;
-use super::summary::{Group, cells, heading, unique};
+use super::summary::{Group, cells, heading, legend, unique};
 use crate::finding::{Figure, Finding};
 
 /// The page on which engines are switched on and off, beside the report.
@@ -166,6 +166,7 @@ fn results(group: &Group) -> Markup {
             @if let Some(beside) = &group.beside { " Beside them: " (beside) "." }
         }
         (table(&rows))
+        @if let Some(legend) = legend(group) { p { (legend) "." } }
     }
 }
 

@@ -283,6 +283,9 @@ pub fn table(groups: &[Group]) -> String {
         text.push_str(&table::plain(&rows, 2, 1));
         text.push('\n');
     }
+    for legend in unique(groups.iter().filter_map(legend)) {
+        let _ = writeln!(text, "{legend}");
+    }
     text
 }
 
@@ -355,9 +358,53 @@ pub fn cells(group: &Group, line: &Line) -> Vec<String> {
     } else {
         format!("{:.1} %", 100.0 * line.duplicates.median)
     });
-    cells.push(line.paired.as_ref().map_or_else(
-        || "-".to_owned(),
-        |paired| format!("{}:{}, p = {:.2}", paired.wins, paired.losses, paired.p_holm),
-    ));
+    cells.push(line.paired.as_ref().map_or_else(|| "-".to_owned(), compared));
     cells
+}
+
+/// From this probability on, a difference may be chance.
+const CHANCE: f64 = 0.05;
+
+/// On how many seeds an engine found more than the one it is compared with, and on how many less.
+fn compared(paired: &Paired) -> String {
+    let counts = format!("{} more, {} fewer", paired.wins, paired.losses);
+    match paired.p_holm {
+        _ if paired.wins + paired.losses == 0 => "equal".to_owned(),
+        p if p >= CHANCE => format!("{counts}; may be chance"),
+        p => format!("{counts}; p = {}", shown::number(p)),
+    }
+}
+
+/// What the last column says; `None` if no engine is compared.
+#[must_use]
+pub(super) fn legend(group: &Group) -> Option<String> {
+    let is_compared = group.lines.iter().any(|line| line.paired.is_some());
+    is_compared.then(|| {
+        format!(
+            "against {}: seeds on which more hits were found, and fewer; p is the probability of such a difference by chance \
+             (sign test, corrected for the engines of the table)",
+            group.against
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comparison_is_in_words() {
+        let of = |wins, losses, p_holm| {
+            compared(&Paired {
+                wins,
+                losses,
+                ties: 2,
+                p: p_holm,
+                p_holm,
+            })
+        };
+        assert_eq!(of(3, 0, 1.0), "3 more, 0 fewer; may be chance");
+        assert_eq!(of(1, 15, 0.0039), "1 more, 15 fewer; p = 3.9e-3");
+        assert_eq!(of(0, 0, 1.0), "equal");
+    }
 }
