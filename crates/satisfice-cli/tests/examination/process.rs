@@ -8,8 +8,10 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// Longest time that a process may take on a damaged file; an interrupt comes at half of it.
+/// Longest time that a process may take on a damaged file.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// When a process is interrupted: a damaged budget may ask for hours.
+const INTERRUPT: Duration = Duration::from_millis(400);
 /// Limit of the address space, in kB. Threads reserve some of it without using it.
 const MEMORY_KB: u64 = 1_500_000;
 /// Longest error line, in bytes.
@@ -75,7 +77,7 @@ pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Outcome {
     }
 }
 
-/// Waits for the end; interrupts at half of the time if asked to, and kills at its end.
+/// Waits for the end; interrupts after a while if asked to, and kills at the end of the time.
 #[expect(clippy::disallowed_methods, reason = "a process is watched from outside")]
 pub(crate) fn ends_within(child: &mut Child, patience: Duration, interrupt: bool) -> bool {
     let begun = Instant::now();
@@ -85,7 +87,7 @@ pub(crate) fn ends_within(child: &mut Child, patience: Duration, interrupt: bool
             child.kill().unwrap();
             return false;
         }
-        if !interrupted && begun.elapsed() > patience / 2 {
+        if !interrupted && begun.elapsed() > INTERRUPT {
             signal(child, "INT");
             interrupted = true;
         }

@@ -164,6 +164,104 @@ fn a_killed_run_resumes_as_if_nothing_had_happened() {
 }
 
 #[test]
+fn a_killed_sweep_goes_on_where_it_was() {
+    let count = cases(3, 100);
+    let suite = "seeds = \"0..40\"\n[[part]]\nengines = [\"walk\"]\nproblems = [\"sallen-key\"]\nevaluations = 20000\n";
+    let results = |folder: &Path| {
+        let text = fs::read_to_string(folder.join("out").join("results.jsonl")).unwrap();
+        let mut lines: Vec<String> = text
+            .lines()
+            .map(|line| without_times(serde_json::from_str(line).unwrap()))
+            .map(|line| line["report"].to_string())
+            .collect();
+        lines.sort_unstable();
+        lines
+    };
+    let bench = ["bench", "s.toml", "--out", "out"];
+    let mut expected = Vec::new();
+    let mut killed = 0;
+    for case in 0..=count {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("s.toml"), suite).unwrap();
+        if case > 0 {
+            let mut rng = SearchRng::new(case);
+            let mut child = command(folder.path(), &bench)
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap();
+            pause(&mut rng);
+            killed += u64::from(child.try_wait().unwrap().is_none());
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+        let done = command(folder.path(), &bench).output().unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(0), "case {case}: {said}");
+        if case == 0 {
+            expected = results(folder.path());
+            assert_eq!(expected.len(), 40);
+        }
+        assert_eq!(results(folder.path()), expected, "case {case}");
+    }
+    figure(
+        "sweeps killed and begun again",
+        format!("{count} ({killed} of them before their end), all equal to the uninterrupted sweep"),
+    );
+}
+
+#[test]
+fn a_killed_or_interrupted_collision_leaves_no_half_file() {
+    let place = tempfile::tempdir().unwrap();
+    let points = |shift: f64| {
+        let at = |k: u32| format!("v {} {} 0\n", f64::from(k % 60) + shift, f64::from(k / 60));
+        (0..3600).map(at).collect::<String>()
+    };
+    fs::write(place.path().join("a.obj"), points(0.0)).unwrap();
+    fs::write(place.path().join("b.obj"), points(0.5)).unwrap();
+    let (count, mut whole, mut cut) = (cases(4, 100), 0, 0);
+    for case in 0..2 * count {
+        let name = ["KILL", "INT"][case as usize % 2];
+        let csv = place.path().join(format!("{case}.csv"));
+        let file = csv.to_string_lossy();
+        let call = ["collide", "a.obj", "b.obj", "--threshold", "9", "--out", &file];
+        let mut child = command(place.path(), &call)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        pause(&mut SearchRng::new(case));
+        signal(&child, name);
+        assert!(ends_within(&mut child, END, false), "case {case}: deaf to {name}");
+        let code = child.wait().unwrap().code();
+        match fs::read_to_string(&csv) {
+            // A list that ended early is a list: its last line is one, and the exit code is that of an answer.
+            Ok(text) => {
+                whole += 1;
+                assert!(matches!(code, Some(0 | 1) | None), "case {case}: {code:?}");
+                assert!(text.ends_with('\n'), "case {case}");
+                assert!(
+                    text.lines().all(|line| line.split(',').count() == 5),
+                    "case {case}"
+                );
+            }
+            Err(_) => {
+                cut += 1;
+                // Before it listened, or by a signal that cannot be heard.
+                assert!(code.is_none(), "case {case}: no file, exit code {code:?}");
+            }
+        }
+    }
+    figure(
+        "collisions ended by SIGKILL and SIGINT",
+        format!(
+            "{}: {whole} whole files, {cut} without a file, no half one",
+            2 * count
+        ),
+    );
+}
+
+#[test]
 fn two_processes_do_not_share_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
