@@ -88,27 +88,33 @@ fn beyond_max_pairs_all_are_counted_and_fewer_listed() {
     assert_eq!(verified.code, 0, "{}", verified.stdout);
 }
 
+/// The command in so many kilobytes of address space, on two bodies of so many vertices that lie close together.
+#[cfg(unix)]
+fn in_little_memory(folder: &Path, kilobytes: u32, vertices: u32, arguments: &str) -> std::process::Output {
+    let points = (0..vertices).fold(String::new(), |mut text, k| {
+        writeln!(text, "v {} 0 0", f64::from(k) * 1e-6).unwrap();
+        text
+    });
+    for name in ["a.obj", "b.obj"] {
+        fs::write(folder.join(name), &points).unwrap();
+    }
+    std::process::Command::new("sh")
+        .arg("-c")
+        .arg(format!(
+            "ulimit -v {kilobytes}; exec {} collide a.obj b.obj --threshold 1 {arguments}",
+            env!("CARGO_BIN_EXE_satisfice")
+        ))
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
 /// 300,000 pairs in 300 MB of address space.
 #[cfg(unix)]
 #[test]
 fn many_pairs_take_little_memory() {
     let folder = tempfile::tempdir().unwrap();
-    let points = (0..550).fold(String::new(), |mut text, k| {
-        writeln!(text, "v {} 0 0", f64::from(k) * 1e-6).unwrap();
-        text
-    });
-    for name in ["a.obj", "b.obj"] {
-        fs::write(folder.path().join(name), &points).unwrap();
-    }
-    let done = std::process::Command::new("sh")
-        .arg("-c")
-        .arg(format!(
-            "ulimit -v 300000; exec {} collide a.obj b.obj --threshold 1 --json report.json --out pairs.csv",
-            env!("CARGO_BIN_EXE_satisfice")
-        ))
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
+    let done = in_little_memory(folder.path(), 300_000, 550, "--json report.json --out pairs.csv");
     assert_eq!(
         done.status.code(),
         Some(0),
@@ -119,6 +125,36 @@ fn many_pairs_take_little_memory() {
     assert_eq!(csv.lines().count(), 1 + 550 * 550);
     let stdout = String::from_utf8(done.stdout).unwrap();
     assert!(stdout.contains("  pairs         302,500\n"), "{stdout}");
+}
+
+/// Where memory ends, what was found is written and all pairs are counted; the program says so in one line.
+#[cfg(unix)]
+#[test]
+fn memory_that_ends_is_one_line() {
+    const VERTICES: usize = 2200;
+    let folder = tempfile::tempdir().unwrap();
+    for method in ["exact", "grid"] {
+        let arguments = format!("--out pairs.csv --json report.json --method {method}");
+        let done = in_little_memory(folder.path(), 300_000, VERTICES as u32, &arguments);
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(2), "{said}");
+        let csv = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+        let listed = csv.lines().count() - 1;
+        assert!(listed > 100_000 && listed < VERTICES * VERTICES, "{listed}");
+        let errors: Vec<&str> = said
+            .lines()
+            .filter(|line| !line.starts_with("warning: "))
+            .collect();
+        let expected = format!(
+            "error: memory ended after {listed} pairs, which are written; --max-pairs N asks for fewer"
+        );
+        assert_eq!(errors, [expected]);
+        let report = fs::read(folder.path().join("report.json")).unwrap();
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        assert_eq!(report["hits"], listed);
+        assert_eq!(report["completeness"], "Unknown");
+        assert_eq!(report["reference_hits"], VERTICES * VERTICES);
+    }
 }
 
 #[test]

@@ -24,6 +24,8 @@ Examples:
       Only which bodies touch, with one pair of triangles that shows it for each pair of bodies.
   satisfice collide a.obj b.obj --closest 1 --pairs triangle-triangle --witnesses
       How far apart two bodies are, and where.
+  satisfice collide housing.stl part.stl --solid --threshold 0.1 --pairs triangle-triangle
+      Also whether one body lies inside the other, how deep they overlap, and along which way they come apart.
   satisfice collide factory.glb --threshold 0.01 --pairs triangle-triangle --touching
       Which nodes of a scene touch, by their names.
   satisfice collide --from cloth92.ply --to cloth93.ply --self --threshold 0 --out impacts.csv
@@ -39,7 +41,8 @@ Meshes are .obj, .ply, .stl and .off files; scenes are .gltf and .glb files (a b
   name = \"left arm\"
   at = [0, 0, 2.5]           # also rotate = [degrees about x, then y, then z] and scale = 2
 All may be compressed (.gz). Features are numbered from 0: vertices and triangles as in the file, edges in the order of their lower,
-then their higher vertex. `Touch` means: closer than the threshold. Ctrl-C keeps the pairs found so far.")]
+then their higher vertex. `Touch` means: surfaces closer than the threshold;
+a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.")]
 pub(crate) struct CollideArguments {
     /// Files of meshes or scenes: .obj, .ply, .stl, .off, .gltf, .glb, .json or .toml; `-` is standard input.
     #[arg(value_name = "MESH", required_unless_present = "from", conflicts_with = "from", value_hint = ValueHint::FilePath)]
@@ -87,6 +90,11 @@ pub(crate) struct CollideArguments {
     /// [default: 1 for vertex-vertex, otherwise 0].
     #[arg(long, value_name = "K", value_parser = quantity::width, requires = "within", allow_hyphen_values = true)]
     pub(crate) ring_width: Option<usize>,
+
+    /// Take bodies as solids, with all that their surfaces enclose: also say which lie inside others, and how deep bodies
+    /// overlap: how far one has to be moved until no point of one is inside the other. Meshes must be closed.
+    #[arg(long, conflicts_with = "from")]
+    pub(crate) solid: bool,
 
     #[command(flatten)]
     pub(crate) find: FindArguments,
@@ -160,7 +168,7 @@ pub(crate) enum Axis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Args)]
 #[group(multiple = false)]
 pub(crate) struct FindArguments {
-    /// Only which bodies touch (are closer than the threshold): stop at the first pair of each two bodies.
+    /// Only which bodies touch (have surfaces closer than the threshold): stop at the first pair of each two bodies.
     #[arg(long)]
     touching: bool,
 

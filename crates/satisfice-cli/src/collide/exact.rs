@@ -9,6 +9,8 @@ use satisfice_collision::distance::Proximity;
 use satisfice_collision::scene::{self, Completeness, Contact, Skips};
 
 use super::arguments::Find;
+use super::memory::{Listed, Lists, Room};
+use super::overlaps::{self, Overlap};
 use super::pairs::Pairs;
 use super::scene::{Measure, Pair, World};
 use crate::progress::Counting;
@@ -41,6 +43,8 @@ pub(super) struct Exact<'a> {
 /// The hits.
 pub(super) struct Found {
     pub(super) pairs: Pairs,
+    /// Bodies that overlap as solids, if that was asked for.
+    pub(super) overlaps: Option<Vec<Overlap>>,
     /// Whether all pairs are listed, as was proved.
     pub(super) complete: bool,
     /// How many there are, if that is known.
@@ -49,17 +53,20 @@ pub(super) struct Found {
     pub(super) stop: StopReason,
     pub(super) skips: Skips,
     pub(super) elapsed: Duration,
+    /// Whether memory ended before the search.
+    pub(super) is_full: bool,
 }
 
 /// Pairs that are not measured yet.
 struct Enumerated {
-    pairs: Vec<Pair>,
+    lists: Lists,
     /// Distances that are known beforehand, of all or of none.
     known: Vec<Proximity>,
     skips: Skips,
     stop: StopReason,
     complete: bool,
     count: Option<u64>,
+    is_full: bool,
 }
 
 /// Until when to work.
@@ -112,19 +119,29 @@ impl Exact<'_> {
             }
             self.answer(world, &mut scene, &limit, &counting)?
         };
-        counting.say(format!("measuring {} pairs", answer.pairs.len()));
+        counting.say(format!("measuring {} pairs", answer.lists.pairs.len()));
         // By another scene: the first one keeps the pairs for a next frame, which takes memory.
         let pairs = self.measured(world, &world.measure()?, &mut answer, &limit)?;
         if pairs.unmeasured() > 0 {
             answer.stop = limit.reason();
         }
+        let overlaps = world.request.solid.then(|| {
+            counting.say("looking into the bodies".to_owned());
+            overlaps::find(world, &|| limit.is_reached())
+        });
+        if overlaps.is_some() && limit.is_reached() {
+            answer.stop = limit.reason();
+            answer.complete = false;
+        }
         Ok(Found {
+            overlaps,
             complete: answer.complete,
             count: answer.count.or(answer.complete.then_some(pairs.len() as u64)),
             pairs,
             stop: answer.stop,
             skips: answer.skips,
             elapsed: limit.start.elapsed(),
+            is_full: answer.is_full,
         })
     }
 
@@ -143,7 +160,11 @@ impl Exact<'_> {
         let answer = |contacts: Vec<Contact>, enough: Option<StopReason>, state: Completeness| {
             let proved = state == Completeness::Proved;
             Enumerated {
-                pairs: world.pairs(contacts.into_iter()).collect(),
+                lists: Lists {
+                    pairs: world.pairs(contacts.into_iter()).collect(),
+                    distances: Vec::new(),
+                    witnesses: self.witnesses.then(Vec::new),
+                },
                 known: Vec::new(),
                 skips: Skips::default(),
                 stop: match (proved, enough) {
@@ -153,6 +174,7 @@ impl Exact<'_> {
                 },
                 complete: proved && enough.is_none(),
                 count: None,
+                is_full: false,
             }
         };
         Ok(match world.request.find {
@@ -194,46 +216,48 @@ impl Exact<'_> {
         let wanted = self
             .hits
             .map_or(usize::MAX, |hits| usize::try_from(hits).unwrap_or(usize::MAX));
+        let room = Room::new(self.witnesses);
         let has_enough = |found: usize| {
             counting.show(found, limit.start);
             // One more than the list takes shows that there are more.
-            found >= wanted || found > self.most || limit.is_reached()
+            found >= wanted || found > self.most || limit.is_reached() || !room.holds(found)
         };
-        let (mut pairs, completeness, skips): (Vec<Pair>, _, _) =
-            if matches!(self.method, Method::Auto | Method::Tree) {
-                let mut pass = scene.pass();
-                scene.advance(&mut pass, &mut |found| has_enough(found))?;
-                let pairs = world.pairs(scene.found_by(&pass)).collect();
-                (pairs, pass.completeness(), pass.skips())
-            } else {
-                let update = scene.update_until(&has_enough)?;
-                (
-                    world.pairs(scene.contacts()).collect(),
-                    update.completeness,
-                    update.skips,
-                )
-            };
-        pairs.sort_unstable_by_key(Pair::order);
-        let found = pairs.len();
-        let complete = completeness == Completeness::Proved && found <= wanted.min(self.most);
-        pairs.truncate(wanted.min(self.most));
+        let (listed, completeness, skips) = if matches!(self.method, Method::Auto | Method::Tree) {
+            let mut pass = scene.pass();
+            scene.advance(&mut pass, &mut |found| has_enough(found))?;
+            let listed = room.take(world.pairs(scene.found_by(&pass)));
+            (listed, pass.completeness(), pass.skips())
+        } else {
+            let update = scene.update_until(&has_enough)?;
+            let listed = room.take(world.pairs(scene.contacts()));
+            (listed, update.completeness, update.skips)
+        };
+        let Listed {
+            lists,
+            found,
+            is_full,
+        } = listed;
         let mut answer = Enumerated {
-            pairs,
+            lists,
             known: Vec::new(),
             skips,
-            stop: match complete {
-                true => StopReason::Covered,
-                false if found >= wanted => StopReason::Hits,
-                false => limit.reason(),
-            },
-            complete,
+            stop: limit.reason(),
+            complete: false,
             count: None,
+            is_full,
         };
-        if found > self.most && completeness == Completeness::Proved {
+        let pairs = &mut answer.lists.pairs;
+        pairs.sort_unstable_by_key(Pair::order);
+        pairs.truncate(wanted.min(self.most));
+        let is_cut = pairs.len() < found;
+        if completeness == Completeness::Proved && (!is_cut || found > self.most || is_full) {
             answer.stop = StopReason::Covered;
-            answer.count = Some(found as u64);
-        } else if found > self.most && found < wanted {
-            answer.pairs.shrink_to_fit();
+            answer.complete = !is_cut;
+            answer.count = is_cut.then_some(found as u64);
+        } else if found >= wanted {
+            answer.stop = StopReason::Hits;
+        } else if found > self.most || is_full {
+            pairs.shrink_to_fit();
             let (count, state) = scene.count_until(&|found| {
                 counting.show(found, limit.start);
                 limit.is_reached()
@@ -254,10 +278,14 @@ impl Exact<'_> {
         answer: &mut Enumerated,
         limit: &Limit<'_>,
     ) -> anyhow::Result<Pairs> {
-        let found = std::mem::take(&mut answer.pairs);
+        let Lists {
+            pairs: found,
+            distances,
+            witnesses,
+        } = std::mem::take(&mut answer.lists);
         let mut pairs = Pairs {
-            distances: Vec::with_capacity(found.len()),
-            witnesses: self.witnesses.then(Vec::new),
+            distances,
+            witnesses,
             ..Pairs::default()
         };
         let below = world.request.threshold;

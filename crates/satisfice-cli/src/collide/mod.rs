@@ -7,6 +7,7 @@ mod files;
 pub(crate) mod inputs;
 mod memory;
 mod motion;
+mod overlaps;
 mod page;
 mod pairs;
 mod picture;
@@ -32,6 +33,7 @@ use arguments::{CollideArguments, Find};
 use exact::{Exact, METHODS};
 use files::Files;
 use inputs::Inputs;
+use overlaps::Overlap;
 use pairs::Pairs;
 use report::{Head, Report};
 use scene::{Pair, World};
@@ -68,6 +70,7 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
         within: arguments.within,
         ring_width: arguments.ring_width,
         find: arguments.find.find(),
+        solid: arguments.solid,
     })?);
     let cancel = interrupt::listen()?;
     let mut answer = match exact {
@@ -75,7 +78,7 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
         None => by_engine(arguments, &world, &cancel)?,
     };
     let files = &mut answer.files;
-    let report = Report::new(answer.head, answer.pairs, &answer.skips, &world);
+    let report = Report::new(answer.head, answer.pairs, answer.overlaps, &answer.skips, &world);
     if let Some(file) = &mut files.picture {
         let missed = picture::missed(&answer.reference, &report.pairs.pairs);
         file.write(&picture::draw(
@@ -98,17 +101,28 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     if files.summary {
         output::print(summary::summary(&report).as_bytes())?;
     }
-    Ok(ExitCode::from(u8::from(report.head.hits == 0)))
+    if answer.is_full {
+        bail!(
+            "memory ended after {} pairs, which are written; --max-pairs N asks for fewer",
+            report.head.hits
+        );
+    }
+    let is_empty = report.head.hits == 0 && report.overlaps.iter().flatten().next().is_none();
+    Ok(ExitCode::from(u8::from(is_empty)))
 }
 
 /// What a method found, and where it goes.
 struct Answer {
     head: Head,
     pairs: Pairs,
+    /// Bodies that overlap as solids, if that was asked for.
+    overlaps: Option<Vec<Overlap>>,
     skips: Skips,
     /// All pairs that there are, to show which an engine missed.
     reference: Vec<Pair>,
     files: Files,
+    /// Whether memory ended before the search.
+    is_full: bool,
 }
 
 fn by_exact_method(
@@ -140,9 +154,11 @@ fn by_exact_method(
     Ok(Answer {
         head: Head::of_exact(name, &how, &found, world),
         pairs: found.pairs,
+        overlaps: found.overlaps,
         skips: found.skips,
         reference: Vec::new(),
         files,
+        is_full: found.is_full,
     })
 }
 
@@ -170,9 +186,11 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
     Ok(Answer {
         head: Head::of_search(report, world),
         pairs,
+        overlaps: None,
         skips,
         reference,
         files,
+        is_full: false,
     })
 }
 
@@ -196,6 +214,9 @@ fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
             "--{} is answered by the exact methods and lists what it is asked for: leave out --method and --hits",
             find.name()
         );
+    }
+    if arguments.solid && !is_exact {
+        bail!("--solid is answered by the exact methods: leave out --method {method}");
     }
     if hits.is_some() && ["grid", "brute-force"].contains(&method.as_str()) {
         bail!("--method {method} does not count its hits: for --hits choose exact, tree or an engine");

@@ -13,6 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::PROBLEM;
 use super::exact::{Exact, Found};
 use super::inputs::NamedBody;
+use super::overlaps::Overlap;
 use super::pairs::{Line, Pairs};
 use super::scene::World;
 
@@ -158,7 +159,9 @@ impl BodyLine {
 pub(super) struct Report<'a> {
     pub(super) head: Head,
     pub(super) pairs: Pairs,
-    /// Bodies of which a pair is listed, `[a, b]` with `a <= b`.
+    /// Bodies that overlap as solids, if that was asked for.
+    pub(super) overlaps: Option<Vec<Overlap>>,
+    /// Bodies of which a pair is listed or that overlap, `[a, b]` with `a <= b`.
     pub(super) touching: BTreeSet<[usize; 2]>,
     /// Why pairs of bodies or of features were left out, and how many.
     pub(super) skipped: BTreeMap<String, u64>,
@@ -166,20 +169,28 @@ pub(super) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    pub(super) fn new(head: Head, pairs: Pairs, skips: &Skips, world: &'a World) -> Self {
+    pub(super) fn new(
+        head: Head,
+        pairs: Pairs,
+        overlaps: Option<Vec<Overlap>>,
+        skips: &Skips,
+        world: &'a World,
+    ) -> Self {
         let reasons = skips.by_reason().into_iter();
         let bodies = pairs.pairs.iter().map(|pair| {
             let [a, b] = pair.bodies();
             [a.min(b), a.max(b)]
         });
+        let overlapping = overlaps.iter().flatten().map(|overlap| [overlap.a, overlap.b]);
         Self {
-            touching: bodies.collect(),
+            touching: bodies.chain(overlapping).collect(),
             skipped: reasons
                 .filter(|(_, count)| *count > 0)
                 .map(|(reason, count)| (reason.to_owned(), count))
                 .collect(),
             head,
             pairs,
+            overlaps,
             world,
         }
     }
@@ -200,6 +211,8 @@ impl Serialize for Report<'_> {
             head: &'r Head,
             bodies: Vec<BodyLine>,
             pairs: Listed<'r>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            overlaps: Option<&'r [Overlap]>,
             touching: &'r BTreeSet<[usize; 2]>,
             skipped: &'r BTreeMap<String, u64>,
         }
@@ -207,6 +220,7 @@ impl Serialize for Report<'_> {
             head: &self.head,
             bodies: self.world.bodies.iter().map(BodyLine::new).collect(),
             pairs: Listed(self),
+            overlaps: self.overlaps.as_deref(),
             touching: &self.touching,
             skipped: &self.skipped,
         }
@@ -218,5 +232,7 @@ impl Serialize for Report<'_> {
 #[derive(Debug, Deserialize)]
 pub(super) struct Lists {
     pub(super) pairs: Vec<Line>,
+    #[serde(default)]
+    pub(super) overlaps: Vec<Overlap>,
     pub(super) touching: BTreeSet<[usize; 2]>,
 }

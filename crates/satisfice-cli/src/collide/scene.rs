@@ -11,11 +11,13 @@ use satisfice_collision::distance::Proximity;
 use satisfice_collision::distance::{PairKind, Threshold};
 use satisfice_collision::problem::FeaturePairs;
 use satisfice_collision::scene::{self, Body, BodyId, Contact};
+use satisfice_collision::solid::Solid;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::arguments::Find;
 use super::inputs::{Inputs, NamedBody};
+use super::overlaps;
 
 /// Checking a report by brute force may take so many nanoseconds.
 const PATIENCE: u64 = 5_000_000_000;
@@ -90,6 +92,8 @@ pub(super) struct Request {
     pub(super) within: bool,
     pub(super) ring_width: Option<usize>,
     pub(super) find: Find,
+    /// Whether bodies are solids: closed, with all that they enclose.
+    pub(super) solid: bool,
 }
 
 /// Bodies and what is asked of them.
@@ -98,6 +102,8 @@ pub(super) struct World {
     pub(super) request: Request,
     pub(super) bodies: Vec<NamedBody>,
     pub(super) threshold: Threshold,
+    /// The bodies as solids, if they are.
+    pub(super) solids: Vec<Solid>,
     jobs: OnceLock<Vec<PairProblem>>,
 }
 
@@ -112,6 +118,11 @@ impl World {
         }
         let world = Self {
             threshold: Threshold::new(request.threshold.min(f64::MAX))?,
+            solids: if request.solid {
+                overlaps::solids(&bodies)?
+            } else {
+                Vec::new()
+            },
             request,
             bodies,
             jobs: OnceLock::new(),
@@ -180,6 +191,7 @@ impl World {
             } else {
                 Find::First
             },
+            solid: optional("solid").as_bool().unwrap_or_default(),
         })
     }
 
@@ -201,6 +213,9 @@ impl World {
         settings.set("self", self.request.within);
         settings.set("ring_width", self.ring_width());
         settings.set("find", self.request.find.name());
+        if self.request.solid {
+            settings.set("solid", true);
+        }
         settings
     }
 

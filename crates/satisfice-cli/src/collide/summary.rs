@@ -62,6 +62,25 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     if let Some(asked) = asked(report) {
         lines.line("listed", asked);
     }
+    for overlap in report.overlaps.iter().flatten().take(SHOWN_BODIES) {
+        lines.line("overlap", &overlap.text(&report.world.bodies));
+    }
+    if let Some(overlaps) = &report.overlaps {
+        match overlaps.len() {
+            0 if was_stopped(head) => lines.line("overlap", "none was found until then"),
+            0 => lines.line(
+                "overlap",
+                "none: no surfaces meet and no body lies inside another",
+            ),
+            more if more > SHOWN_BODIES => {
+                lines.line(
+                    "",
+                    &format!("and {} more overlaps; --json FILE lists all", more - SHOWN_BODIES),
+                );
+            }
+            _ => {}
+        }
+    }
     if report.world.bodies.len() > 1 && !report.touching.is_empty() {
         lines.line("bodies", &body_names(&report.world.bodies, &report.touching));
     }
@@ -124,16 +143,23 @@ pub(super) fn elapsed(head: &Head) -> String {
     format!("{}{late}, {why}", shown::seconds(head.elapsed_seconds))
 }
 
+fn was_stopped(head: &Head) -> bool {
+    matches!(head.stop_reason, StopReason::Cancelled | StopReason::Time)
+}
+
 /// What the list is, if it is not all pairs.
 fn asked(report: &Report<'_>) -> Option<&'static str> {
-    let was_stopped = matches!(report.head.stop_reason, StopReason::Cancelled | StopReason::Time);
+    let was_stopped = was_stopped(&report.head);
     match report.world.request.find {
         Find::All => None,
         Find::Touching if was_stopped => {
             Some("one pair of each two bodies that were found to touch; others may touch as well")
         }
+        Find::Touching if report.world.request.solid => Some(
+            "one pair of each two bodies that touch, which means: surfaces closer than the threshold, or one inside the other; no other bodies do, that is proved",
+        ),
         Find::Touching => Some(
-            "one pair of each two bodies that touch, which means: closer than the threshold; no other bodies do, that is proved",
+            "one pair of each two bodies that touch, which means: surfaces closer than the threshold; no others are, that is proved; --solid also finds bodies inside others",
         ),
         Find::First => Some("one pair, whichever is found first"),
         Find::Closest(_) if was_stopped => Some("the closest of the pairs found; others may be closer"),

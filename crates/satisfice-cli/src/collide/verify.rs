@@ -9,6 +9,7 @@ use satisfice_catalogue::report::recall;
 use serde::Deserialize;
 
 use super::motion;
+use super::overlaps;
 use super::pairs::Line;
 use super::report::{Head, Lists};
 use super::scene::{Pair, World};
@@ -28,6 +29,7 @@ pub(crate) fn verify(text: &[u8]) -> anyhow::Result<(Vec<Mismatch>, u64)> {
         World::of_settings(&head.problem_parameters).context("the scene of the report cannot be built")?;
     let mut mismatches = counts(&head, &lists);
     mismatches.extend(pairs(&lists, &world)?);
+    mismatches.extend(overlaps(&head, &lists, &world));
     mismatches.extend(best(&head, &world)?);
     mismatches.extend(reference(&head, &world)?);
     Ok((mismatches, head.hits))
@@ -66,9 +68,14 @@ fn counts(head: &Head, lists: &Lists) -> Vec<Mismatch> {
             "0, since completeness is proved",
         ));
     }
-    let touching: BTreeSet<_> = lists.pairs.iter().map(bodies).collect();
+    let overlapping = lists.overlaps.iter().map(|overlap| [overlap.a, overlap.b]);
+    let touching: BTreeSet<_> = lists.pairs.iter().map(bodies).chain(overlapping).collect();
     if lists.touching != touching {
-        wrong.push(Mismatch::new("touching", "other bodies", "those of the pairs"));
+        wrong.push(Mismatch::new(
+            "touching",
+            "other bodies",
+            "those of the pairs and overlaps",
+        ));
     }
     wrong
 }
@@ -121,6 +128,28 @@ fn pairs(lists: &Lists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
         }
     }
     Ok(wrong)
+}
+
+/// Bodies that overlap must be those that do, as far as they were looked at.
+fn overlaps(head: &Head, lists: &Lists, world: &World) -> Option<Mismatch> {
+    let is = overlaps::find(world, &|| false);
+    let wrong = lists
+        .overlaps
+        .iter()
+        .find(|given| !is.iter().any(|is| is.agrees(given)));
+    let is_short = head.completeness == Completeness::Proved && is.len() != lists.overlaps.len();
+    (wrong.is_some() || is_short).then(|| {
+        let given = wrong.map_or_else(
+            || format!("{} of them", lists.overlaps.len()),
+            |wrong| format!("{wrong:?}"),
+        );
+        let all: Vec<String> = is.iter().map(|overlap| overlap.text(&world.bodies)).collect();
+        Mismatch::new(
+            "overlaps",
+            given,
+            format!("{} of them: {}", all.len(), all.join("; ")),
+        )
+    })
 }
 
 /// The closest pair that an engine saw must be as far apart as the report says.
