@@ -7,8 +7,8 @@ use satisfice_cloth::Cloth;
 use satisfice_collision::problem::{Pleats, Teapots};
 use satisfice_problems::{
     Arm, Branin, Cec2006, Cec2013, Costas, DiscPacking, Falsification, GraphColouring, Hartmann6, Himmelblau,
-    Islands, Langford, LatinSquare, MagicSquare, Needles, Puma, Queens, Rastrigin, Roots, SallenKey, Sat,
-    SevenJoints, Shell, System, Transmission,
+    Islands, Langford, LatinSquare, MagicSquare, MixedAxes, Needles, PeriodicPoints, Puma, Queens, Rastrigin,
+    Roots, SallenKey, Sat, SevenJoints, Shell, SmallRegions, System, Transmission,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -172,6 +172,8 @@ static BUNDLED: &[ProblemSpec] = &[
     ProblemSpec::of::<Needles>(),
     ProblemSpec::of::<DiscPacking>(),
     ProblemSpec::of::<Cec2006>(),
+    ProblemSpec::of::<SmallRegions>(),
+    ProblemSpec::of::<MixedAxes>(),
     ProblemSpec::of::<Arm>(),
     ProblemSpec::of::<SevenJoints>(),
     ProblemSpec::of::<Puma>(),
@@ -188,6 +190,7 @@ static BUNDLED: &[ProblemSpec] = &[
     ProblemSpec::of::<Roots>(),
     ProblemSpec::of::<Himmelblau>(),
     ProblemSpec::of::<System>(),
+    ProblemSpec::of::<PeriodicPoints>(),
     ProblemSpec::of::<Branin>(),
     ProblemSpec::of::<Hartmann6>(),
     ProblemSpec::of::<Cec2013>(),

@@ -2,18 +2,19 @@
 //!
 //! | family | problems |
 //! |---|---|
-//! | level sets | [`Rastrigin`], [`Shell`], [`Islands`], [`DiscPacking`], [`Cec2006`], and the negative control [`Needles`] |
+//! | level sets | [`Rastrigin`], [`Shell`], [`Islands`], [`DiscPacking`], [`Cec2006`], [`MixedAxes`], and the negative control [`Needles`] |
+//! | small regions | [`SmallRegions`]: boxes, balls, thin turned ellipsoids, plateaus |
 //! | design windows | [`SallenKey`] |
 //! | inverse kinematics | [`Arm`], [`SevenJoints`], [`Puma`] |
 //! | falsification | [`Falsification`], [`Transmission`], specifications in signal temporal logic: [`Specification`] |
 //! | constraint satisfaction | [`Queens`], [`GraphColouring`], [`Costas`], [`MagicSquare`], [`LatinSquare`], [`Langford`], [`Sat`] |
-//! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name) |
+//! | roots of nonlinear systems | [`Roots`], [`Himmelblau`], [`System`] (17 by name), [`PeriodicPoints`] |
 //! | smooth functions of few variables | [`Branin`], [`Hartmann6`] |
 //! | niching | [`Cec2013`] (20 functions) |
 //!
-//! On a lattice, different cells are distinct hits. Where roots are sought, hits are polished by Newton's method and different
-//! roots are distinct. Counts that take long to enumerate are constants; `cargo run --release -p satisfice-problems --example
-//! enumerate` recomputes them.
+//! What counts as distinct: a cell on a lattice, a root or a region where the space is continuous (a hit becomes the root, by
+//! Newton's method, or the centre). Counts that take long to enumerate are constants; `cargo run --release -p satisfice-problems
+//! --example enumerate` recomputes them.
 //!
 //! [`SatisficingProblem`]: satisfice::SatisficingProblem
 //! [`Catalogued`]: satisfice::catalogue::Catalogued

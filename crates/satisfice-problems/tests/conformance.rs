@@ -61,4 +61,11 @@ fn continuous() {
     keeps_the_laws::<Cec2013>(&[]);
     keeps_the_laws::<System>(&[]);
     keeps_the_laws::<Puma>(&[]);
+    keeps_the_laws::<PeriodicPoints>(&[]);
+    keeps_the_laws::<PeriodicPoints>(&[("unknowns", "start"), ("spread", "0.5")]);
+    for shape in ["box", "ball", "ellipsoid"] {
+        keeps_the_laws::<SmallRegions>(&[("shape", shape), ("radius", "0.2"), ("count", "4")]);
+    }
+    keeps_the_laws::<SmallRegions>(&[("steps", "2"), ("dimension", "2"), ("radius", "0.1")]);
+    keeps_the_laws::<MixedAxes>(&[]);
 }

@@ -4,10 +4,12 @@ mod certify;
 pub(crate) mod equations;
 mod himmelblau;
 mod newton;
+mod periodic_points;
 mod system;
 mod systems;
 mod waves;
 
 pub use himmelblau::Himmelblau;
+pub use periodic_points::PeriodicPoints;
 pub use system::System;
 pub use waves::Roots;
