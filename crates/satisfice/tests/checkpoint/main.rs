@@ -12,6 +12,7 @@ use satisfice::{
 };
 
 mod refused;
+mod size;
 
 type Saved = Checkpoint<Located<f64>>;
 

@@ -4,13 +4,14 @@
 //! that radius, but it can learn it.
 
 use super::record::Record;
+use super::units::Units;
 
 /// Outcomes that the radius is learned from: the latest.
 const LATEST: usize = 64;
 
 /// The radius around hits, in units of the axes, that best tells duplicates from new hits: with the fewest of the latest
 /// outcomes on the wrong side. 0 where there are no duplicates.
-pub(super) fn radius(record: &Record) -> f64 {
+pub(super) fn radius(record: &Record, units: &Units) -> f64 {
     if record.duplicates.is_empty() {
         return 0.0;
     }
@@ -19,13 +20,13 @@ pub(super) fn radius(record: &Record) -> f64 {
         .iter()
         .rev()
         .take(LATEST)
-        .map(|&i| (nearest(record, i), false));
+        .map(|&i| (nearest(record, units, i), false));
     let hits = record
         .hits
         .iter()
         .rev()
         .take(LATEST)
-        .map(|&i| (nearest(record, i), true));
+        .map(|&i| (nearest(record, units, i), true));
     let mut all: Vec<(f64, bool)> = duplicates.chain(hits).filter(|(d, _)| d.is_finite()).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Errors of a radius just below the first: all duplicates.
@@ -44,26 +45,27 @@ pub(super) fn radius(record: &Record) -> f64 {
 }
 
 /// Distance of point `i` to the nearest hit before it.
-fn nearest(record: &Record, i: usize) -> f64 {
+fn nearest(record: &Record, units: &Units, i: usize) -> f64 {
     let x = record.point(i);
     let before = record.hits.iter().take_while(|&&hit| hit < i);
     before
-        .map(|&hit| square(record.point(hit), x))
+        .map(|&hit| square(units, record.point(hit), x))
         .fold(f64::INFINITY, f64::min)
         .sqrt()
 }
 
 /// Whether a point is within the radius of a hit or of a duplicate.
-pub(super) fn is_duplicate(record: &Record, radius: f64, x: &[f64]) -> bool {
+pub(super) fn is_duplicate(record: &Record, units: &Units, radius: f64, x: &[f64]) -> bool {
     let known = record.hits.iter().chain(&record.duplicates);
     radius > 0.0
         && known
             .into_iter()
-            .any(|&i| square(record.point(i), x) <= radius * radius)
+            .any(|&i| square(units, record.point(i), x) <= radius * radius)
 }
 
-fn square(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+fn square(units: &Units, a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b).zip(&units.axes);
+    pairs.map(|((a, b), unit)| unit.difference(*a, *b).powi(2)).sum()
 }
 
 #[cfg(test)]
@@ -85,9 +87,12 @@ mod tests {
         ] {
             record.add(&[x], -1.0, kind);
         }
-        let radius = radius(&record);
+        let units = Units::of(&crate::space::Space::<f64>::cube(1, 0.0, 1.0).unwrap());
+        let radius = radius(&record, &units);
         // Duplicates are up to 0.05 from a hit; new hits are 0.2 and more away.
         assert!((radius - 0.1).abs() < 1e-12, "{radius}");
-        assert!(is_duplicate(&record, radius, &[0.95]) && !is_duplicate(&record, radius, &[0.6]));
+        assert!(
+            is_duplicate(&record, &units, radius, &[0.95]) && !is_duplicate(&record, &units, radius, &[0.6])
+        );
     }
 }

@@ -4,6 +4,7 @@ use super::lanes::LANES;
 use super::likelihood::likeliest;
 use super::process::{Block, Process};
 use super::scales::Scales;
+use super::units::Shape;
 
 /// A Gaussian process through points of the unit cube, with a Matérn 5/2 kernel and the length scales that are likeliest: the
 /// model of the engine [`Surrogate`](super::Surrogate).
@@ -37,7 +38,7 @@ impl GaussianProcess {
             return None;
         }
         let inputs: Vec<&[f64]> = points.chunks_exact(axes).collect();
-        let scales = likeliest(&Scales::new(axes), &inputs, values, STEPS);
+        let scales = likeliest(&Scales::new(vec![Shape::Line; axes]), &inputs, values, STEPS);
         Some(Self {
             process: Process::new(scales, &inputs, values),
         })

@@ -36,14 +36,40 @@ fn roots(squares: &Lanes) -> Lanes {
     s
 }
 
-/// Squared distances of one point to a block of points, `block[j]` holding coordinate `j` of each.
+/// One of the coordinates in which points are compared, and the axis that it is of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Feature {
+    /// A number in length scales.
+    Number { axis: usize },
+    /// A category: equal ones are 0 apart, and any two others have the same squared distance, `1 / length²`.
+    Category { axis: usize, square: f64 },
+}
+
+impl Feature {
+    pub(super) fn axis(self) -> usize {
+        match self {
+            Self::Number { axis } | Self::Category { axis, .. } => axis,
+        }
+    }
+
+    /// Squared distances of one coordinate to those of a block.
+    #[inline(always)]
+    pub(super) fn squares(self, x: f64, lanes: &Lanes) -> Lanes {
+        match self {
+            Self::Number { .. } => lanes.map(|y| (x - y) * (x - y)),
+            Self::Category { square, .. } => lanes.map(|y| if x == y { 0.0 } else { square }),
+        }
+    }
+}
+
+/// Squared distances of one point to a block of points, `block[j]` holding feature `j` of each.
 #[inline(always)]
-pub(super) fn squares(point: &[f64], block: &[Lanes]) -> Lanes {
+pub(super) fn squares(features: &[Feature], point: &[f64], block: &[Lanes]) -> Lanes {
     let mut sum = [0.0; LANES];
-    for (&x, axis) in point.iter().zip(block) {
-        for (sum, y) in sum.iter_mut().zip(axis) {
-            let d = x - y;
-            *sum += d * d;
+    for ((feature, &x), lanes) in features.iter().zip(point).zip(block) {
+        let squares = feature.squares(x, lanes);
+        for (sum, square) in sum.iter_mut().zip(squares) {
+            *sum += square;
         }
     }
     sum
@@ -51,8 +77,8 @@ pub(super) fn squares(point: &[f64], block: &[Lanes]) -> Lanes {
 
 /// Covariances of one point with a block of points.
 #[inline(always)]
-pub(super) fn covariances(point: &[f64], block: &[Lanes]) -> Lanes {
-    matern(&squares(point, block))
+pub(super) fn covariances(features: &[Feature], point: &[f64], block: &[Lanes]) -> Lanes {
+    matern(&squares(features, point, block))
 }
 
 #[cfg(test)]

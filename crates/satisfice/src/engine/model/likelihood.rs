@@ -1,7 +1,7 @@
 //! How likely the observed values are under length scales and noise, and the scales that make them likeliest.
 
 use super::factor::Factor;
-use super::kernel::{covariances, matern_slope, squares};
+use super::kernel::{Feature, covariances, matern_slope, squares};
 use super::lanes::{LANES, Lanes};
 use super::points::Points;
 use super::scales::Scales;
@@ -23,10 +23,9 @@ const LEAST_VARIANCE: f64 = 1e-300;
 impl Fit {
     /// Scales the points and factors their covariance. Cost: n³ / 6.
     pub(super) fn factor(&mut self, scales: &Scales, inputs: &[&[f64]]) {
-        let inverses: Vec<f64> = (0..scales.axes()).map(|j| 1.0 / scales.length(j)).collect();
-        self.points.clear(scales.axes());
+        self.points.clear(scales.features());
         for input in inputs {
-            self.points.push(input.iter().zip(&inverses).map(|(x, s)| x * s));
+            self.points.push(scales.scaled_point(input).into_iter());
         }
         let variance = 1.0 + scales.noise();
         self.factor.clear();
@@ -34,7 +33,9 @@ impl Fit {
         for b in 0..self.points.blocks() {
             let (block, count) = (self.points.block(b), self.points.count(b));
             rows.clear();
-            rows.extend((0..b * LANES + count).map(|j| covariances(self.points.row(j), block)));
+            rows.extend(
+                (0..b * LANES + count).map(|j| covariances(&self.points.features, self.points.row(j), block)),
+            );
             for lane in 0..count {
                 rows[b * LANES + lane][lane] = variance;
             }
@@ -82,7 +83,8 @@ impl Fit {
             .map(|b| self.factor.inverse_columns(b))
             .collect();
         let (by_length, by_noise) = gradient.split_at_mut(scales.axes());
-        let mut sums = vec![[0.0; LANES]; scales.axes()];
+        let features = &self.points.features;
+        let mut sums = vec![[0.0; LANES]; features.len()];
         let mut trace = 0.0;
         for (b, columns) in inverse.iter().enumerate() {
             let (start, count, block) = (b * LANES, self.points.count(b), self.points.block(b));
@@ -98,20 +100,30 @@ impl Fit {
                 }
                 entry[count..].fill(0.0);
                 let row = self.points.row(i);
-                let slope = matern_slope(&squares(row, block));
+                let slope = matern_slope(&squares(features, row, block));
                 for lane in 0..LANES {
                     entry[lane] *= slope[lane];
                 }
-                for ((sum, x), y) in sums.iter_mut().zip(row).zip(block) {
-                    for lane in 0..LANES {
-                        let d = x - y[lane];
-                        sum[lane] += entry[lane] * d * d;
+                for (((sum, feature), &x), y) in sums.iter_mut().zip(features).zip(row).zip(block) {
+                    match feature {
+                        Feature::Number { .. } => {
+                            for lane in 0..LANES {
+                                let d = x - y[lane];
+                                sum[lane] += entry[lane] * d * d;
+                            }
+                        }
+                        Feature::Category { .. } => {
+                            let squares = feature.squares(x, y);
+                            for lane in 0..LANES {
+                                sum[lane] += entry[lane] * squares[lane];
+                            }
+                        }
                     }
                 }
             }
         }
-        for (slope, sum) in by_length.iter_mut().zip(sums) {
-            *slope += sum.iter().sum::<f64>();
+        for (feature, sum) in features.iter().zip(sums) {
+            by_length[feature.axis()] += sum.iter().sum::<f64>();
         }
         by_noise[0] += scales.noise() * trace / 2.0;
     }
@@ -192,6 +204,7 @@ pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[f64], steps:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::model::units::Shape;
 
     /// Points of a plane and values that change along the first axis only.
     fn data(n: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
@@ -203,10 +216,13 @@ mod tests {
 
     #[test]
     fn the_gradient_agrees_with_differences() {
-        let (inputs, values) = data(37);
+        let (mut inputs, values) = data(37);
+        for (i, input) in inputs.iter_mut().enumerate() {
+            input.extend([(i as f64 * 0.31).fract(), ((i % 3) as f64 + 0.5) / 3.0]);
+        }
         let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-        let mut scales = Scales::new(2);
-        scales.logs = vec![-0.4, 0.3, -4.0];
+        let mut scales = Scales::new(vec![Shape::Line, Shape::Line, Shape::Circle, Shape::Category]);
+        scales.logs = vec![-0.4, 0.3, -0.2, 0.6, -4.0];
         let (_, gradient) = Fit::default().evaluate(&scales, &inputs, &values);
         for (k, slope) in gradient.iter().enumerate() {
             let at = |step: f64| {
@@ -254,7 +270,7 @@ mod tests {
     fn an_axis_without_effect_gets_a_long_scale() {
         let (inputs, values) = data(40);
         let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-        let scales = likeliest(&Scales::new(2), &inputs, &values, 40);
+        let scales = likeliest(&Scales::new(vec![Shape::Line; 2]), &inputs, &values, 40);
         assert!(scales.length(1) > 3.0 * scales.length(0), "{scales:?}");
     }
 }

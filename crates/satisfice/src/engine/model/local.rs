@@ -61,7 +61,7 @@ impl<S: Real> Given<'_, S> {
         self.units.of_position(space, self.position, rounded);
         self.record.has(rounded)
             || self.context.is_deleted(self.position)
-            || is_duplicate(self.record, radius, rounded)
+            || is_duplicate(self.record, self.units, radius, rounded)
     }
 }
 
@@ -77,13 +77,13 @@ impl Model {
         let points = record.len();
         let (scales, mut pool, steps) = match old {
             Some(old) => (old.process.scales, old.pool, STEPS.1),
-            None => (Scales::new(axes), Pool::default(), STEPS.0),
+            None => (Scales::new(given.units.shapes()), Pool::default(), STEPS.0),
         };
         let region = if points <= most {
             TrustRegion::whole(record)
         } else {
             pool.clear();
-            TrustRegion::local(record, &scales, most, rng)
+            TrustRegion::local(record, given.units, &scales, most, rng)
         };
         pool.reset();
         let raw: Vec<f64> = region.known.iter().map(|&i| record.values[i]).collect();
@@ -106,7 +106,7 @@ impl Model {
             fitted: points,
             taken: points,
             reach,
-            radius: radius(record),
+            radius: radius(record, given.units),
             pool: Pool::default(),
         };
         let least = least(record, &model.region.known);
@@ -218,10 +218,13 @@ impl Model {
                 self.pool.exclude(place);
                 continue;
             }
-            if pending.iter().any(|point| square(point, &x, &self.reach) <= 1.0) {
+            if pending
+                .iter()
+                .any(|point| square(given.units, point, &x, &self.reach) <= 1.0)
+            {
                 continue;
             }
-            let score = self.spread(score, &x, given.record);
+            let score = self.spread(score, &x, given);
             if bar.is_none_or(|bar| score.order(&bar).is_gt()) {
                 best = Some((score, x.clone()));
             }
@@ -230,14 +233,15 @@ impl Model {
     }
 
     /// Where no candidate is hopeful, what is left next to a hit is its slope: candidates lose by being close to one.
-    fn spread(&self, score: Score, x: &[f64], record: &Record) -> Score {
+    fn spread<S>(&self, score: Score, x: &[f64], given: &Given<'_, S>) -> Score {
         if score.hopeful {
             return score;
         }
+        let record = given.record;
         let hits = record
             .hits
             .iter()
-            .map(|&hit| square(record.point(hit), x, &self.reach));
+            .map(|&hit| square(given.units, record.point(hit), x, &self.reach));
         let nearest = hits.fold(f64::INFINITY, f64::min);
         Score {
             value: score.value - (-nearest / 2.0).exp(),

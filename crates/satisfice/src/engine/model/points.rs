@@ -1,21 +1,24 @@
 //! Points in length scales, stored by rows and by blocks.
 
+use super::kernel::Feature;
 use super::lanes::{LANES, Lanes};
 
-/// Points whose coordinates are divided by the length scales.
+/// Points by their features.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Points {
+    pub(super) features: Vec<Feature>,
     axes: usize,
     rows: Vec<f64>,
-    /// `axes` lanes for each block of [`LANES`] points; lanes behind the last point hold what was there before.
+    /// Lanes of each feature for each block of [`LANES`] points; lanes behind the last point hold what was there before.
     blocks: Vec<Lanes>,
     len: usize,
 }
 
 impl Points {
-    pub(super) fn clear(&mut self, axes: usize) {
+    pub(super) fn clear(&mut self, features: Vec<Feature>) {
         *self = Self {
-            axes,
+            axes: features.len(),
+            features,
             ..Self::default()
         };
     }
@@ -51,7 +54,7 @@ impl Points {
         self.len.div_ceil(LANES)
     }
 
-    /// Block `b`, one [`Lanes`] for each axis.
+    /// Block `b`, one [`Lanes`] for each feature.
     #[inline]
     pub(super) fn block(&self, b: usize) -> &[Lanes] {
         &self.blocks[b * self.axes..(b + 1) * self.axes]

@@ -12,7 +12,6 @@ const LEAST_VARIANCE: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct Process {
     pub(super) scales: Scales,
-    inverses: Vec<f64>,
     fit: Fit,
     /// `L⁻¹ (y - mean)`.
     solved: Vec<f64>,
@@ -35,7 +34,7 @@ pub(super) struct Block {
 impl Block {
     pub(super) fn new(units: Vec<Lanes>) -> Self {
         Self {
-            scaled: units.clone(),
+            scaled: Vec::new(),
             units,
             solved: Vec::new(),
             mean: [0.0; LANES],
@@ -57,13 +56,7 @@ impl Process {
         let mut fit = Fit::default();
         fit.factor(&scales, inputs);
         let solved = fit.moments(values);
-        let inverses = (0..scales.axes()).map(|j| 1.0 / scales.length(j)).collect();
-        Self {
-            scales,
-            inverses,
-            fit,
-            solved,
-        }
+        Self { scales, fit, solved }
     }
 
     /// Number of points.
@@ -74,13 +67,12 @@ impl Process {
     /// Adds a point. Cost: n² / 2.
     pub(super) fn push(&mut self, input: &[f64], value: f64) {
         let fit = &mut self.fit;
-        fit.points
-            .push(input.iter().zip(&self.inverses).map(|(x, s)| x * s));
+        fit.points.push(self.scales.scaled_point(input).into_iter());
         let new = fit.points.len() - 1;
         let row = fit.points.row(new);
         let mut all: Vec<f64> = Vec::with_capacity(new + LANES);
         for b in 0..fit.points.blocks() {
-            all.extend(covariances(row, fit.points.block(b)));
+            all.extend(covariances(&fit.points.features, row, fit.points.block(b)));
         }
         all.truncate(new);
         fit.factor.push(all.into_iter(), 1.0 + self.scales.noise());
@@ -114,13 +106,10 @@ impl Process {
     pub(super) fn update(&self, block: &mut Block) {
         let known = block.solved.len();
         if known == 0 {
-            for ((scaled, units), inverse) in block.scaled.iter_mut().zip(&block.units).zip(&self.inverses) {
-                for (scaled, unit) in scaled.iter_mut().zip(units) {
-                    *scaled = unit * inverse;
-                }
-            }
+            block.scaled = self.scales.scaled(&block.units);
         }
-        let rows = (known..self.len()).map(|i| covariances(self.fit.points.row(i), &block.scaled));
+        let rows = (known..self.len())
+            .map(|i| covariances(&self.fit.points.features, self.fit.points.row(i), &block.scaled));
         block.solved.extend(rows);
         self.fit.factor.solve(&mut block.solved, known);
         self.accumulate(block, known);
@@ -152,6 +141,7 @@ impl Process {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::model::units::Shape;
 
     fn point(i: usize) -> [f64; 2] {
         [(i as f64 * 0.754_877).fract(), (i as f64 * 0.569_840).fract()]
@@ -165,7 +155,7 @@ mod tests {
         let inputs: Vec<_> = (0..n).map(point).collect();
         let values: Vec<_> = inputs.iter().map(|x| value(x)).collect();
         let inputs: Vec<&[f64]> = inputs.iter().map(|x| &x[..]).collect();
-        Process::new(Scales::new(2), &inputs, &values)
+        Process::new(Scales::new(vec![Shape::Line; 2]), &inputs, &values)
     }
 
     fn block(first: usize) -> Block {
@@ -186,6 +176,46 @@ mod tests {
                 assert!((means[lane] - truth).abs() < 6.0 * variances[lane].sqrt() + 1e-3);
             }
         }
+    }
+
+    /// Mean and variance at one point of a process through these, on axes of these shapes with length 0.5.
+    fn predict(shapes: Vec<Shape>, known: &[(&[f64], f64)], at: &[f64]) -> (f64, f64) {
+        let mut scales = Scales::new(shapes);
+        let axes = scales.axes();
+        scales.logs[..axes].fill(0.5_f64.ln());
+        let (inputs, values): (Vec<&[f64]>, Vec<f64>) = known.iter().copied().unzip();
+        let process = Process::new(scales, &inputs, &values);
+        let mut block = Block::new(at.iter().map(|&x| [x; LANES]).collect());
+        process.update(&mut block);
+        let (means, variances) = process.predictions(&block);
+        (means[0], variances[0])
+    }
+
+    #[test]
+    fn the_ends_of_a_circle_are_one_point_and_its_far_side_is_far() {
+        let known: [(&[f64], f64); 3] = [(&[0.02], -1.0), (&[0.3], 1.0), (&[0.6], 1.0)];
+        let (line, circle) = (vec![Shape::Line], vec![Shape::Circle]);
+        let [on_line, on_circle] = [line, circle.clone()].map(|shapes| predict(shapes, &known, &[0.99]));
+        assert!(on_circle.0 < -0.8 && on_line.0 > 0.0, "{on_circle:?} {on_line:?}");
+        assert!(on_circle.1 < 0.1 * on_line.1);
+        // A turn of everything changes nothing.
+        let turned: Vec<([f64; 1], f64)> = known.iter().map(|(x, y)| ([(x[0] + 0.45).fract()], *y)).collect();
+        let turned: Vec<(&[f64], f64)> = turned.iter().map(|(x, y)| (&x[..], *y)).collect();
+        let again = predict(circle, &turned, &[0.44]);
+        approx::assert_relative_eq!(again.0, on_circle.0, max_relative = 1e-6);
+    }
+
+    #[test]
+    fn categories_have_no_order() {
+        // The middle of five categories is not between its neighbours, and no other category is nearer than another.
+        let known: [(&[f64], f64); 4] = [(&[0.1], 0.3), (&[0.3], 1.0), (&[0.7], -1.0), (&[0.9], 0.4)];
+        let category = |known: &[(&[f64], f64)], at: f64| predict(vec![Shape::Category], known, &[at]);
+        let unknown = category(&known, 0.5);
+        let exchanged: [(&[f64], f64); 4] = [(&[0.9], 0.3), (&[0.5], 1.0), (&[0.1], -1.0), (&[0.7], 0.4)];
+        let (mean, variance) = category(&exchanged, 0.3);
+        approx::assert_relative_eq!(mean, unknown.0, max_relative = 1e-9);
+        approx::assert_relative_eq!(variance, unknown.1, max_relative = 1e-9);
+        assert!((category(&known, 0.7).0 + 1.0).abs() < 1e-3);
     }
 
     #[test]
@@ -239,7 +269,7 @@ mod tests {
     /// `(y - m)' K^-1 (y - m) / n`, by elimination and without a factor.
     #[test]
     fn predictions_are_the_published_ones() {
-        let mut scales = Scales::new(2);
+        let mut scales = Scales::new(vec![Shape::Line; 2]);
         scales.logs = vec![-1.0, -0.2, -6.0];
         let known: Vec<_> = (0..23).map(point).collect();
         let y: Vec<f64> = known.iter().map(|x| value(x)).collect();

@@ -1,6 +1,6 @@
 //! How far from a hit the next distinct hit may be.
 
-use super::units::Units;
+use super::units::{Shape, Unit, Units};
 use crate::context::Context;
 use crate::scalar::Real;
 
@@ -20,6 +20,10 @@ pub(super) fn reach<S: Real>(
     let mut x = hit.to_vec();
     let mut along = |j: usize| {
         let unit = units.axes[j];
+        if unit.shape == Shape::Category {
+            // Every other category is distinct.
+            return 0.5 / unit.cells;
+        }
         if unit.cells > 0.0 {
             return 1.0 / unit.cells;
         }
@@ -42,13 +46,13 @@ pub(super) fn reach<S: Real>(
 }
 
 /// Squared distance of two points in reaches; equal points are 0 apart, others at least 1 where a reach is not known.
-pub(super) fn square(a: &[f64], b: &[f64], reach: &[f64]) -> f64 {
-    let along = |((a, b), reach): ((&f64, &f64), &f64)| {
+pub(super) fn square(units: &Units, a: &[f64], b: &[f64], reach: &[f64]) -> f64 {
+    let along = |(((a, b), reach), unit): (((&f64, &f64), &f64), &Unit)| {
         if *reach > 0.0 {
-            ((a - b) / reach).powi(2)
+            (unit.difference(*a, *b) / reach).powi(2)
         } else {
             f64::from(u8::from(a != b))
         }
     };
-    a.iter().zip(b).zip(reach).map(along).sum()
+    a.iter().zip(b).zip(reach).zip(&units.axes).map(along).sum()
 }

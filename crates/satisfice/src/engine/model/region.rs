@@ -2,6 +2,7 @@
 
 use super::record::Record;
 use super::scales::Scales;
+use super::units::{Shape, Units};
 use crate::seed::SearchRng;
 
 /// Share of the local models whose centre is a hit, where there is one.
@@ -29,7 +30,13 @@ impl TrustRegion {
     }
 
     /// The points next to a random one, usually a hit, and the box around them.
-    pub(super) fn local(record: &Record, scales: &Scales, most: usize, rng: &mut SearchRng) -> Self {
+    pub(super) fn local(
+        record: &Record,
+        units: &Units,
+        scales: &Scales,
+        most: usize,
+        rng: &mut SearchRng,
+    ) -> Self {
         let all: Vec<usize> = known(record).collect();
         let centre = if !record.hits.is_empty() && rng.uniform() < AROUND_HITS {
             record.hits[rng.below(record.hits.len())]
@@ -39,8 +46,10 @@ impl TrustRegion {
         let centre = record.point(centre);
         let inverses: Vec<f64> = (0..scales.axes()).map(|j| 1.0 / scales.length(j)).collect();
         let distance = |i: usize| -> f64 {
-            let pairs = record.point(i).iter().zip(centre).zip(&inverses);
-            pairs.map(|((a, b), s)| ((a - b) * s).powi(2)).sum()
+            let pairs = record.point(i).iter().zip(centre).zip(&inverses).zip(&units.axes);
+            pairs
+                .map(|(((a, b), s), unit)| (unit.difference(*a, *b) * s).powi(2))
+                .sum()
         };
         let mut order: Vec<(f64, usize)> = all.into_iter().map(|i| (distance(i), i)).collect();
         let count = LOCAL.min(most).min(order.len()).max(1);
@@ -61,6 +70,13 @@ impl TrustRegion {
             {
                 *lower = lower.min(x);
                 *upper = upper.max(x);
+            }
+        }
+        // A circle has no ends, and categories no order.
+        let ends = region.lower.iter_mut().zip(&mut region.upper);
+        for ((lower, upper), unit) in ends.zip(&units.axes) {
+            if matches!(unit.shape, Shape::Circle | Shape::Category) {
+                (*lower, *upper) = (0.0, 1.0);
             }
         }
         region

@@ -1,10 +1,16 @@
 //! Parameters of the covariance.
 
+use super::kernel::Feature;
+use super::lanes::{LANES, Lanes};
+use super::units::Shape;
+
 /// Length scales, as shares of the axes, and noise, as a share of the variance of F.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scales {
     /// The logarithms of the length scales, then of the noise.
     pub(super) logs: Vec<f64>,
+    /// Of each axis.
+    pub(super) shapes: Vec<Shape>,
 }
 
 /// Natural logarithms between which length scales are sought: 0.02 to 20 axes.
@@ -19,10 +25,53 @@ const NOISE_PRIOR: (f64, f64) = (-13.0, 4.0);
 impl Scales {
     /// The mean of the prior for this many axes: half an axis in one dimension, and in proportion to the length of a cube's
     /// diagonal in more.
-    pub(super) fn new(axes: usize) -> Self {
+    pub(super) fn new(shapes: Vec<Shape>) -> Self {
+        let axes = shapes.len();
         let mut logs = vec![prior_length(axes); axes];
         logs.push(NOISE_PRIOR.0);
-        Self { logs }
+        Self { logs, shapes }
+    }
+
+    /// The coordinates in which squared distances are sums over features. A point of a circle is a point of the plane (the
+    /// periodic kernel of MacKay 1998, Introduction to Gaussian Processes, Eq. 47), with the distance along the chord.
+    pub(super) fn features(&self) -> Vec<Feature> {
+        let mut features = Vec::with_capacity(self.axes());
+        for (j, shape) in self.shapes.iter().enumerate() {
+            match shape {
+                Shape::Line | Shape::Place(_) => features.push(Feature::Number { axis: j }),
+                Shape::Circle => features.extend([Feature::Number { axis: j }; 2]),
+                Shape::Category => features.push(Feature::Category {
+                    axis: j,
+                    square: self.length(j).powi(-2),
+                }),
+            }
+        }
+        features
+    }
+
+    /// The features of points, 16 at a time.
+    pub(super) fn scaled(&self, units: &[Lanes]) -> Vec<Lanes> {
+        let mut scaled = Vec::with_capacity(units.len());
+        for ((lanes, shape), log) in units.iter().zip(&self.shapes).zip(&self.logs) {
+            let inverse = 1.0 / log.exp();
+            match shape {
+                Shape::Line | Shape::Place(_) => scaled.push(lanes.map(|x| x * inverse)),
+                Shape::Category => scaled.push(*lanes),
+                Shape::Circle => {
+                    let radius = inverse / core::f64::consts::TAU;
+                    let angles = lanes.map(|x| (x * core::f64::consts::TAU).sin_cos());
+                    scaled.push(angles.map(|(_, cosine)| radius * cosine));
+                    scaled.push(angles.map(|(sine, _)| radius * sine));
+                }
+            }
+        }
+        scaled
+    }
+
+    /// The features of one point.
+    pub(super) fn scaled_point(&self, units: &[f64]) -> Vec<f64> {
+        let lanes: Vec<Lanes> = units.iter().map(|&x| [x; LANES]).collect();
+        self.scaled(&lanes).iter().map(|lanes| lanes[0]).collect()
     }
 
     pub(super) fn axes(&self) -> usize {

@@ -29,6 +29,8 @@ engine_settings! {
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
     /// - Points that turn out to be the same as a hit only once they are evaluated are no part of the model; from them the
     ///   engine learns how far apart distinct hits are.
+    /// - Logarithmic axes are seen by their logarithm, periodic ones as circles, permutations by the ranks of their keys. Integers are rounded
+    ///   before the kernel sees them, and any two categories are equally far apart.
     /// - Scales are the likeliest ones under a weak prior, found anew every ten points.
     /// - Beyond `points` points a model knows the 128 points next to a hit, and the next one those next to another.
     ///
@@ -100,9 +102,7 @@ impl<S: Real> ModelledSearch<S> {
         while self.started < (2 * axes + 2).min(4 * axes) {
             low_discrepancy::point(self.started, &self.shift, &mut x);
             self.started += 1;
-            for (x, unit) in x.iter_mut().zip(&self.units.axes) {
-                *x = unit.round(*x);
-            }
+            self.units.round(&mut x);
             if self.is_new(context, &x) {
                 return Some(x);
             }
@@ -159,9 +159,8 @@ impl<S: Real> ModelledSearch<S> {
         let small = self.units.cardinality() <= ENUMERABLE;
         let mut x = vec![0.0; self.units.len()];
         for _ in 0..TRIES {
-            for (x, unit) in x.iter_mut().zip(&self.units.axes) {
-                *x = unit.round(rng.uniform());
-            }
+            x.iter_mut().for_each(|x| *x = rng.uniform());
+            self.units.round(&mut x);
             if self.is_new(context, &x) {
                 return Some(x);
             }
@@ -272,7 +271,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             .filter(|units| units.len() == self.record.axes())
             .ok_or_else(|| Error::State("its axes do not fit".to_owned()))?;
         self.model = if from.read()? {
-            Some(Model::restore(&self.record, from)?)
+            Some(Model::restore(&self.record, &self.units, from)?)
         } else {
             None
         };
@@ -318,8 +317,12 @@ impl Model {
     }
 
     /// Factors the same points in the same order as the model that was saved, which gives the same bits.
-    fn restore(record: &Record, from: &mut Reader<'_>) -> Result<Self, Error> {
-        let scales = Scales { logs: from.read()? };
+    fn restore(record: &Record, units: &Units, from: &mut Reader<'_>) -> Result<Self, Error> {
+        let logs: Vec<f64> = from.read()?;
+        let scales = Scales {
+            logs,
+            shapes: units.shapes(),
+        };
         let target = Target {
             delta: from.read()?,
             clip: from.read()?,
@@ -342,7 +345,7 @@ impl Model {
             region.lower.len(),
             region.upper.len(),
             reach.len(),
-            scales.logs.len() - 1,
+            scales.logs.len().wrapping_sub(1),
         ];
         let fits = axes.iter().all(|&axes| axes == record.axes())
             && prefix > 0
