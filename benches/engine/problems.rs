@@ -120,3 +120,58 @@ impl SatisficingProblem for Slow {
         self.lattice.neighbourhood()
     }
 }
+
+/// Cells of an axis of a [`Wide`] lattice.
+const CELLS: u32 = 20;
+
+/// A lattice of many axes whose solutions are bytes; about half of its points are hits.
+pub(crate) struct Wide(Space<f64>);
+
+impl Wide {
+    pub(crate) fn new(axes: usize) -> Self {
+        Self(Space::lattice(axes, CELLS).unwrap())
+    }
+
+    /// The same with solutions as [`satisfice::from_fn`] makes them.
+    pub(crate) fn located(axes: usize) -> impl SatisficingProblem<Scalar = f64> {
+        let space = Space::lattice(axes, CELLS).unwrap();
+        satisfice::from_fn(space, Self::middle(axes), |x: &[f64]| x.iter().sum())
+    }
+
+    fn middle(axes: usize) -> f64 {
+        axes as f64 * f64::from(CELLS - 1) / 2.0
+    }
+}
+
+impl SatisficingProblem for Wide {
+    type Scalar = f64;
+    type Solution = Vec<u8>;
+    fn space(&self) -> &Space<f64> {
+        &self.0
+    }
+    fn decode(&self, values: &[f64]) -> Vec<u8> {
+        values.iter().map(|&x| x as u8).collect()
+    }
+    fn decode_into(&self, values: &[f64], solution: &mut Vec<u8>) {
+        solution.clear();
+        solution.extend(values.iter().map(|&x| x as u8));
+    }
+    fn fitness(&self, solution: &Vec<u8>) -> f64 {
+        solution.iter().map(|&x| f64::from(x)).sum()
+    }
+    fn threshold(&self) -> f64 {
+        Self::middle(self.0.dimension())
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, Vec<u8>>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, Vec<u8>> for Wide {
+    fn encode(&self, solution: &Vec<u8>, values: &mut [f64]) -> bool {
+        for (value, &x) in values.iter_mut().zip(solution) {
+            *value = f64::from(x);
+        }
+        true
+    }
+}

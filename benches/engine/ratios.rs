@@ -9,7 +9,7 @@ use satisfice::{Budget, SatisficingProblem, Search, Space, engine, from_fn};
 
 use crate::loops::{latest_hit_loop, random_loop};
 use crate::peers::{self, argmin_swarm, our_swarm};
-use crate::problems::{Lattice, Slow};
+use crate::problems::{Lattice, Slow, Wide};
 use crate::{search, teapots};
 
 const EVALUATIONS: usize = 20_000;
@@ -127,6 +127,22 @@ pub(crate) fn run(full: bool) {
     }
 
     table.begin(
+        "Solutions as `from_fn` makes them and as bytes, half of all points hits",
+        "coordinates cost",
+    );
+    for axes in [2, 10, 30, 100] {
+        let (located, bytes) = (Wide::located(axes), Wide::new(axes));
+        table.row(
+            EVALUATIONS,
+            [
+                (&format!("coordinates, {axes} axes"), &mut || many_hits(&located)),
+                ("`Vec<u8>`", &mut || many_hits(&bytes)),
+            ],
+            true,
+        );
+    }
+
+    table.begin(
         "One thread and two, a fitness of ten microseconds",
         "two are faster by",
     );
@@ -234,6 +250,13 @@ fn overshoots(table: &mut Table, full: bool) {
             late[late.len() - 1]
         ));
     }
+}
+
+/// Uniform points, of which half become hits in the archive.
+fn many_hits<P: SatisficingProblem<Scalar = f64>>(problem: &P) {
+    let mut search = Search::with(engine::build("random").unwrap()).seed(7);
+    let budget = Budget::evaluations(EVALUATIONS as u64);
+    black_box(search.run(black_box(problem), &budget).unwrap().hit_count());
 }
 
 fn on_threads(slow: &Slow, name: &str, settings: &[(&str, &str)], threads: usize) {
