@@ -14,7 +14,10 @@ fn every_named_suite_is_valid() {
             !suite.about.is_empty() && suite.title != name,
             "{name} says what it shows"
         );
-        // Small scenes are built faster, and are no less valid.
+        // Small scenes are built faster, and are no less valid, but have another label.
+        for part in &mut suite.parts {
+            part.beside.retain(|label, _| label != "teapots");
+        }
         for problem in suite.parts.iter_mut().flat_map(|part| &mut part.problems) {
             let small = match problem.name.as_str() {
                 "teapots" => ("samples", "50"),
@@ -92,4 +95,31 @@ fn the_same_stands_beside_the_problems_of_both_generalisation_suites() {
     let beside = |name| Suite::open(name).unwrap().parts.remove(0).beside;
     assert!(!beside("generalisation").is_empty());
     assert_eq!(beside("generalisation"), beside("generalisation-time"));
+}
+
+#[test]
+fn the_regret_suite_has_every_problem_and_engine_and_holds_back_a_third() {
+    let suite = Suite::open("regret").unwrap();
+    let regret = suite.regret.clone().unwrap();
+    assert_eq!(regret.engine, "portfolio");
+    for part in &suite.parts {
+        for problem in satisfice_catalogue::catalogue::all() {
+            let is_there = part.problems.iter().any(|choice| choice.name == problem.name);
+            assert!(is_there, "{} lacks {}", part.name, problem.name);
+        }
+        // Only the one engine whose proposals are expensive is left out where there are many.
+        for engine in satisfice::engine::all() {
+            let is_there = part.engines.iter().any(|choice| choice.name == engine.name);
+            let many = part.name == "many evaluations";
+            assert_eq!(
+                is_there,
+                !(many && engine.expensive_proposals),
+                "{}: {}",
+                part.name,
+                engine.name
+            );
+        }
+        let problems = part.problems.len();
+        assert!((problems / 3..=problems.div_ceil(3)).contains(&regret.held_back.len()));
+    }
 }

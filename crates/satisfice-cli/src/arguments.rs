@@ -313,6 +313,8 @@ Examples:
       summary.json, and ioh, which IOHanalyzer reads.
   satisfice bench mine.toml --seeds 0..16 --engines portfolio,random
       Run two engines and 16 seeds instead of those of the file.
+  satisfice bench regret --seeds 0..2 --budgets 50,200 --out regret
+      Compare the default engine with the best of all others at two of the suite's budgets; regret/regret.md has the tables.
 
 A suite is a file such as this; all values of a list are run:
   seeds = \"0..8\"
@@ -346,6 +348,14 @@ pub(crate) struct BenchArguments {
     /// Run only these engines, separated by commas.
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
     pub(crate) engines: Vec<String>,
+
+    /// Run only these problems of the suite, separated by commas.
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
+    pub(crate) problems: Vec<String>,
+
+    /// Run only these budgets of the suite, evaluations or times, such as 200,1000,10ms.
+    #[arg(long, value_name = "BUDGET,BUDGET", value_delimiter = ',')]
+    pub(crate) budgets: Vec<String>,
 
     /// Use the seeds A to B - 1 instead of those of the suite.
     #[arg(long, value_name = "A..B", value_parser = satisfice_bench::sweep::seeds, allow_hyphen_values = true)]

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use satisfice::Cancel;
 use satisfice_bench::studies;
-use satisfice_bench::sweep::{self, Event, Plan, Row, ShardOf, Suite};
+use satisfice_bench::sweep::{self, Event, Plan, Row, Selection, ShardOf, Suite};
 use satisfice_catalogue::Catalogue;
 use satisfice_catalogue::quantity::shown;
 
@@ -22,16 +22,17 @@ pub(crate) fn bench(
     if let Some(BenchSubcommands::Merge(arguments)) = &arguments.merge {
         return merge(arguments, catalogue, given);
     }
-    let mut suite = Suite::open(arguments.suite.as_deref().unwrap_or_default())?;
+    let suite = Suite::open(arguments.suite.as_deref().unwrap_or_default())?;
+    let selection = Selection {
+        seeds: arguments.seeds.clone(),
+        engines: arguments.engines.clone(),
+        problems: arguments.problems.clone(),
+        budgets: arguments.budgets.clone(),
+    };
     let part = arguments
         .shard
-        .map(|shard| ShardOf::new(shard, &suite, arguments.seeds.clone(), &arguments.engines));
-    if let Some(seeds) = &arguments.seeds {
-        suite = suite.with_seeds(seeds);
-    }
-    if !arguments.engines.is_empty() {
-        suite = suite.with_engines(&arguments.engines);
-    }
+        .map(|shard| ShardOf::new(shard, &suite, &selection));
+    let suite = selection.apply(suite)?;
     let folder = arguments.out.clone().unwrap_or_else(|| {
         let shard = arguments
             .shard
@@ -147,7 +148,9 @@ fn publish(
         findings.extend((studies::find(name)?.run)(seeds, cancel, &mut tell)?);
     }
     let groups = sweep::publish(folder, plan, rows, &findings, &command(given))?;
-    let mut text = sweep::table(&groups);
+    // A suite that compares has too many tables to read.
+    let mut text = sweep::regret::finding(plan, &groups, rows)
+        .map_or_else(|| sweep::table(&groups), |finding| finding.table());
     findings
         .iter()
         .for_each(|finding| text.push_str(&finding.table()));

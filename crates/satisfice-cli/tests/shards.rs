@@ -105,7 +105,10 @@ fn gaps_and_overlaps_are_refused_by_name() {
     );
 
     run(folder, "bench mine.toml --seeds 0..3 --shard 2/2 --out other");
-    refused("bench merge part-1 other --out m", "its seeds or engines");
+    refused(
+        "bench merge part-1 other --out m",
+        "its seeds, engines, problems or budgets",
+    );
     run(folder, "bench mine.toml --seeds 0..2 --shard 2/3 --out third");
     refused("bench merge part-1 third --out m", "it is shard 2/3");
 

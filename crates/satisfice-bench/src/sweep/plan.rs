@@ -116,6 +116,7 @@ impl Plan {
                 what: error.to_string(),
             })?;
         }
+        plan.check_regret()?;
         Ok(plan)
     }
 
@@ -202,6 +203,26 @@ impl Plan {
             }
         }
         Ok(())
+    }
+
+    /// Refuses an engine or a problem of `regret` that is not in the suite.
+    fn check_regret(&self) -> Result<(), Error> {
+        let Some(regret) = &self.suite.regret else {
+            return Ok(());
+        };
+        let engines = || self.cells.iter().map(|cell| cell.engine_label.as_str());
+        if !engines().any(|label| label == regret.engine) {
+            return Err(satisfice::Error::unknown("engine of this suite", &regret.engine, engines()).into());
+        }
+        let problems = || self.cells.iter().map(|cell| cell.problem_label.as_str());
+        match regret
+            .held_back
+            .iter()
+            .find(|held| !problems().any(|label| label == *held))
+        {
+            Some(label) => Err(satisfice::Error::unknown("problem of this suite", label, problems()).into()),
+            None => Ok(()),
+        }
     }
 
     fn add_cell(&mut self, cell: Cell) {

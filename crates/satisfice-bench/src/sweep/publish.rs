@@ -6,7 +6,7 @@ use super::figures::figures;
 use super::plan::Plan;
 use super::row::Row;
 use super::summary::{Group, groups, rows_of};
-use super::{files, ioh, report};
+use super::{files, ioh, regret, report};
 use crate::error::Error;
 use crate::finding::Figure;
 use crate::finding::Finding;
@@ -14,7 +14,7 @@ use satisfice_draw::plot::{Format, draw};
 use satisfice_page::ComparePage;
 
 /// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, `compare.html`, where engines are switched
-/// on and off, and `report.html`, which contains the rest of it, the findings of studies and the `command` that made it; returns the groups of the summary.
+/// on and off, with a comparison `regret.md`, and `report.html`, which contains the rest of it, the findings of studies and the `command` that made it; returns the groups of the summary.
 ///
 /// # Errors
 /// [`Error::File`] if a file cannot be written, [`Error::Draw`] if a figure cannot be encoded.
@@ -26,6 +26,13 @@ pub fn publish(
     command: &str,
 ) -> Result<Vec<Group>, Error> {
     let groups = groups(plan, rows);
+    let regret = regret::finding(plan, &groups, rows);
+    if let Some(finding) = &regret {
+        files::write(
+            &folder.join("regret.md"),
+            regret::markdown(finding, command).as_bytes(),
+        )?;
+    }
     files::write(&folder.join("suite.toml"), plan.suite.text.as_bytes())?;
     files::write(
         &folder.join("summary.json"),
@@ -35,7 +42,13 @@ pub fn publish(
     let place = folder.join("figures");
     let mut shown = Vec::new();
     for (number, group) in (1..).zip(&groups) {
-        let drawn = figures(group, rows).into_iter().map(|figure| {
+        // With a comparison there are hundreds of groups; the page beside the report draws them as they are looked at.
+        let drawn = if regret.is_some() {
+            Vec::new()
+        } else {
+            figures(group, rows)
+        };
+        let drawn = drawn.into_iter().map(|figure| {
             let stem = format!("{number:02}-{}", figure.name);
             draw_into(&place, &stem, figure)
         });
@@ -45,7 +58,7 @@ pub fn publish(
         });
     }
     let mut found = Vec::new();
-    for finding in findings {
+    for finding in regret.iter().chain(findings) {
         let drawn = finding
             .figures
             .iter()

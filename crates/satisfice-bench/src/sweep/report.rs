@@ -45,12 +45,11 @@ pub(super) fn page(
         @if !groups.is_empty() {
             p { a href=(COMPARE) { "Every run, to look into" } ": engines switched on and off, seed by seed, with figures." }
         }
+        @if suite.regret.is_some() { (studies(findings)) }
         @for part in &suite.parts {
             (of_part(&part.name, groups))
         }
-        @for (finding, figures) in findings {
-            (study(finding, figures))
-        }
+        @if suite.regret.is_none() { (studies(findings)) }
         h2 { "The machine" }
         table {
             @for (what, value) in satisfice_catalogue::machine() {
@@ -211,6 +210,14 @@ fn figures(figures: &[(Figure, String)]) -> Markup {
     html! {
         @for (figure, svg) in figures {
             figure { (PreEscaped(svg)) figcaption { (figure.caption) } }
+        }
+    }
+}
+
+fn studies(findings: &[(&Finding, Vec<(Figure, String)>)]) -> Markup {
+    html! {
+        @for (finding, figures) in findings {
+            (study(finding, figures))
         }
     }
 }

@@ -13,6 +13,7 @@ use super::files;
 use super::plan::{Plan, Planned};
 use super::results::Results;
 use super::row::Row;
+use super::selection::Selection;
 use super::suite::Suite;
 use crate::error::Error;
 
@@ -98,24 +99,21 @@ pub struct ShardOf {
     pub suite: String,
     /// Its text.
     pub text: String,
-    /// The seeds used instead of its own: first, and end.
-    pub seeds: Option<(u64, u64)>,
-    /// The only engines used, if not all.
-    pub engines: Vec<String>,
+    /// What is run of it.
+    pub selection: Selection,
     /// Version of the program: another one may give other results.
     pub version: String,
 }
 
 impl ShardOf {
-    /// A part of a suite as it was read, which is then run with these seeds and engines.
+    /// A part of a suite as it was read, of which this is then selected.
     #[must_use]
-    pub fn new(shard: Shard, suite: &Suite, seeds: Option<std::ops::Range<u64>>, engines: &[String]) -> Self {
+    pub fn new(shard: Shard, suite: &Suite, selection: &Selection) -> Self {
         Self {
             shard,
             suite: suite.name.clone(),
             text: suite.text.clone(),
-            seeds: seeds.map(|seeds| (seeds.start, seeds.end)),
-            engines: engines.to_vec(),
+            selection: selection.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
     }
@@ -130,7 +128,7 @@ impl ShardOf {
             let there = Self::read(folder)?;
             if there != *self {
                 let what = format!(
-                    "it is of shard {} of `{}` with its own seeds and engines: choose another folder",
+                    "it is of shard {} of `{}` with its own selection of seeds, engines, problems and budgets: choose another folder",
                     there.shard, there.suite
                 );
                 return Err(Error::File { path, what });
@@ -158,19 +156,12 @@ impl ShardOf {
             .map_err(|error| failed(format!("it does not describe a shard: {error}")))
     }
 
-    /// The suite with its seeds and engines.
+    /// What is run of the suite.
     ///
     /// # Errors
-    /// [`Error::Suite`] for a text that is not a suite.
+    /// [`Error::Suite`] for a text that is not a suite, and those of [`Selection::apply`].
     pub fn suite(&self) -> Result<Suite, Error> {
-        let mut suite = Suite::parse(&self.suite, &self.text)?;
-        if let Some((start, end)) = self.seeds {
-            suite = suite.with_seeds(&(start..end));
-        }
-        if !self.engines.is_empty() {
-            suite = suite.with_engines(&self.engines);
-        }
-        Ok(suite)
+        self.selection.apply(Suite::parse(&self.suite, &self.text)?)
     }
 }
 
@@ -301,7 +292,7 @@ fn differs(part: &ShardOf, sweep: &ShardOf, first: &Path) -> String {
             part.version, sweep.version
         )
     } else {
-        format!("its seeds or engines are not those of {first}")
+        format!("its seeds, engines, problems or budgets are not those of {first}")
     }
 }
 

@@ -29,6 +29,9 @@ use crate::error::Error;
 /// against = "random"                              # the engine that the others are compared with, seed by seed
 /// beside = { queens = "backtracking: all 92 in 2,057 nodes" }   # printed beside the figures of a problem
 /// ```
+///
+/// `engines`, `problems` and `beside` before the first part are those of every part without its own. With a table `[regret]`, one engine is
+/// compared with the best of the others ([`super::regret`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite {
     /// Its name: that of the file, without folder and extension.
@@ -43,6 +46,19 @@ pub struct Suite {
     pub parts: Vec<Part>,
     /// Names of [studies](crate::studies) that follow its parts.
     pub studies: Vec<String>,
+    /// Which engine is compared with the best of the others, on every problem and budget.
+    pub regret: Option<Regret>,
+}
+
+/// The comparison of one engine with the best of the others; see [`super::regret`].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Regret {
+    /// The engine: a name or a label.
+    pub engine: String,
+    /// Labels of the problems that tuning does not look at: name and the parameters that the suite sets.
+    #[serde(default)]
+    pub held_back: Vec<String>,
 }
 
 /// One grid.
@@ -115,10 +131,10 @@ impl Suite {
             let line = text[..start].matches('\n').count() + 1;
             wrong(format!("{name}, line {line}"), error.message())
         })?;
-        let file: SuiteFile =
+        let mut file: SuiteFile =
             serde_path_to_error::deserialize(table).map_err(|error| located(name, &error))?;
         let mut parts: Vec<Part> = Vec::new();
-        for (index, part) in file.part.into_iter().enumerate() {
+        for (index, part) in file.parts().into_iter().enumerate() {
             let part = part
                 .finish(index, file.seeds.as_ref())
                 .map_err(|what| wrong(format!("{name}, part {}", index + 1), what))?;
@@ -141,34 +157,8 @@ impl Suite {
             text: text.to_owned(),
             parts,
             studies: file.studies,
+            regret: file.regret,
         })
-    }
-
-    /// The same suite with other seeds in every part.
-    #[must_use]
-    pub fn with_seeds(mut self, seeds: &Range<u64>) -> Self {
-        self.parts.iter_mut().for_each(|part| part.seeds = seeds.clone());
-        self
-    }
-
-    /// The same suite with these engines alone: with the parameters that a part gives them, otherwise with their defaults.
-    #[must_use]
-    pub fn with_engines(mut self, names: &[String]) -> Self {
-        for part in &mut self.parts {
-            let known = std::mem::take(&mut part.engines);
-            for name in names {
-                let mut listed = known.iter().filter(|choice| choice.name == *name).peekable();
-                if listed.peek().is_none() {
-                    part.engines.push(Choice {
-                        name: name.clone(),
-                        settings: Vec::new(),
-                    });
-                }
-                part.engines.extend(listed.cloned());
-            }
-            part.against = part.against.take().filter(|against| names.contains(against));
-        }
-        self
     }
 }
 
@@ -200,8 +190,34 @@ struct SuiteFile {
     seeds: Option<Seeds>,
     #[serde(default)]
     studies: Vec<String>,
+    regret: Option<Regret>,
+    #[serde(default)]
+    engines: Vec<Choice>,
+    #[serde(default)]
+    problems: Vec<Choice>,
+    #[serde(default)]
+    beside: IndexMap<String, String>,
     #[serde(default)]
     part: Vec<PartFile>,
+}
+
+impl SuiteFile {
+    /// Takes the parts out, each with the lists of the suite where it has none of its own.
+    fn parts(&mut self) -> Vec<PartFile> {
+        let mut parts = std::mem::take(&mut self.part);
+        for part in &mut parts {
+            if part.engines.is_empty() {
+                part.engines.clone_from(&self.engines);
+            }
+            if part.problems.is_empty() {
+                part.problems.clone_from(&self.problems);
+            }
+            if part.beside.is_empty() {
+                part.beside.clone_from(&self.beside);
+            }
+        }
+        parts
+    }
 }
 
 /// A part as it is written; what it does not name is an option of a run, or a mistake.
