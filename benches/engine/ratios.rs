@@ -254,7 +254,7 @@ fn overshoots(table: &mut Table, full: bool) {
 
 /// Uniform points, of which half become hits in the archive.
 fn many_hits<P: SatisficingProblem<Scalar = f64>>(problem: &P) {
-    let mut search = Search::with(engine::build("random").unwrap()).seed(7);
+    let mut search = Search::named("random").unwrap().seed(7);
     let budget = Budget::evaluations(EVALUATIONS as u64);
     black_box(search.run(black_box(problem), &budget).unwrap().hit_count());
 }

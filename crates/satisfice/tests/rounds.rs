@@ -67,16 +67,16 @@ fn lost_rounds_change_nothing() {
                 runs += 1;
                 if runs % 3 == 0 {
                     sent(&island)
-                        .run(engine::build(name).unwrap(), &problem, None)
+                        .run(engine::ConfiguredEngine::named(name).unwrap(), &problem, None)
                         .unwrap();
                 }
                 let done = sent(&island)
-                    .run(engine::build(name).unwrap(), &problem, None)
+                    .run(engine::ConfiguredEngine::named(name).unwrap(), &problem, None)
                     .unwrap();
                 rounds.take(sent(&done)).unwrap();
                 if runs % 7 == 0 {
                     rounds =
-                        Rounds::resume(rounds.checkpoint(), engine::build(name).unwrap(), problem.clone())
+                        Rounds::resume(rounds.checkpoint(), engine::ConfiguredEngine::named(name).unwrap(), problem.clone())
                             .unwrap();
                 }
             }
@@ -137,7 +137,7 @@ fn a_time_that_is_up_ends_an_island_in_its_batch() {
     for island in rounds.round(&mut ()) {
         let late = island.at(Duration::from_secs(3600));
         let done = late
-            .run(engine::build("random").unwrap(), &problem, None)
+            .run(engine::ConfiguredEngine::named("random").unwrap(), &problem, None)
             .unwrap();
         rounds.take(done).unwrap();
     }
@@ -147,7 +147,7 @@ fn a_time_that_is_up_ends_an_island_in_its_batch() {
 
     let mut rounds = Rounds::begin(islands("random"), problem.clone(), &budget).unwrap();
     for island in rounds.round(&mut ()) {
-        let mut search = island.search(engine::build("random").unwrap()).unwrap();
+        let mut search = island.search(engine::ConfiguredEngine::named("random").unwrap()).unwrap();
         let mut slice = search.start_resumed(&problem).unwrap();
         assert!(slice.ask().unwrap().len() > 3);
         rounds
@@ -169,7 +169,7 @@ fn what_does_not_fit_is_refused() {
     let refused = Rounds::begin(alone, problem.clone(), &budget).unwrap_err();
     assert!(matches!(refused, Error::Parameter { .. }), "{refused}");
 
-    let random = || engine::build::<f64>("random").unwrap();
+    let random = || engine::ConfiguredEngine::<f64>::named("random").unwrap();
     let mut rounds = Rounds::begin(islands("random"), problem.clone(), &budget).unwrap();
     let first = rounds.round(&mut ());
     assert!(
@@ -182,7 +182,7 @@ fn what_does_not_fit_is_refused() {
     assert!(matches!(
         first[0]
             .clone()
-            .run(engine::build("pso").unwrap(), &problem, None),
+            .run(engine::ConfiguredEngine::named("pso").unwrap(), &problem, None),
         Err(Error::State(_))
     ));
     let done: Vec<Island> = first

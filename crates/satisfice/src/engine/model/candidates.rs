@@ -224,7 +224,7 @@ mod tests {
         let space = Space::<f64>::new(axes).unwrap();
         let units = Units::of(&space);
         let record = Record::default();
-        let source = Source {
+        let source = CandidateSource {
             units: &units,
             record: &record,
             known: &[],
@@ -235,11 +235,11 @@ mod tests {
         let mut rng = SearchRng::new(3);
         let (mut counts, mut around) = ([0_u32; 5], 0);
         for _ in 0..4_000 {
-            let mut x = [0.9, 0.95];
+            let mut x: [f64; 2] = [0.9, 0.95];
             source.add(&mut x, &[0.1, 0.1], &mut rng);
             assert!((x[1] - 0.05).abs() < 1e-12);
             counts[(x[0] * 5.0) as usize] += 1;
-            let mut x = [0.1, 0.02];
+            let mut x: [f64; 2] = [0.1, 0.02];
             source.add(&mut x, &[0.0, -0.1], &mut rng);
             around += u32::from((x[0], (x[1] - 0.92).abs() < 1e-12) == (0.1, true));
         }
