@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use satisfice::engine::{
-    Ask, BoundedSwarms, Descent, EngineConfig, NichingPsoDbscan, Origin, Pso, Spso2011, Surrogate,
-};
+use satisfice::engine::{Ask, BoundedSwarms, Descent, EngineConfig, NichingPsoDbscan, Origin, Pso, Spso2011};
 use satisfice::testing::BareContext;
 use satisfice::{Axis, Batch, Boundary, Context, Engine, Outcome, SearchRng, Space};
 
@@ -302,40 +300,4 @@ fn a_descent_is_a_compass_search() {
     }
     assert_eq!(halved, 18);
     assert!(fitness(&x) < 1e-10, "{x:?}");
-}
-
-/// The constant liar (Ginsbourger, Le Riche, Carraro 2010): the second point of a batch is the one that would follow if the first had
-/// been told with F = delta.
-#[test]
-fn the_second_point_of_a_batch_believes_a_constant_lie() {
-    let delta = 0.1;
-    let context = BareContext::new(Space::cube(2, -1.0, 1.0).unwrap()).with_threshold(delta);
-    let f = |x: &[f64]| 2.0 * delta + (x[0] - 0.3).powi(2) + 2.0 * (x[1] + 0.2).powi(2);
-    // The design of six points, the same for both.
-    let [mut one, mut two] = [1, 2].map(|batch| {
-        let settings = Surrogate {
-            batch,
-            candidates: 64,
-            ..Surrogate::default()
-        };
-        let (mut engine, mut rng) = (settings.build::<f64>(), SearchRng::new(3));
-        engine.begin(&context);
-        for _ in 0..6 / batch {
-            let mut design = Batch::new(2);
-            engine.ask(&context, &mut rng, &mut design);
-            let told: Vec<_> = design.points().map(|x| Outcome::Miss(f(x))).collect();
-            engine.tell(&context, &design, &told, Origin::Engine);
-        }
-        (engine, rng)
-    });
-    let mut both = Batch::new(2);
-    two.0.ask(&context, &mut two.1, &mut both);
-    assert_eq!(both.len(), 2);
-    for i in 0..2 {
-        let mut alone = Batch::new(2);
-        one.0.ask(&context, &mut one.1, &mut alone);
-        assert_eq!(alone.point(0), both.point(i), "point {i}");
-        one.0
-            .tell(&context, &alone, &[Outcome::Miss(delta)], Origin::Engine);
-    }
 }

@@ -22,24 +22,13 @@ use crate::space::{Region, Space};
 #[derive(Debug, Clone)]
 pub struct BareContext<S> {
     space: Space<S>,
-    threshold: S,
 }
 
 impl<S: Real> BareContext<S> {
     /// The context of this space. The threshold is minus infinity.
     #[must_use]
     pub fn new(space: Space<S>) -> Self {
-        Self {
-            space,
-            threshold: S::neg_infinity(),
-        }
-    }
-
-    /// The same context with another threshold.
-    #[must_use]
-    pub fn with_threshold(mut self, threshold: S) -> Self {
-        self.threshold = threshold;
-        self
+        Self { space }
     }
 }
 
@@ -48,7 +37,7 @@ impl<S: Real> Context<S> for BareContext<S> {
         &self.space
     }
     fn threshold(&self) -> S {
-        self.threshold
+        S::neg_infinity()
     }
     fn elapsed_share(&self) -> f64 {
         0.0

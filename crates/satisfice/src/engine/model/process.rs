@@ -241,6 +241,26 @@ mod tests {
         assert_eq!(one.predictions(&a), two.predictions(&b));
     }
 
+    /// The constant liar (Ginsbourger, Le Riche, Carraro 2010): a proposed point is predicted as its lie, nearly for certain, and
+    /// nothing becomes less certain.
+    #[test]
+    fn a_pending_point_is_believed_to_have_its_lie() {
+        let (mut lied, honest) = (process(40), process(40));
+        let far = [5.0, -5.0];
+        lied.push(&far, 0.0);
+        let at = Block::new(far.map(|x| [x; LANES]).to_vec());
+        for (mut a, mut b, is_far) in [(at.clone(), at, true), (block(700), block(700), false)] {
+            lied.update(&mut a);
+            honest.update(&mut b);
+            let ((means, after), (_, before)) = (lied.predictions(&a), honest.predictions(&b));
+            assert!((0..LANES).all(|lane| after[lane] <= before[lane] * (1.0 + 1e-9)));
+            assert!(
+                !is_far || (means[0].abs() < 0.02 && after[0] < 0.02 * before[0]),
+                "{means:?} {after:?}"
+            );
+        }
+    }
+
     /// Solves `A x = b` by Gaussian elimination with pivots.
     #[expect(clippy::needless_range_loop, reason = "indices, as in the textbook")]
     fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
