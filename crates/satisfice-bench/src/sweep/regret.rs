@@ -43,12 +43,21 @@ impl Comparison {
     }
 
     fn shown(&self) -> String {
-        let ratio = format!("{:.2}", self.ratio());
+        let ratio = in_digits(self.ratio());
         if self.counts() {
             ratio
         } else {
             format!("({ratio})")
         }
+    }
+}
+
+/// A ratio for people: three decimals where two would leave one digit.
+fn in_digits(ratio: f64) -> String {
+    if ratio < 0.1 {
+        format!("{ratio:.3}")
+    } else {
+        format!("{ratio:.2}")
     }
 }
 
@@ -188,9 +197,9 @@ fn summary(all: &[Comparison], budgets: &[&str]) -> Vec<Vec<String>> {
                 name.to_owned(),
                 budget.to_owned(),
                 counted.len().to_string(),
-                format!("{:.2}", least.ratio()),
+                in_digits(least.ratio()),
                 least.problem.clone(),
-                format!("{:.2}", geometric_mean(counted.iter().map(|one| one.ratio()))),
+                in_digits(geometric_mean(counted.iter().map(|one| one.ratio()))),
                 seeds.to_string(),
             ]);
         }
@@ -205,7 +214,7 @@ fn geometric_mean(ratios: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 fn ratios(all: &[Comparison], budgets: &[&str]) -> Vec<Vec<String>> {
-    by_problem(all, budgets, None, |one| one.shown())
+    by_problem(all, budgets, None, Comparison::shown)
 }
 
 fn hits(all: &[Comparison], budgets: &[&str]) -> Vec<Vec<String>> {
