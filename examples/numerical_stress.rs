@@ -217,7 +217,7 @@ impl Motions {
 /// Prints the table of motions; returns how many answers were wrong.
 fn motions_in_time(pairs: usize, rng: &mut Xoshiro256PlusPlus) -> u64 {
     let count = pairs.div_ceil(SCALES.len());
-    println!("\n# Numerical stress of motion\n");
+    println!("\n## Motion\n");
     println!(
         "Touching during a step, {count} motions a family at each of {} scales from 2^{} to 2^{}, each in all orders of the vertices, both of \
          the pair and both directions of time. Families have known answers by construction. Shares are in percent of the decisions. The time \

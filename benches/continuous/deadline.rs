@@ -121,9 +121,13 @@ pub(crate) fn run(report: &mut Report) {
             counts.sort_unstable();
             counts[counts.len() / 2] as f64 / all.max(1) as f64 * 100.0
         });
+        let ratio = if index > 0.0 {
+            format!("{:.1}", frame / index)
+        } else {
+            "-".to_owned()
+        };
         report.line(&format!(
-            "| {ms} ms | {index:.2} | {frame:.2} | {:.1} | {bounds:.2} | {default:.2} |",
-            frame / index
+            "| {ms} ms | {index:.2} | {frame:.2} | {ratio} | {bounds:.2} | {default:.2} |"
         ));
     }
 }
