@@ -205,14 +205,14 @@ def at_last(limit, ask):
 
 
 def test_a_deadline_is_kept_with_millions_of_pairs_found():
-    mesh = collision.mesh(*sheet(400))
-    above = collision.mesh(sheet(400)[0] + [0, 0, 0.001], sheet(400)[1])
-    collision.any_closer(mesh, above, threshold=1e-6)  # builds the trees
+    mesh = collision.mesh(*sheet(100))
+    above = collision.mesh(sheet(100)[0] + [0, 0, 0.001], sheet(100)[1])
+    # 4 million pairs
     some = at_last(
-        0.3, lambda: collision.close_pairs(mesh, above, threshold=0.2, pairs="vertex-vertex", witnesses=True, time=0.3)
+        0.3, lambda: collision.close_pairs(mesh, above, threshold=0.12, pairs="vertex-vertex", witnesses=True, time=0.3)
     )
     assert not some.complete and 1000 < len(some.i) == len(some.distance) == len(some.point_a)
-    assert (some.distance < 0.2).all()
+    assert (some.distance < 0.12).all()
 
 
 def crumpled(n):
@@ -225,20 +225,20 @@ def test_a_free_step_can_be_cut_short():
     start, end, faces = crumpled(60)
     step = collision.Step()
     step.add(start, end, faces, self_collision=True)
-    whole = step.free_step(threshold=1e-9)
     cut = at_last(0.02, lambda: step.free_step(threshold=1e-9, time=0.02))
-    assert 0 <= cut <= whole
+    (_, impact), _, _ = step.earliest(threshold=1e-9, time=0.2)
+    assert 0 <= cut <= impact
 
 
 @pytest.mark.parametrize("query", ["pairs", "step"])
 def test_ctrl_c_ends_long_queries_soon(query):
     if query == "pairs":
-        mesh = collision.mesh(*sheet(400))
-        above = collision.mesh(sheet(400)[0] + [0, 0, 0.001], sheet(400)[1])
-        collision.any_closer(mesh, above, threshold=1e-6)
+        mesh = collision.mesh(*sheet(100))
+        above = collision.mesh(sheet(100)[0] + [0, 0, 0.001], sheet(100)[1])
 
         def ask():
-            collision.close_pairs(mesh, above, threshold=0.5, pairs="vertex-vertex", limit=10**9)
+            while True:
+                collision.close_pairs(mesh, above, threshold=0.1, pairs="vertex-vertex")
     else:
         start, end, faces = crumpled(300)
         step = collision.Step()

@@ -51,6 +51,7 @@ pub fn difference<T: PartialEq + Debug>(a: &Report<T>, b: &Report<T>) -> Option<
         .or_else(|| difference_in_hits(a, b, u64::MAX))
         .or_else(|| differ("counts", &a.counts, &b.counts))
         .or_else(|| differ("trace", &trace(a), &trace(b)))
+        .or_else(|| differ("sources", &a.sources, &b.sources))
         .or_else(|| differ("stop reason", &a.stop_reason, &b.stop_reason))
         .or_else(|| differ("completeness", &a.completeness, &b.completeness))
 }

@@ -392,6 +392,21 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         let mut report = self
             .search
             .describe(&self.problem, slice, slice.ledger.times_so_far());
+        let evaluations = report.counts.evaluations;
+        match &self.state {
+            Inner::Ordered(ordered) => {
+                let lanes = ordered.running.lanes.iter();
+                report
+                    .sources
+                    .record(evaluations, lanes.map(|lane| lane.lane.engine.sources()));
+            }
+            Inner::Eager(eager) => {
+                let lanes = eager.lanes.iter();
+                report
+                    .sources
+                    .record(evaluations, lanes.map(|lane| lane.lane.engine.sources()));
+            }
+        }
         let mut archive = slice.ledger.archive.clone();
         archive.rest();
         report.archive = Arc::new(archive);
