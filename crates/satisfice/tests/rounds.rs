@@ -75,9 +75,12 @@ fn lost_rounds_change_nothing() {
                     .unwrap();
                 rounds.take(sent(&done)).unwrap();
                 if runs % 7 == 0 {
-                    rounds =
-                        Rounds::resume(rounds.checkpoint(), engine::ConfiguredEngine::named(name).unwrap(), problem.clone())
-                            .unwrap();
+                    rounds = Rounds::resume(
+                        rounds.checkpoint(),
+                        engine::ConfiguredEngine::named(name).unwrap(),
+                        problem.clone(),
+                    )
+                    .unwrap();
                 }
             }
         }
@@ -147,7 +150,9 @@ fn a_time_that_is_up_ends_an_island_in_its_batch() {
 
     let mut rounds = Rounds::begin(islands("random"), problem.clone(), &budget).unwrap();
     for island in rounds.round(&mut ()) {
-        let mut search = island.search(engine::ConfiguredEngine::named("random").unwrap()).unwrap();
+        let mut search = island
+            .search(engine::ConfiguredEngine::named("random").unwrap())
+            .unwrap();
         let mut slice = search.start_resumed(&problem).unwrap();
         assert!(slice.ask().unwrap().len() > 3);
         rounds
