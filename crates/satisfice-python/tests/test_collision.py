@@ -211,7 +211,7 @@ def test_a_deadline_is_kept_with_millions_of_pairs_found():
     some = at_last(
         0.3, lambda: collision.close_pairs(mesh, above, threshold=0.12, pairs="vertex-vertex", witnesses=True, time=0.3)
     )
-    assert not some.complete and 1000 < len(some.i) == len(some.distance) == len(some.point_a)
+    assert not some.complete and 100 < len(some.i) == len(some.distance) == len(some.point_a)
     assert (some.distance < 0.12).all()
 
 

@@ -62,7 +62,8 @@ impl Guard {
         found >= self.limit || self.stops_at(self.deadline)
     }
 
-    fn stops_at(&self, deadline: Option<Instant>) -> bool {
+    /// Whether to stop at this moment, or by Ctrl-C.
+    pub(super) fn stops_at(&self, deadline: Option<Instant>) -> bool {
         if self.interrupted.load(Ordering::Relaxed) {
             return true;
         }
@@ -89,9 +90,11 @@ impl Guard {
             .is_some_and(|deadline| now().checked_add(measuring).is_none_or(|end| end >= deadline))
     }
 
-    /// Whether to stop measuring: Ctrl-C, or long after the deadline.
-    pub(super) fn stops_measuring(&self) -> bool {
-        self.stops_at(self.deadline.and_then(|deadline| deadline.checked_add(MEASURED_LATE)))
+    /// Until when to measure what was found, asked when the query itself has ended: a little after the deadline, or after now
+    /// where that has passed.
+    pub(super) fn measuring_until(&self) -> Option<Instant> {
+        let deadline = self.deadline?.max(now());
+        deadline.checked_add(MEASURED_LATE)
     }
 
     fn look(&self, py: Python<'_>) {

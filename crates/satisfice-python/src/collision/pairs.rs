@@ -104,8 +104,9 @@ pub(super) fn measure(
     guard: &Guard,
 ) -> Result<Measured, satisfice_collision::Error> {
     let mut measured = Measured::default();
+    let until = guard.measuring_until();
     for (number, &contact) in contacts.iter().enumerate() {
-        if number % LOOK_AFTER == 0 && guard.stops_measuring() {
+        if number % LOOK_AFTER == 0 && guard.stops_at(until) {
             break;
         }
         let proximity = world.proximity(contact)?;

@@ -133,8 +133,9 @@ impl Step {
             let hits = bodies.step.hits_until(kind, separation, &mut || guard.stops(0))?;
             let mut found = Vec::with_capacity(hits.pairs.len());
             let mut complete = hits.undecided == 0;
+            let until = guard.measuring_until();
             for pair in hits.pairs {
-                if guard.stops_measuring() {
+                if guard.stops_at(until) {
                     complete = false;
                     break;
                 }
