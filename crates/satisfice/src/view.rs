@@ -103,7 +103,13 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         visit: &mut dyn FnMut(usize, &[P::Scalar]),
     ) {
         let axes = self.problem.space().axes();
-        let indices = indices.start..indices.end.min(lattice_count(axes));
+        // The first indices are known to be there, without a look at every axis.
+        let count = if indices.end <= 2 * axes.len() {
+            indices.end
+        } else {
+            lattice_count(axes)
+        };
+        let indices = indices.start..indices.end.min(count);
         let moves = |index: usize| {
             axes.get(index / 2)
                 .is_none_or(|axis| axis.kind() != AxisKind::Continuous)
