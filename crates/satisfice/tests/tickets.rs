@@ -359,6 +359,19 @@ fn a_slice_with_open_tickets_is_saved_and_its_log_replays() {
 }
 
 #[test]
+fn a_question_in_vain_is_not_asked_again_after_resuming() {
+    let descent = || engine::find("descent").unwrap();
+    let budget = Budget::evaluations(50);
+    let mut tickets = Tickets::ordered(search(descent(), 1), problem("square"), &budget).unwrap();
+    assert_eq!(tickets.ask(5).len(), 1);
+    let saved = through_a_file(&tickets.checkpoint());
+    let mut resumed = Tickets::resume(saved, descent().configure([]).unwrap(), problem("square")).unwrap();
+    assert!(tickets.ask(5).is_empty());
+    assert_eq!(resumed.ask(5).len(), 1); // the one that was open
+    assert_eq!(resumed.log(), tickets.log());
+}
+
+#[test]
 fn the_engine_that_models_f_takes_answers_in_any_order() {
     let entry = engine::find("surrogate").unwrap();
     for order in [Order::Ordered, Order::Eager] {

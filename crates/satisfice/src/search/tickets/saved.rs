@@ -25,6 +25,7 @@ pub(in crate::search) struct SavedTickets<T> {
     open: Vec<(u64, T)>,
     forgotten: Vec<u64>,
     counts: TicketCounts,
+    waits: bool,
     log: TicketLog<T>,
     informed: Vec<(T, ValueBits)>,
     state: State,
@@ -62,6 +63,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
             open: open.collect(),
             forgotten: self.forgotten.iter().copied().collect(),
             counts: self.counts,
+            waits: self.waits,
             log: self.log.clone(),
             informed,
             state,
@@ -142,6 +144,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         resumed.again = numbers;
         resumed.forgotten = tickets.forgotten.into_iter().collect();
         resumed.counts = tickets.counts;
+        resumed.waits = tickets.waits;
         resumed.log = tickets.log;
         Ok(resumed)
     }
