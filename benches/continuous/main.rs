@@ -32,7 +32,7 @@ fn main() {
     report.line(&machine::line());
     report.line("");
     report.line(INTRODUCTION);
-    let parts: [(&str, fn(&mut Report)); 4] = [
+    let parts: [(&str, Part); 4] = [
         ("queries", queries::run),
         ("frames", frames::run),
         ("deadline", deadline::run),
@@ -51,6 +51,9 @@ fn main() {
 const INTRODUCTION: &str = "One thread unless a row says otherwise. A time a query is the mean over the queries of a row; the largest is the \
     least of three runs of the slowest query. Other times are medians of runs in turns. *Integers* counts the queries that floating point \
     leaves open. Written by `cargo bench --bench continuous`.";
+
+/// Measures a part of the report.
+type Part = fn(&mut Report);
 
 /// What is printed, and kept for the file.
 pub(crate) struct Report {
