@@ -131,30 +131,27 @@ fn many_pairs_take_little_memory() {
 #[cfg(unix)]
 #[test]
 fn memory_that_ends_is_one_line() {
-    const VERTICES: usize = 2200;
+    const VERTICES: usize = 1500;
     let folder = tempfile::tempdir().unwrap();
-    for method in ["exact", "grid"] {
-        let arguments = format!("--out pairs.csv --json report.json --method {method}");
-        let done = in_little_memory(folder.path(), 300_000, VERTICES as u32, &arguments);
-        let said = String::from_utf8_lossy(&done.stderr).into_owned();
-        assert_eq!(done.status.code(), Some(2), "{said}");
-        let csv = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
-        let listed = csv.lines().count() - 1;
-        assert!(listed > 100_000 && listed < VERTICES * VERTICES, "{listed}");
-        let errors: Vec<&str> = said
-            .lines()
-            .filter(|line| !line.starts_with("warning: "))
-            .collect();
-        let expected = format!(
-            "error: memory ended after {listed} pairs, which are written; --max-pairs N asks for fewer"
-        );
-        assert_eq!(errors, [expected]);
-        let report = fs::read(folder.path().join("report.json")).unwrap();
-        let report: Value = serde_json::from_slice(&report).unwrap();
-        assert_eq!(report["hits"], listed);
-        assert_eq!(report["completeness"], "Unknown");
-        assert_eq!(report["reference_hits"], VERTICES * VERTICES);
-    }
+    let arguments = "--out pairs.csv --json report.json";
+    let done = in_little_memory(folder.path(), 300_000, VERTICES as u32, arguments);
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(2), "{said}");
+    let csv = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+    let listed = csv.lines().count() - 1;
+    assert!(listed > 100_000 && listed < VERTICES * VERTICES, "{listed}");
+    let errors: Vec<&str> = said
+        .lines()
+        .filter(|line| !line.starts_with("warning: "))
+        .collect();
+    let expected =
+        format!("error: memory ended after {listed} pairs, which are written; --max-pairs N asks for fewer");
+    assert_eq!(errors, [expected]);
+    let report = fs::read(folder.path().join("report.json")).unwrap();
+    let report: Value = serde_json::from_slice(&report).unwrap();
+    assert_eq!(report["hits"], listed);
+    assert_eq!(report["completeness"], "Unknown");
+    assert_eq!(report["reference_hits"], VERTICES * VERTICES);
 }
 
 #[test]

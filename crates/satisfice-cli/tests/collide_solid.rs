@@ -67,7 +67,7 @@ fn a_ball_inside_a_ball() {
     }
     let told = satisfice_in(folder, &format!("{scene} --touching --solid"));
     assert!(
-        told.stdout.contains("small.obj lies inside large.obj, depth 1.5"),
+        told.stdout.contains("small.obj lies inside large.obj, depth 1.4"),
         "{}",
         told.stdout
     );
