@@ -127,8 +127,8 @@ impl Solid {
     }
 }
 
-/// Whether two solids overlap, and how deep; `None` if no point of one lies inside or on the other. `stop` may end the search for the depth
-/// early: its bounds are then wider.
+/// Whether two solids overlap, and how deep; `None` if no point of one lies inside or on the other. `stop` may end the search early:
+/// bounds of the depth are then wider, and if it says so from the beginning, surfaces that meet may go unnoticed.
 ///
 /// Whether they overlap is decided exactly. For two convex solids the bounds of the depth agree but for rounding, unless the search
 /// for it was ended; otherwise see [`Depth`].
@@ -139,7 +139,7 @@ pub fn overlap(first: &Solid, second: &Solid, stop: &(dyn Fn() -> bool + Sync)) 
     if (0..3).any(|k| a.max[k] < b.min[k] || b.max[k] < a.min[k]) {
         return None;
     }
-    let relation = if distance(&first.tree, &second.tree) == 0.0 {
+    let relation = if surfaces_meet(&first.tree, &second.tree, stop) {
         Relation::SurfacesMeet
     } else {
         let (second_parts, first_parts) = (first.parts_inside(second), second.parts_inside(first));
@@ -159,16 +159,38 @@ pub fn overlap(first: &Solid, second: &Solid, stop: &(dyn Fn() -> bool + Sync)) 
     })
 }
 
-/// The distance of two sets of features.
-fn distance(a: &FeatureTree, b: &FeatureTree) -> f64 {
-    let query = PairQuery {
+/// Visits of pairs of boxes between two questions to `stop`.
+const VISITS: usize = 256;
+
+/// Whether a triangle of one tree meets one of another, as far as `stop` lets it be found.
+fn surfaces_meet(a: &FeatureTree, b: &FeatureTree, stop: &(dyn Fn() -> bool + Sync)) -> bool {
+    // Closer than the least number that there is.
+    let Ok(threshold) = Threshold::new(f64::from_bits(1)) else {
+        return false;
+    };
+    let query = query(a, b, threshold);
+    let (mut stack, mut found) = (Vec::new(), Vec::new());
+    query.start(&mut stack);
+    while !stack.is_empty() && found.is_empty() && !stop() {
+        query.step(&mut stack, VISITS, 1, &mut found);
+    }
+    !found.is_empty()
+}
+
+fn query<'a>(a: &'a FeatureTree, b: &'a FeatureTree, threshold: Threshold) -> PairQuery<'a> {
+    PairQuery {
         a: (a, &Placement::IDENTITY),
         b: (b, &Placement::IDENTITY),
         one_body: false,
-        threshold: Threshold::LARGEST,
+        threshold,
         keep: None,
         moved: [Dirty::All; 2],
-    };
+    }
+}
+
+/// The distance of two sets of features.
+fn distance(a: &FeatureTree, b: &FeatureTree) -> f64 {
+    let query = query(a, b, Threshold::LARGEST);
     let mut closest = Closest::any();
     find_closest(&query, &mut closest, |pair| pair, &Watch::none());
     closest.bound()
