@@ -182,7 +182,7 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
     /// slice.note(&[81.0, 7.0])?; // that took an hour
     /// let saved = slice.checkpoint();
     ///
-    /// let mut search = Search::resume(saved, engine::build("random")?)?;
+    /// let mut search = Search::resume(saved, engine::Random::default())?;
     /// let mut slice = search.start_resumed(&problem)?;
     /// let batch = slice.ask()?.to_vec();
     /// let mut fitness = slice.noted().to_vec();
