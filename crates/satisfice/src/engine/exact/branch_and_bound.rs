@@ -46,7 +46,7 @@ engine_settings! {
     /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
     /// let engine = BranchAndBound { leaf: 16, ..Default::default() };
     /// let report = Search::with(engine).run(&disc, &Budget::evaluations(20000))?;
-    /// assert_eq!((report.hit_count(), report.completeness), (317, Completeness::Proved));
+    /// assert_eq!((report.hit_count(), report.completeness), (305, Completeness::Proved));
     /// # Ok::<(), satisfice::Error>(())
     /// ```
     pub struct BranchAndBound {
