@@ -365,7 +365,8 @@ fn a_question_in_vain_is_not_asked_again_after_resuming() {
     let mut tickets = Tickets::ordered(search(descent(), 1), problem("square"), &budget).unwrap();
     assert_eq!(tickets.ask(5).len(), 1);
     let saved = through_a_file(&tickets.checkpoint());
-    let mut resumed = Tickets::resume(saved, descent().configure([]).unwrap(), problem("square")).unwrap();
+    let mut resumed: Tickets<Problem> =
+        Tickets::resume(saved, descent().configure([]).unwrap(), problem("square")).unwrap();
     assert!(tickets.ask(5).is_empty());
     assert_eq!(resumed.ask(5).len(), 1); // the one that was open
     assert_eq!(resumed.log(), tickets.log());
