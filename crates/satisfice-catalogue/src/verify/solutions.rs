@@ -144,6 +144,7 @@ fn is_inside<P: SatisficingProblem>(problem: &P, solution: &P::Solution) -> bool
         .encoding()
         .is_some_and(|encoding| encoding.encode(solution, &mut values))
         || axes.iter().zip(&values).all(|(axis, &value)| {
-            (axis.lower()..=axis.upper()).contains(&value) && axis.value(value) == value
+            let whole = !axis.is_integer() || axis.value(value) == value;
+            (axis.lower()..=axis.upper()).contains(&value) && whole
         })
 }
