@@ -93,6 +93,7 @@ pub(super) struct Climbers<S> {
     restarts: u64,
     next: usize,
     proposed: usize,
+    active: usize,
     /// The best near miss offered since the last start at one, and its fitness; infinite where there is none.
     offered: Vec<S>,
     offered_fitness: S,
@@ -118,6 +119,7 @@ impl<S: Real> Climbers<S> {
             restarts: 0,
             next: 0,
             proposed: 0,
+            active: 1,
             offered: Vec::new(),
             offered_fitness: S::infinity(),
         }
@@ -160,9 +162,10 @@ impl<S: Real> Climbers<S> {
         Ok(())
     }
 
-    /// A new batch begins.
-    pub(super) fn begin_batch(&mut self) {
+    /// A new batch begins, for which so many of the climbers propose.
+    pub(super) fn begin_batch(&mut self, active: usize) {
         self.proposed = 0;
+        self.active = active.clamp(1, self.climbers.len());
     }
 
     /// Proposes for the next climber and names it, unless every one has proposed in this batch.
@@ -173,12 +176,12 @@ impl<S: Real> Climbers<S> {
         rng: &mut SearchRng,
         out: &mut Batch<S>,
     ) -> Option<usize> {
-        if self.proposed == self.climbers.len() {
+        if self.proposed == self.active {
             return None;
         }
         self.proposed += 1;
-        let index = self.next;
-        self.next = (index + 1) % self.climbers.len();
+        let index = self.next % self.active;
+        self.next = (index + 1) % self.active;
         let climber = &mut self.climbers[index];
         if !climber.running {
             self.restarts += 1;
