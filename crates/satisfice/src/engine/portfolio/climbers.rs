@@ -100,9 +100,20 @@ pub(super) struct Climbers<S> {
 }
 
 impl<S: Real> Climbers<S> {
-    pub(super) fn new() -> Self {
+    /// `count` searches at a time: as many candidates of a batch may come from them.
+    pub(super) fn new(count: usize) -> Self {
+        let climber = Climber {
+            position: Vec::new(),
+            fitness: S::infinity(),
+            running: false,
+            stalled: 0,
+            patience: 0,
+            mutation: Mutation::default(),
+            neighbours: None,
+            last: None,
+        };
         Self {
-            climbers: Vec::new(),
+            climbers: vec![climber; count],
             moves: Moves::default(),
             integer_axes: Vec::new(),
             restarts: 0,
@@ -117,8 +128,9 @@ impl<S: Real> Climbers<S> {
     pub(super) fn begin(&mut self, context: &dyn Context<S>) {
         let axes = context.space().axes();
         self.integer_axes = (0..axes.len()).filter(|&j| axes[j].is_integer()).collect();
-        self.climbers.clear();
-        self.next = 0;
+        for climber in &mut self.climbers {
+            climber.running = false;
+        }
         self.offered_fitness = S::infinity();
     }
 
@@ -153,19 +165,7 @@ impl<S: Real> Climbers<S> {
     /// A new batch begins, for which so many of the climbers propose.
     pub(super) fn begin_batch(&mut self, active: usize) {
         self.proposed = 0;
-        self.active = active.max(1);
-        while self.climbers.len() < self.active {
-            self.climbers.push(Climber {
-                position: Vec::new(),
-                fitness: S::infinity(),
-                running: false,
-                stalled: 0,
-                patience: 0,
-                mutation: Mutation::default(),
-                neighbours: None,
-                last: None,
-            });
-        }
+        self.active = active.clamp(1, self.climbers.len());
     }
 
     /// Proposes for the next climber and names it, unless every one has proposed in this batch.

@@ -1,6 +1,4 @@
-//! Whole engines as sources: each proposes a part of a batch, and learns the hits of all others.
-
-use core::ops::Range;
+//! Whole engines as sources: each proposes a batch of its own, and learns the hits of all others.
 
 use super::credit::Credit;
 use crate::batch::{Batch, Outcome};
@@ -19,19 +17,13 @@ use crate::state::{Part, Reader, State};
 /// points or less; on spaces of at most so many axes.
 const MODELLED: u64 = 500;
 const EXPENSIVE: f64 = 5e-3;
-const MODEL_AXES: usize = 20;
-/// Candidates that compete for a proposal of the model: fewer than where it searches alone, because other sources explore, too.
-const CANDIDATES: usize = 256;
-/// Axes for which a matrix takes at most a few steps' worth of memory and time.
-const CMA_AXES: usize = 200;
-/// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
-const MOST_SEARCHES: usize = 64;
+const AXES: usize = 20;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
 const FLOOD_STEP: f64 = 1e-3;
 
-/// Which engine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-enum Kind {
+/// The engines, in the order of their places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
     /// (1+1)-CMA-ES with recombination of hits.
     Cma,
     /// Flood fill on continuous axes.
@@ -42,6 +34,8 @@ enum Kind {
     Model,
 }
 
+const KINDS: [Kind; 4] = [Kind::Cma, Kind::Flood, Kind::Regions, Kind::Model];
+
 /// An engine and how it has fared.
 struct Guest<S> {
     kind: Kind,
@@ -49,18 +43,13 @@ struct Guest<S> {
     arm: Credit,
     /// Whether it may still have something to propose.
     open: bool,
-    /// Its part of the batch that is out.
-    own: Range<usize>,
 }
 
 /// The engines.
 pub(super) struct Guests<S> {
     guests: Vec<Guest<S>>,
-    /// Searches of (1+1)-CMA-ES side by side.
-    searches: usize,
-    /// What one of them is told or has proposed.
-    part: Batch<S>,
-    outcomes: Vec<Outcome<S>>,
+    /// Told to the others: hits of one of them.
+    hits: Batch<S>,
 }
 
 impl<S> core::fmt::Debug for Guests<S> {
@@ -79,43 +68,33 @@ pub(super) enum Answer {
     Nothing,
 }
 
-impl<S: Real> Guest<S> {
-    fn new(kind: Kind, searches: usize) -> Self {
-        let engine = match kind {
-            Kind::Cma => RestartedCmaEs {
-                searches,
-                ..RestartedCmaEs::default()
-            }
-            .build(),
-            Kind::Flood => Box::new(FloodAlone(Flood::new(FLOOD_STEP))),
-            Kind::Regions => BranchAndBound {
-                batch: 8,
-                ..BranchAndBound::default()
-            }
-            .build(),
-            Kind::Model => Surrogate {
-                candidates: CANDIDATES,
-                ..Surrogate::default()
-            }
-            .build(),
-        };
-        Self {
-            kind,
-            engine,
-            arm: Credit::default(),
-            open: true,
-            own: 0..0,
-        }
-    }
-}
-
 impl<S: Real> Guests<S> {
     pub(super) fn new() -> Self {
+        let build = |kind| -> Box<dyn Engine<S>> {
+            match kind {
+                Kind::Cma => RestartedCmaEs {
+                    searches: 1,
+                    ..RestartedCmaEs::default()
+                }
+                .build(),
+                Kind::Flood => Box::new(FloodAlone(Flood::new(FLOOD_STEP))),
+                Kind::Regions => BranchAndBound {
+                    batch: 8,
+                    ..BranchAndBound::default()
+                }
+                .build(),
+                Kind::Model => Surrogate::default().build(),
+            }
+        };
+        let guest = |kind| Guest {
+            kind,
+            engine: build(kind),
+            arm: Credit::default(),
+            open: false,
+        };
         Self {
-            guests: Vec::new(),
-            searches: 1,
-            part: Batch::new(1),
-            outcomes: Vec::new(),
+            guests: KINDS.into_iter().map(guest).collect(),
+            hits: Batch::new(1),
         }
     }
 
@@ -123,28 +102,20 @@ impl<S: Real> Guests<S> {
     pub(super) fn begin(&mut self, context: &dyn Context<S>, without_recombination: bool) {
         let space = context.space();
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
-        self.part = Batch::new(space.dimension());
-        self.searches = context.parallel().div_ceil(4).min(MOST_SEARCHES);
-        self.guests.clear();
-        for kind in [Kind::Cma, Kind::Flood, Kind::Regions, Kind::Model] {
-            let is_of_use = match kind {
-                Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
+        let small = space.dimension() <= AXES;
+        self.hits = Batch::new(space.dimension());
+        for guest in &mut self.guests {
+            guest.arm = Credit::default();
+            guest.open = match guest.kind {
+                Kind::Cma => continuous && !without_recombination,
                 Kind::Flood => continuous,
                 Kind::Regions => context.lower_bound(&space.region()).is_some(),
                 Kind::Model => context
                     .evaluations_planned()
-                    .is_some_and(|planned| planned <= MODELLED && space.dimension() <= MODEL_AXES),
+                    .is_some_and(|planned| planned <= MODELLED && small),
             };
-            if is_of_use {
-                self.open(kind, context);
-            }
+            guest.engine.begin(context);
         }
-    }
-
-    fn open(&mut self, kind: Kind, context: &dyn Context<S>) {
-        let mut guest = Guest::new(kind, self.searches);
-        guest.engine.begin(context);
-        self.guests.push(guest);
     }
 
     /// Opens the model where F turns out to be expensive.
@@ -152,34 +123,20 @@ impl<S: Real> Guests<S> {
         let expensive = context
             .seconds_an_evaluation()
             .is_some_and(|seconds| seconds > EXPENSIVE);
-        if expensive
-            && context.evaluations() <= MODELLED
-            && context.space().dimension() <= MODEL_AXES
-            && self.guests.iter().all(|guest| guest.kind != Kind::Model)
-        {
-            self.open(Kind::Model, context);
+        if expensive && context.evaluations() <= MODELLED && context.space().dimension() <= AXES {
+            for guest in self.guests.iter_mut().filter(|guest| guest.kind == Kind::Model) {
+                guest.open = true;
+            }
         }
     }
 
-    /// A new batch begins, of which none has a part.
-    pub(super) fn begin_batch(&mut self) {
-        for guest in &mut self.guests {
-            guest.own = 0..0;
-        }
-    }
-
-    /// Whether it has a part of the batch.
-    pub(super) fn has_part(&self, index: usize) -> bool {
-        !self.guests[index].own.is_empty()
-    }
-
-    /// Offers the credit of each that is worth trying and has no part of the batch yet, with its weight.
+    /// Offers the credit of each that is open and worth trying, with its weight.
     pub(super) fn arms<'a>(&'a self, all: &'a Credit) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
-        let ready = self.guests.iter().enumerate().filter(move |(_, guest)| {
+        let open = self.guests.iter().enumerate().filter(move |(_, guest)| {
             let searches = matches!(guest.kind, Kind::Cma | Kind::Model);
-            guest.open && guest.own.is_empty() && (searches || guest.arm.is_worth_trying(all))
+            guest.open && (searches || guest.arm.is_worth_trying(all))
         });
-        ready.map(|(index, guest)| {
+        open.map(|(index, guest)| {
             let weight = match guest.kind {
                 Kind::Cma => 2.0,
                 Kind::Flood => 1.0,
@@ -190,7 +147,7 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// Asks one of them for its part of the batch.
+    /// Asks one of them.
     pub(super) fn ask(
         &mut self,
         index: usize,
@@ -200,119 +157,67 @@ impl<S: Real> Guests<S> {
     ) -> Answer {
         let guest = &mut self.guests[index];
         let before = context.evaluations_left();
-        self.part.clear();
-        let answer = guest.engine.ask(context, rng, &mut self.part);
+        let answer = guest.engine.ask(context, rng, out);
         let calls = before - context.evaluations_left();
         for _ in 0..calls {
             guest.arm.count(false);
-        }
-        guest.own = out.len()..out.len() + self.part.len();
-        for position in self.part.points() {
-            out.push(position);
         }
         match answer {
             Ask::Covered => return Answer::Covered,
             Ask::Exhausted => guest.open = false,
             Ask::More => {}
         }
-        if guest.own.is_empty() && calls == 0 {
+        if out.is_empty() && calls == 0 {
             guest.arm.count(false);
             return Answer::Nothing;
         }
         Answer::Worked
     }
 
-    /// Tells each what became of its part, where the batch is the engine's, and of what else concerns it.
+    /// Tells all of them; `own` is the one whose batch it is.
     pub(super) fn tell(
         &mut self,
+        own: Option<usize>,
         context: &dyn Context<S>,
         batch: &Batch<S>,
         outcomes: &[Outcome<S>],
-        origin: Origin,
     ) {
-        let Self {
-            guests,
-            part,
-            outcomes: told,
-            ..
-        } = self;
-        for guest in guests {
-            let own = match origin {
-                Origin::Engine => core::mem::take(&mut guest.own),
-                _ => 0..0,
-            };
-            for outcome in &outcomes[own.clone()] {
-                if *outcome != Outcome::NotEvaluated {
+        self.hits.clear();
+        let mut hits = Vec::new();
+        for (position, outcome) in batch.points().zip(outcomes) {
+            if outcome.is_hit() {
+                self.hits.push(position);
+                hits.push(*outcome);
+            }
+        }
+        for (index, guest) in self.guests.iter_mut().enumerate().filter(|(_, guest)| guest.open) {
+            if own == Some(index) {
+                for outcome in outcomes {
                     guest.arm.count(outcome.is_hit());
                 }
+                guest.engine.tell(context, batch, outcomes, Origin::Engine);
+            } else if guest.kind == Kind::Model {
+                guest.engine.tell(context, batch, outcomes, Origin::Exhaustion);
+            } else if !hits.is_empty() {
+                guest.engine.tell(context, &self.hits, &hits, Origin::Exhaustion);
             }
-            if !guest.open {
-                continue;
-            }
-            let mut tell = |is_told: &dyn Fn(usize) -> bool, origin| {
-                part.clear();
-                told.clear();
-                for (i, position) in batch.points().enumerate().filter(|&(i, _)| is_told(i)) {
-                    part.push(position);
-                    told.push(outcomes[i]);
-                }
-                if !told.is_empty() {
-                    guest.engine.tell(context, part, told, origin);
-                }
-            };
-            tell(&|i| own.contains(&i), Origin::Engine);
-            // Start points count for what they are; for the rest, the hits of others are as good as found by exhaustion.
-            let origin = match origin {
-                Origin::Start => Origin::Start,
-                _ => Origin::Exhaustion,
-            };
-            let learns_from_all = guest.kind == Kind::Model || origin == Origin::Start;
-            tell(
-                &|i| !own.contains(&i) && (learns_from_all || outcomes[i].is_hit()),
-                origin,
-            );
         }
     }
 
     pub(super) fn save(&self, state: &mut State) {
-        (self.searches, self.guests.len()).save(state);
         for guest in &self.guests {
-            (guest.kind, guest.arm, guest.open).save(state);
-            (guest.own.start, guest.own.end).save(state);
+            (guest.arm, guest.open).save(state);
             guest.engine.save(state);
         }
     }
 
     pub(super) fn restore(&mut self, dimension: usize, from: &mut Reader<'_>) -> Result<(), Error> {
-        self.part = Batch::new(dimension);
-        let (searches, count): (usize, usize) = from.read()?;
-        if !(1..=MOST_SEARCHES).contains(&searches) {
-            return Err(Error::State(
-                "its searches are not as many as there are".to_owned(),
-            ));
-        }
-        self.searches = searches;
-        self.guests.clear();
-        for _ in 0..count {
-            let (kind, arm, open) = from.read()?;
-            let (start, end) = from.read()?;
-            let mut guest = Guest::new(kind, searches);
+        self.hits = Batch::new(dimension);
+        for guest in &mut self.guests {
+            (guest.arm, guest.open) = from.read()?;
             guest.engine.restore(from)?;
-            self.guests.push(Guest {
-                arm,
-                open,
-                own: start..end,
-                ..guest
-            });
         }
         Ok(())
-    }
-
-    /// Whether restored parts of a batch of so many points fit it.
-    pub(super) fn fit(&self, points: usize) -> bool {
-        self.guests
-            .iter()
-            .all(|guest| guest.own.start <= guest.own.end && guest.own.end <= points)
     }
 }
 

@@ -1,9 +1,5 @@
 //! The engine of the portfolio: which source is asked, and what its outcomes teach.
 
-mod proposals;
-
-use proposals::SCANNED;
-
 use super::climbers::Climbers;
 use super::credit::{Credit, draw};
 use super::guests::{Answer, Guests};
@@ -11,7 +7,7 @@ use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
 use super::scan::Scan;
-use super::source::{ARMS, CROSS, DESCENT, MEMBER, NEIGHBOUR, STEP, Source, TRIAL, Tag, Tally, arm_of};
+use super::source::{ARMS, CROSS, MEMBER, Source, TRIAL, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -19,6 +15,7 @@ use super::{NeighbourTiming, Omitted, Portfolio};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::local::descent::RestartedDescent;
+use crate::engine::local::recombination::recombine;
 use crate::engine::{Ask, Engine, Origin};
 use crate::error::Error;
 use crate::report::SourceCount;
@@ -28,12 +25,11 @@ use crate::state::{Part, Reader, State};
 
 /// A batch is given up after so many choices of a source that gave no candidate.
 const REJECTED: usize = 100;
-/// Points of the first batch, at least: none of them could learn of the others.
-const FIRST: usize = 4;
-/// Batches grow by a point each so many evaluations, up to so many points: small ones learn sooner, large ones cost less time.
+/// Points of an enumeration that are proposed at once.
+const SCANNED: usize = 256;
+/// Batches grow by a point each so many evaluations: small ones learn sooner, large ones feed more threads.
 const SLOW: usize = 2048;
-const LARGEST: usize = 32;
-/// A choice of source lasts a candidate more each so many evaluations, until it lasts so many: a choice costs time.
+/// A choice of source lasts a batch more each so many evaluations, until it lasts so many.
 const TURN: u64 = 128;
 const LONGEST_TURN: u64 = 8;
 /// Share of the evaluations that estimates how complete the result is.
@@ -42,12 +38,12 @@ const PROBES: f64 = 0.02;
 /// The engine of [`Portfolio`].
 #[derive(Debug)]
 pub(super) struct Sources<S> {
-    /// Candidates proposed at once: as the user says, and now.
-    asked_for: Option<usize>,
+    /// Candidates proposed at once, at most and now.
+    largest: usize,
     batch: usize,
     /// Candidates of a batch that come from one choice of source.
     block: usize,
-    /// The source chosen last, and how many more candidates are to come from it.
+    /// The source chosen last, and how many batches begin with it before the next choice.
     chosen: Option<(Tag, u64)>,
     timing: NeighbourTiming,
     without: Omitted,
@@ -76,15 +72,16 @@ pub(super) struct Sources<S> {
 
 impl<S: Real> Sources<S> {
     pub(super) fn new(settings: &Portfolio) -> Self {
+        let block = settings.batch.div_ceil(4);
         Self {
-            asked_for: settings.batch,
+            largest: settings.batch,
             batch: 1,
             block: 1,
             chosen: None,
             without: settings.without,
             arms: [Credit::default(); ARMS],
             whole: Credit::default(),
-            descents: Vec::new(),
+            descents: (0..block).map(|_| RestartedDescent::new(0.25, 1e-6)).collect(),
             next_descent: 0,
             descended: 0,
             guests: Guests::new(),
@@ -97,7 +94,7 @@ impl<S: Real> Sources<S> {
                 settings.alpha,
                 settings.restart,
             ),
-            climbers: Climbers::new(),
+            climbers: Climbers::new(block),
             populations: Populations::new(),
             steps: None,
             neighbourhoods: Neighbourhoods::default(),
@@ -114,17 +111,17 @@ impl<S: Real> Sources<S> {
         self.hits.len() / self.position.len().max(1)
     }
 
-    /// The source chosen last, as long as its turn lasts, else a new choice; and how many candidates are to come from it.
-    fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
-        if let Some((tag, left @ 1..)) = self.chosen
-            && !(tag.0 == Source::Guest && self.guests.has_part(tag.1))
-        {
-            return (tag, left);
+    /// The source chosen last, as long as its turn lasts and it begins a batch; else a new choice. A turn grows with the evaluations
+    /// made, so that a choice costs little of the time.
+    fn next_source(&mut self, begins: bool, rng: &mut SearchRng) -> Tag {
+        if let (true, Some((tag, turns @ 1..))) = (begins, self.chosen) {
+            self.chosen = Some((tag, turns - 1));
+            return tag;
         }
-        let turn = (self.whole.evaluations() / TURN).min(LONGEST_TURN);
-        let chosen = (self.choose(rng), turn.max(self.block as u64));
-        self.chosen = Some(chosen);
-        chosen
+        let tag = self.choose(rng);
+        let turns = (self.whole.evaluations() / TURN).min(LONGEST_TURN) / self.batch as u64;
+        self.chosen = begins.then_some((tag, turns));
+        tag
     }
 
     /// Draws a source, and which step of [`Source::Step`].
@@ -173,6 +170,206 @@ impl<S: Real> Sources<S> {
         }
         best.1
     }
+
+    /// Whether a position is inside and worth an evaluation: not proposed before, or not a known hit.
+    fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
+        let space = context.space();
+        let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
+            axis.start() <= x
+                && if axis.is_integer() {
+                    x < axis.end()
+                } else {
+                    x <= axis.end()
+                }
+        });
+        inside
+            && match &mut self.visited {
+                Some(visited) => visited.insert(space, &self.position),
+                None => !context.is_deleted(&self.position),
+            }
+    }
+
+    /// Proposes one candidate; `false` where the source has none left for this batch.
+    fn propose(
+        &mut self,
+        tag: Tag,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) -> bool {
+        let (source, index) = tag;
+        let proposed = match source {
+            Source::Swarm => self
+                .swarms
+                .propose(context.space(), self.visited.as_ref(), rng, out),
+            Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
+            Source::Member => self.populations.propose(context, rng, out),
+            Source::Descent => {
+                if self.descended == self.block {
+                    return false;
+                }
+                self.descended += 1;
+                let index = self.next_descent % self.block;
+                self.next_descent = (index + 1) % self.block;
+                self.descents[index].propose(context, rng, out);
+                Some(index)
+            }
+            Source::Guest => return false,
+            Source::Uniform => {
+                if self.visited.as_ref().is_some_and(Visited::is_dense) {
+                    if !self.scan_on(context, rng) {
+                        return false;
+                    }
+                } else {
+                    rng.position(context.space(), &mut self.position);
+                    if !self.is_fresh(context) {
+                        return true; // this draw was rejected, the next may be accepted
+                    }
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+            Source::Step => {
+                let Some(steps) = &mut self.steps else {
+                    return false;
+                };
+                if !steps.apply(index, &self.hits, &mut self.position) {
+                    return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                Some(index)
+            }
+            Source::Trial => {
+                if !self.draw_trial(rng) || !self.is_fresh(context) {
+                    // Counted like a miss, or an exhausted source would be asked forever.
+                    self.arms[TRIAL].count(false);
+                    return true;
+                }
+                out.push(&self.position);
+                self.trials
+                    .truncate((self.trials.len() / self.position.len()) * self.position.len());
+                Some(self.trials.len() / self.position.len() - 1)
+            }
+            Source::Cross => {
+                if !recombine(&self.hits, rng, &mut self.position) || !self.is_fresh(context) {
+                    self.arms[CROSS].count(false);
+                    return true;
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+            Source::Neighbour | Source::NearMiss => {
+                let position = &mut self.position;
+                let is_there = match source {
+                    Source::Neighbour => self.neighbourhoods.propose(context, position),
+                    _ => self.near_misses.propose(position),
+                };
+                if !is_there {
+                    return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+        };
+        let Some(index) = proposed else {
+            return false;
+        };
+        if matches!(source, Source::Swarm | Source::Climber)
+            && self.is_repeated(context, (source, index), out)
+        {
+            return true;
+        }
+        self.tags.push((source, index));
+        true
+    }
+
+    /// Takes back the last proposal of a swarm or a climber if that point was visited before, and tells it that nothing came of
+    /// it, which counts like a miss.
+    fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
+        let space = context.space();
+        let last = out.len() - 1;
+        let Some(visited) = &mut self.visited else {
+            return false;
+        };
+        space.keep_inside(out.point_mut(last));
+        if visited.insert(space, out.point(last)) {
+            return false;
+        }
+        match source {
+            Source::Swarm => self.swarms.tell(index, out.point(last), Outcome::NonFinite),
+            _ => self.climbers.tell(index, out.point(last), Outcome::NonFinite),
+        }
+        if let Some(arm) = arm_of(source) {
+            self.arms[arm].count(false);
+        }
+        out.truncate(last);
+        true
+    }
+
+    /// Goes on through the lattice to the next point that is not visited; `false` at its end.
+    fn scan_on(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
+        let Some(visited) = &mut self.visited else {
+            return false;
+        };
+        let space = context.space();
+        let found = self.scan.next(space, visited, rng, &mut self.position);
+        if found {
+            visited.insert(space, &self.position);
+        }
+        found
+    }
+
+    /// Enumerates the rest of the lattice, a block at a time.
+    fn enumerate(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        while out.len() < SCANNED && self.scan_on(context, rng) {
+            out.push(&self.position);
+        }
+        self.tags.resize(out.len(), (Source::Uniform, 0));
+        if self.scan.is_over() || self.visited.as_ref().is_some_and(Visited::is_all) {
+            Ask::Covered
+        } else {
+            Ask::More
+        }
+    }
+
+    /// Writes a hit moved by the difference of two others, and appends that difference to `trials`; `false` where it is zero.
+    /// Half of the pairs are neighbours in the order found, which are near to each other in space.
+    fn draw_trial(&mut self, rng: &mut SearchRng) -> bool {
+        let dimension = self.position.len();
+        let count = self.hit_count();
+        let (a, b) = (rng.below(count), rng.below(count));
+        let (reach, far) = rng.uniform_and_sign();
+        let c = if far {
+            rng.below(count)
+        } else {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
+            let apart = 1 + (8.0 * reach) as usize;
+            if b >= apart {
+                b - apart
+            } else {
+                (b + apart).min(count - 1)
+            }
+        };
+        let row = |hit: usize| &self.hits[hit * dimension..(hit + 1) * dimension];
+        let mut moves = false;
+        let start = self.trials.len();
+        for j in 0..dimension {
+            let difference = row(b)[j] - row(c)[j];
+            moves |= difference != S::zero();
+            self.trials.push(difference);
+            self.position[j] = row(a)[j] + difference;
+        }
+        if !moves {
+            self.trials.truncate(start);
+        }
+        moves
+    }
 }
 
 impl<S: Real> Engine<S> for Sources<S> {
@@ -198,8 +395,9 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.scan = Scan::new(space);
         self.swarms.begin(dimension);
         self.climbers.begin(context);
-        self.descents.clear();
-        self.next_descent = 0;
+        for descent in &mut self.descents {
+            descent.restart();
+        }
         self.arms = [Credit::default(); ARMS];
         self.whole = Credit::default();
         self.chosen = None;
@@ -222,19 +420,10 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.trials.clear();
         self.swarms.begin_batch();
         self.descended = 0;
-        self.guests.begin_batch();
-        // Fewer than wanted would let workers wait.
         let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
-        let first = if made == 0 { FIRST } else { 1 };
-        let wanted = self.asked_for.unwrap_or_else(|| context.parallel().max(first));
-        self.batch = self
-            .asked_for
-            .unwrap_or_else(|| (made / SLOW).clamp(1, LARGEST).max(wanted));
+        self.batch = (made / SLOW).clamp(1, self.largest);
         self.block = self.batch.div_ceil(4);
         self.climbers.begin_batch(self.block);
-        while self.descents.len() < self.block {
-            self.descents.push(RestartedDescent::new(0.25, 1e-6));
-        }
         self.guests.look_at_price(context);
         if let Some(visited) = &self.visited
             && self.scan.goes_alone(context, visited, PROBES, SCANNED)
@@ -243,49 +432,39 @@ impl<S: Real> Engine<S> for Sources<S> {
         }
         let mut rejected = 0;
         while out.len() < self.batch && rejected < REJECTED {
-            let (tag, left) = self.next_source(rng);
+            let tag = self.next_source(out.is_empty() && rejected == 0, rng);
             let before = out.len();
-            let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
             if tag.0 == Source::Guest {
+                if before > 0 {
+                    break;
+                }
                 let answer = self.guests.ask(tag.1, context, rng, out);
                 self.tags.resize(out.len(), tag);
                 match answer {
                     Answer::Covered => return Ask::Covered,
-                    Answer::Worked if out.len() >= wanted || out.is_empty() => {
-                        self.chosen = Some((tag, left - 1));
-                        return Ask::More;
-                    }
-                    Answer::Worked => self.chosen = None,
-                    Answer::Nothing => {
-                        self.chosen = None;
-                        rejected += 1;
-                    }
+                    Answer::Worked => return Ask::More,
+                    Answer::Nothing => rejected += 1,
                 }
                 continue;
             }
-            let mut has_more = true;
-            for _ in 0..room {
-                has_more = self.propose(tag, context, rng, out);
-                if !has_more {
+            for _ in 0..self.block.min(self.batch - before) {
+                if !self.propose(tag, context, rng, out) {
                     break;
                 }
             }
-            let made = (out.len() - before) as u64;
-            self.chosen = (has_more && made > 0).then_some((tag, left - made));
-            // A source with nothing left for this batch ends the batch, so that worse ones do not fill it, unless workers would wait.
+            // A source with nothing left for this batch ends the batch, so that worse ones do not fill it.
             if out.len() == before {
-                if !out.is_empty() && out.len() >= wanted {
+                if !out.is_empty() {
                     break;
                 }
                 rejected += 1;
             }
         }
-        if out.is_empty() && self.visited.as_ref().is_some_and(Visited::is_all) {
-            return Ask::Covered;
-        }
-        // Everything drawn was known: propose uniform points, whatever they are.
-        let least = if self.visited.is_some() { 1 } else { wanted };
-        while out.len() < least {
+        if out.is_empty() {
+            if self.visited.as_ref().is_some_and(Visited::is_all) {
+                return Ask::Covered;
+            }
+            // Everything drawn was known: propose the next uniform point, whatever it is.
             out.push_with(|position| rng.position(context.space(), position));
             self.tags.push((Source::Uniform, 0));
         }
@@ -325,7 +504,11 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
         }
-        self.guests.tell(context, batch, outcomes, origin);
+        let own = match (origin, self.tags.first()) {
+            (Origin::Engine, Some(&(Source::Guest, index))) => Some(index),
+            _ => None,
+        };
+        self.guests.tell(own, context, batch, outcomes);
         if origin != Origin::Engine {
             return;
         }
@@ -353,9 +536,6 @@ impl<S: Real> Engine<S> for Sources<S> {
             }
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
-            if *outcome == Outcome::NotEvaluated {
-                continue;
-            }
             let hit = outcome.is_hit();
             self.tally.count(source, *outcome);
             self.whole.count(hit);
@@ -384,7 +564,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position.save(state);
         (self.whole, self.chosen).save(state);
         (self.batch, self.block, self.next_descent).save(state);
-        self.descents.len().save(state);
         for descent in &self.descents {
             Part::save(descent, state);
         }
@@ -405,17 +584,13 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position = from.read()?;
         (self.whole, self.chosen) = from.read()?;
         (self.batch, self.block, self.next_descent) = from.read()?;
-        let descents: usize = from.read()?;
-        self.descents.clear();
-        for _ in 0..descents {
-            let mut descent = RestartedDescent::new(0.25, 1e-6);
-            Part::restore(&mut descent, from)?;
-            self.descents.push(descent);
+        if self.block == 0 || self.block > self.descents.len() {
+            return Err(Error::State("its batches are of other settings".to_owned()));
+        }
+        for descent in &mut self.descents {
+            Part::restore(descent, from)?;
         }
         self.guests.restore(self.position.len(), from)?;
-        if self.block > descents || self.batch == 0 || !self.guests.fit(self.tags.len()) {
-            return Err(Error::State("its batches do not fit its sources".to_owned()));
-        }
         if !self.near_misses.fit(self.position.len()) {
             return Err(Error::State("its near misses are of another space".to_owned()));
         }
