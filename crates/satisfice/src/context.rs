@@ -59,12 +59,6 @@ pub trait Context<S: Real> {
         None
     }
 
-    /// Mean seconds that an evaluation has taken so far, thinking included, as of the last look at the clock. `None` where evaluations
-    /// are limited, so that such a search does not depend on the clock, and before the first one.
-    fn seconds_an_evaluation(&self) -> Option<f64> {
-        None
-    }
-
     /// Number of hits of the slice before this one, C_prev.
     fn previous_hits(&self) -> usize;
 

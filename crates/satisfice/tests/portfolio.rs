@@ -31,7 +31,7 @@ fn hits(
 }
 
 /// 9^3 = 729 minima, one for each choice of nine places on three axes; uneven ones, because on a grid translations would do as
-/// well. With recombination all 2,187; without it, descents find less than half of them, one by one.
+/// well. With recombination 2,187 of 2,187 when this was written, without it 260.
 #[test]
 fn recombination_finds_a_product_of_places() {
     let valleys = |x: &[f64]| {
@@ -44,7 +44,7 @@ fn recombination_finds_a_product_of_places() {
         hits("none", 30_000, &space, 1e-4, valleys),
         hits("recombination", 30_000, &space, 1e-4, valleys),
     );
-    assert!(with == 3 * 729 && with > 2 * without, "{with} {without}");
+    assert!(with == 3 * 729 && with > 4 * without, "{with} {without}");
 }
 
 /// A cusp of fractal walls, as steep as |x|^0.63 on every scale. With the other local searches left out, nothing but the
@@ -88,7 +88,7 @@ fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {
             .unwrap();
         assert_eq!(report.completeness, Completeness::Proved, "{seed}: {report}");
         assert_eq!(report.hit_count(), all);
-        assert!(report.counts.evaluations < 12_000, "{seed}: {report}");
+        assert!(report.counts.evaluations < 10_500, "{seed}: {report}");
     }
     let short = Search::new()
         .run(&from_fn(space, 0.005, far), &Budget::evaluations(9_000))

@@ -78,7 +78,7 @@ fn problem<'a>(
     .separation(0.02)
 }
 
-const EVALUATIONS: u64 = 600;
+const EVALUATIONS: u64 = 300;
 const SLICES: usize = 3;
 
 fn search<P: Problem>(entry: &EngineSpec, probes: f64) -> Search<P> {

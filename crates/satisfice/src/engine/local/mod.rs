@@ -1,7 +1,6 @@
 //! Sampling and local search.
 
-mod bandit;
-pub(super) mod descent;
+mod descent;
 mod descent_flood;
 pub(super) mod flood;
 pub(super) mod luby;

@@ -93,7 +93,6 @@ pub(super) struct Climbers<S> {
     restarts: u64,
     next: usize,
     proposed: usize,
-    active: usize,
     /// The best near miss offered since the last start at one, and its fitness; infinite where there is none.
     offered: Vec<S>,
     offered_fitness: S,
@@ -119,7 +118,6 @@ impl<S: Real> Climbers<S> {
             restarts: 0,
             next: 0,
             proposed: 0,
-            active: 1,
             offered: Vec::new(),
             offered_fitness: S::infinity(),
         }
@@ -162,10 +160,9 @@ impl<S: Real> Climbers<S> {
         Ok(())
     }
 
-    /// A new batch begins, for which so many of the climbers propose.
-    pub(super) fn begin_batch(&mut self, active: usize) {
+    /// A new batch begins.
+    pub(super) fn begin_batch(&mut self) {
         self.proposed = 0;
-        self.active = active.clamp(1, self.climbers.len());
     }
 
     /// Proposes for the next climber and names it, unless every one has proposed in this batch.
@@ -176,12 +173,12 @@ impl<S: Real> Climbers<S> {
         rng: &mut SearchRng,
         out: &mut Batch<S>,
     ) -> Option<usize> {
-        if self.proposed == self.active {
+        if self.proposed == self.climbers.len() {
             return None;
         }
         self.proposed += 1;
-        let index = self.next % self.active;
-        self.next = (index + 1) % self.active;
+        let index = self.next;
+        self.next = (index + 1) % self.climbers.len();
         let climber = &mut self.climbers[index];
         if !climber.running {
             self.restarts += 1;

@@ -22,10 +22,6 @@ pub(super) enum Source {
     Neighbour,
     /// A near miss of the slice before.
     NearMiss,
-    /// A descent over neighbours.
-    Descent,
-    /// A whole engine.
-    Guest,
 }
 
 /// The names of all sources, in their order.
@@ -64,15 +60,12 @@ impl Tally {
 pub(super) type Tag = (Source, usize);
 
 /// Number of sources with an arm, and some of these.
-pub(super) const ARMS: usize = 9;
+pub(super) const ARMS: usize = 6;
 pub(super) const TRIAL: usize = 3;
 pub(super) const CROSS: usize = 4;
 pub(super) const MEMBER: usize = 5;
-pub(super) const DESCENT: usize = 6;
-pub(super) const STEP: usize = 7;
-pub(super) const NEIGHBOUR: usize = 8;
 
-/// The arm of a source; near misses and whole engines keep their own counts.
+/// The arm of a source; steps, neighbours and near misses keep their own counts.
 pub(super) fn arm_of(source: Source) -> Option<usize> {
     match source {
         Source::Uniform => Some(0),
@@ -81,9 +74,6 @@ pub(super) fn arm_of(source: Source) -> Option<usize> {
         Source::Trial => Some(TRIAL),
         Source::Cross => Some(CROSS),
         Source::Member => Some(MEMBER),
-        Source::Descent => Some(DESCENT),
-        Source::Step => Some(STEP),
-        Source::Neighbour => Some(NEIGHBOUR),
-        Source::NearMiss | Source::Guest => None,
+        Source::Step | Source::Neighbour | Source::NearMiss => None,
     }
 }

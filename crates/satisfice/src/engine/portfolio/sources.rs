@@ -1,8 +1,7 @@
 //! The engine of the portfolio: which source is asked, and what its outcomes teach.
 
+use super::bandit::{Arm, draw};
 use super::climbers::Climbers;
-use super::credit::{Credit, draw};
-use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
@@ -14,46 +13,29 @@ use super::visited::Visited;
 use super::{NeighbourTiming, Omitted, Portfolio};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::local::descent::RestartedDescent;
 use crate::engine::local::recombination::recombine;
 use crate::engine::{Ask, Engine, Origin};
 use crate::error::Error;
 use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::state::{Part, Reader, State};
+use crate::state::{Reader, Saved, State};
 
 /// A batch is given up after so many choices of a source that gave no candidate.
 const REJECTED: usize = 100;
 /// Points of an enumeration that are proposed at once.
 const SCANNED: usize = 256;
-/// Batches grow by a point each so many evaluations: small ones learn sooner, large ones feed more threads.
-const SLOW: usize = 2048;
-/// A choice of source lasts a batch more each so many evaluations, until it lasts so many.
-const TURN: u64 = 128;
-const LONGEST_TURN: u64 = 8;
 /// Share of the evaluations that estimates how complete the result is.
 const PROBES: f64 = 0.02;
 
 /// The engine of [`Portfolio`].
 #[derive(Debug)]
 pub(super) struct Sources<S> {
-    /// Candidates proposed at once, at most and now.
-    largest: usize,
     batch: usize,
-    /// Candidates of a batch that come from one choice of source.
+    /// Candidates that come from one choice of source.
     block: usize,
-    /// The source chosen last, and how many batches begin with it before the next choice.
-    chosen: Option<(Tag, u64)>,
-    timing: NeighbourTiming,
     without: Omitted,
-    arms: [Credit; ARMS],
-    /// All of them, and the guests, together.
-    whole: Credit,
-    descents: Vec<RestartedDescent<S>>,
-    next_descent: usize,
-    descended: usize,
-    guests: Guests<S>,
+    arms: [Arm; ARMS],
     hits: Vec<S>,
     visited: Option<Visited>,
     /// The lattice point by point, once so many are visited that uniform draws mostly repeat, or if the budget has room for all.
@@ -74,17 +56,10 @@ impl<S: Real> Sources<S> {
     pub(super) fn new(settings: &Portfolio) -> Self {
         let block = settings.batch.div_ceil(4);
         Self {
-            largest: settings.batch,
-            batch: 1,
-            block: 1,
-            chosen: None,
+            batch: settings.batch,
+            block,
             without: settings.without,
-            arms: [Credit::default(); ARMS],
-            whole: Credit::default(),
-            descents: (0..block).map(|_| RestartedDescent::new(0.25, 1e-6)).collect(),
-            next_descent: 0,
-            descended: 0,
-            guests: Guests::new(),
+            arms: [Arm::default(); ARMS],
             hits: Vec::new(),
             visited: None,
             scan: Scan::default(),
@@ -97,8 +72,7 @@ impl<S: Real> Sources<S> {
             climbers: Climbers::new(block),
             populations: Populations::new(),
             steps: None,
-            neighbourhoods: Neighbourhoods::default(),
-            timing: settings.neighbours,
+            neighbourhoods: Neighbourhoods::new(settings.neighbours == NeighbourTiming::Late),
             near_misses: NearMisses::new(),
             tags: Vec::new(),
             tally: Tally::default(),
@@ -111,62 +85,43 @@ impl<S: Real> Sources<S> {
         self.hits.len() / self.position.len().max(1)
     }
 
-    /// The source chosen last, as long as its turn lasts and it begins a batch; else a new choice. A turn grows with the evaluations
-    /// made, so that a choice costs little of the time.
-    fn next_source(&mut self, begins: bool, rng: &mut SearchRng) -> Tag {
-        if let (true, Some((tag, turns @ 1..))) = (begins, self.chosen) {
-            self.chosen = Some((tag, turns - 1));
-            return tag;
-        }
-        let tag = self.choose(rng);
-        let turns = (self.whole.evaluations() / TURN).min(LONGEST_TURN) / self.batch as u64;
-        self.chosen = begins.then_some((tag, turns));
-        tag
-    }
-
     /// Draws a source, and which step of [`Source::Step`].
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
-        let price = self.whole.price();
-        let mut best = (self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
+        let mut best = (self.arms[0].draw(rng), (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
             if yields > best.0 {
                 best = (yields, tag);
             }
         };
-        offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
-        let worth = |arm: &Credit| arm.is_worth_trying(&self.whole);
-        if uses(Omitted::Swarms) && worth(&self.arms[1]) {
-            offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
+        if uses(Omitted::Swarms) {
+            offer(self.arms[1].draw(rng), (Source::Swarm, 0));
         }
-        if uses(Omitted::Climbers) && worth(&self.arms[2]) {
-            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
+        if uses(Omitted::Climbers) {
+            offer(self.arms[2].draw(rng), (Source::Climber, 0));
         }
-        if uses(Omitted::Populations) && self.populations.are_usable() && worth(&self.arms[MEMBER]) {
-            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
+        if uses(Omitted::Populations) && self.populations.are_usable() {
+            offer(self.arms[MEMBER].draw(rng), (Source::Member, 0));
         }
         let hits = self.hit_count();
-        if uses(Omitted::Learning) && hits >= 3 && worth(&self.arms[TRIAL]) {
-            offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));
+        if uses(Omitted::Learning) && hits >= 3 {
+            offer(self.arms[TRIAL].draw(rng), (Source::Trial, 0));
         }
-        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && worth(&self.arms[CROSS]) {
-            offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
+        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 {
+            offer(self.arms[CROSS].draw(rng), (Source::Cross, 0));
         }
         if uses(Omitted::Steps)
-            && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
+            && let Some((index, good, all)) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
         {
-            offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
+            offer(draw(rng, good, all), (Source::Step, index));
         }
-        if self.neighbourhoods.has_more() {
-            offer(self.arms[NEIGHBOUR].draw(price, 2.0, rng), (Source::Neighbour, 0));
+        if let Some((good, all)) = self.neighbourhoods.posterior() {
+            offer(draw(rng, good, all), (Source::Neighbour, 0));
         }
         if uses(Omitted::NearMisses)
             && let Some((good, all)) = self.near_misses.posterior()
         {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
-        }
-        for (index, arm, weight) in self.guests.arms(&self.whole) {
-            offer(arm.draw(price, weight, rng), (Source::Guest, index));
         }
         best.1
     }
@@ -204,17 +159,6 @@ impl<S: Real> Sources<S> {
                 .propose(context.space(), self.visited.as_ref(), rng, out),
             Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
             Source::Member => self.populations.propose(context, rng, out),
-            Source::Descent => {
-                if self.descended == self.block {
-                    return false;
-                }
-                self.descended += 1;
-                let index = self.next_descent % self.block;
-                self.next_descent = (index + 1) % self.block;
-                self.descents[index].propose(context, rng, out);
-                Some(index)
-            }
-            Source::Guest => return false,
             Source::Uniform => {
                 if self.visited.as_ref().is_some_and(Visited::is_dense) {
                     if !self.scan_on(context, rng) {
@@ -395,58 +339,29 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.scan = Scan::new(space);
         self.swarms.begin(dimension);
         self.climbers.begin(context);
-        for descent in &mut self.descents {
-            descent.restart();
-        }
-        self.arms = [Credit::default(); ARMS];
-        self.whole = Credit::default();
-        self.chosen = None;
-        self.guests.begin(context, self.without == Omitted::Recombination);
-        let late = match self.timing {
-            NeighbourTiming::Auto => context.evaluations_planned().is_none(),
-            timing => timing == NeighbourTiming::Late,
-        };
         self.populations.begin(context);
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
             Some(steps) => steps.begin(),
             None => self.steps = Some(Translations::new(space)),
         }
-        self.neighbourhoods.begin(late);
+        self.neighbourhoods.begin();
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
         self.tags.clear();
         self.trials.clear();
         self.swarms.begin_batch();
-        self.descended = 0;
-        let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
-        self.batch = (made / SLOW).clamp(1, self.largest);
-        self.block = self.batch.div_ceil(4);
-        self.climbers.begin_batch(self.block);
-        self.guests.look_at_price(context);
+        self.climbers.begin_batch();
         if let Some(visited) = &self.visited
-            && self.scan.goes_alone(context, visited, PROBES, SCANNED)
+            && self.scan.goes_alone(context, visited, PROBES, self.batch)
         {
             return self.enumerate(context, rng, out);
         }
         let mut rejected = 0;
         while out.len() < self.batch && rejected < REJECTED {
-            let tag = self.next_source(out.is_empty() && rejected == 0, rng);
+            let tag = self.choose(rng);
             let before = out.len();
-            if tag.0 == Source::Guest {
-                if before > 0 {
-                    break;
-                }
-                let answer = self.guests.ask(tag.1, context, rng, out);
-                self.tags.resize(out.len(), tag);
-                match answer {
-                    Answer::Covered => return Ask::Covered,
-                    Answer::Worked => return Ask::More,
-                    Answer::Nothing => rejected += 1,
-                }
-                continue;
-            }
             for _ in 0..self.block.min(self.batch - before) {
                 if !self.propose(tag, context, rng, out) {
                     break;
@@ -504,11 +419,6 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
         }
-        let own = match (origin, self.tags.first()) {
-            (Origin::Engine, Some(&(Source::Guest, index))) => Some(index),
-            _ => None,
-        };
-        self.guests.tell(own, context, batch, outcomes);
         if origin != Origin::Engine {
             return;
         }
@@ -523,7 +433,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                         steps.count(index, outcome.is_hit());
                     }
                 }
-                Source::Neighbour => self.neighbourhoods.count(outcome.fitness()),
+                Source::Neighbour => self.neighbourhoods.count(outcome.fitness(), outcome.is_hit()),
                 Source::NearMiss => self.near_misses.count(outcome.is_hit()),
                 // Hits are inexact on continuous axes: what was put together from two of them may just miss a third one.
                 Source::Cross => {
@@ -531,14 +441,12 @@ impl<S: Real> Engine<S> for Sources<S> {
                         self.climbers.offer(position, fitness);
                     }
                 }
-                Source::Descent => self.descents[index].learn(position, outcome),
-                Source::Uniform | Source::Trial | Source::Guest => {}
+                Source::Uniform | Source::Trial => {}
             }
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
             let hit = outcome.is_hit();
             self.tally.count(source, *outcome);
-            self.whole.count(hit);
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
             }
@@ -548,6 +456,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 steps.learn(&self.trials[index * dimension..(index + 1) * dimension], space);
             }
         }
+        Arm::fade(&mut self.arms, outcomes.len());
     }
 
     fn save(&self, state: &mut State) {
@@ -562,12 +471,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
-        (self.whole, self.chosen).save(state);
-        (self.batch, self.block, self.next_descent).save(state);
-        for descent in &self.descents {
-            Part::save(descent, state);
-        }
-        self.guests.save(state);
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
@@ -582,15 +485,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
-        (self.whole, self.chosen) = from.read()?;
-        (self.batch, self.block, self.next_descent) = from.read()?;
-        if self.block == 0 || self.block > self.descents.len() {
-            return Err(Error::State("its batches are of other settings".to_owned()));
-        }
-        for descent in &mut self.descents {
-            Part::restore(descent, from)?;
-        }
-        self.guests.restore(self.position.len(), from)?;
         if !self.near_misses.fit(self.position.len()) {
             return Err(Error::State("its near misses are of another space".to_owned()));
         }
