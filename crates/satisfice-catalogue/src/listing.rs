@@ -65,6 +65,16 @@ pub enum Range {
         /// Greatest.
         max: f64,
     },
+    /// A whole number or `auto`.
+    #[serde(rename = "optional-integer")]
+    OptionalInteger {
+        /// Default.
+        default: &'static str,
+        /// Least.
+        min: i64,
+        /// Greatest.
+        max: i64,
+    },
     /// A real number or `auto`.
     #[serde(rename = "optional-real")]
     OptionalReal {
@@ -94,6 +104,11 @@ impl From<&Parameter> for Row {
         let values = match parameter.kind {
             ParamKind::Integer { min, max, default } => Range::Integer { default, min, max },
             ParamKind::Real { min, max, default } => Range::Real { default, min, max },
+            ParamKind::OptionalInteger { min, max } => Range::OptionalInteger {
+                default: Parameter::AUTO,
+                min,
+                max,
+            },
             ParamKind::OptionalReal { min, max } => Range::OptionalReal {
                 default: Parameter::AUTO,
                 min,

@@ -57,6 +57,10 @@ fn columns(row: &Row) -> [String; 4] {
     let (default, range) = match row.values {
         Range::Integer { default, min, max } => (default.to_string(), format!("{min} to {}", greatest(max))),
         Range::Real { default, min, max } => (default.to_string(), format!("{} to {}", real(min), real(max))),
+        Range::OptionalInteger { default, min, max } => (
+            default.to_owned(),
+            format!("{default} or {min} to {}", greatest(max)),
+        ),
         Range::OptionalReal { default, min, max } => (
             default.to_owned(),
             format!("{default} or {} to {}", real(min), real(max)),

@@ -6,6 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::Error;
 
+/// The most evaluations at once.
+const MOST_PARALLEL: usize = 65_536;
+
 /// The limits of a time slice. The first limit reached ends it.
 ///
 /// ```
@@ -24,6 +27,9 @@ pub struct Budget {
     pub hits: Option<u64>,
     /// Evaluations to which schedules relate, if not the budget itself.
     pub horizon: Option<u64>,
+    /// How many evaluations can go on at once, where that is known.
+    #[serde(default)]
+    pub parallel: Option<usize>,
     /// A flag that cancels the slice.
     #[serde(skip)]
     pub cancel: Option<Cancel>,
@@ -102,6 +108,28 @@ impl Budget {
         self
     }
 
+    /// Says how many evaluations can go on at once: the number of workers or threads, 1 by default.
+    ///
+    /// An engine that decides by itself how many points to propose at a time proposes at least so many, so that no worker waits. One
+    /// that proposes fewer learns from each outcome before the next point. The number is part of the search, like a seed: reports
+    /// depend on it, and not on how many threads or workers there really are.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Budget, Search, Space};
+    ///
+    /// // 400 simulations, eight at a time.
+    /// let ring = from_fn(Space::cube(2, -2.0, 2.0)?, 0.05, |x: &[f64]| (x[0].hypot(x[1]) - 1.0).abs());
+    /// let mut search = Search::new();
+    /// let mut slice = search.start(&ring, &Budget::evaluations(400).with_parallel(8))?;
+    /// assert!(slice.ask()?.len() >= 8);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_parallel(mut self, evaluations: usize) -> Self {
+        self.parallel = Some(evaluations);
+        self
+    }
+
     /// # Errors
     /// [`Error::Budget`] if nothing limits the slice, or if a limit is zero.
     pub(crate) fn check(&self) -> Result<(), Error> {
@@ -128,6 +156,12 @@ impl Budget {
         }
         if self.horizon == Some(0) {
             return Err(Error::Budget("the horizon is zero: give at least 1 evaluation"));
+        }
+        if self
+            .parallel
+            .is_some_and(|parallel| !(1..=MOST_PARALLEL).contains(&parallel))
+        {
+            return Err(Error::Budget("evaluations at once are from 1 to 65536"));
         }
         Ok(())
     }

@@ -59,6 +59,19 @@ pub trait Context<S: Real> {
         None
     }
 
+    /// How many evaluations can go on at once: what the [budget says](crate::Budget::with_parallel); where tickets are answered in
+    /// any order, at least as many as are out or asked for; the number of threads where only the clock limits the slice. 1 where nothing
+    /// is known.
+    fn parallel(&self) -> usize {
+        1
+    }
+
+    /// Mean seconds that an evaluation has taken so far, thinking included, as of the last look at the clock. `None` where evaluations
+    /// are limited, so that such a search does not depend on the clock, and before the first one.
+    fn seconds_an_evaluation(&self) -> Option<f64> {
+        None
+    }
+
     /// Number of hits of the slice before this one, C_prev.
     fn previous_hits(&self) -> usize;
 

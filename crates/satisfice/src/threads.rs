@@ -19,16 +19,31 @@ pub(crate) struct Threads {
     helpers: Mutex<Option<Arc<rayon::ThreadPool>>>,
 }
 
+#[cfg(feature = "rayon")]
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, core::num::NonZero::get)
+}
+
 impl Threads {
     /// So many threads, 0 for as many as there are cores. Without the feature `rayon` always one.
     #[cfg(feature = "rayon")]
     pub(crate) fn new(threads: usize) -> Result<Self, Error> {
-        let cores = std::thread::available_parallelism().map_or(1, core::num::NonZero::get);
-        let most = if threads == 0 { cores } else { threads };
+        let most = Self::most(threads);
         Ok(Self {
             most,
-            helpers: Mutex::new(Self::start(most.min(cores))?),
+            helpers: Mutex::new(Self::start(most.min(cores()))?),
         })
+    }
+
+    /// How many threads that is.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn most(threads: usize) -> usize {
+        if threads == 0 { cores() } else { threads }
+    }
+
+    #[cfg(not(feature = "rayon"))]
+    pub(crate) fn most(_threads: usize) -> usize {
+        1
     }
 
     #[cfg(not(feature = "rayon"))]

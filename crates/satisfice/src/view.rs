@@ -284,6 +284,14 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         let spent = self.ledger.counts.evaluations + self.calls.bounds.get();
         horizon.or(*evaluations).map(|limit| limit.saturating_sub(spent))
     }
+    fn parallel(&self) -> usize {
+        self.ledger.budget.parallel.unwrap_or(1).max(self.ledger.at_once)
+    }
+    fn seconds_an_evaluation(&self) -> Option<f64> {
+        let made = self.ledger.counts.evaluations;
+        let timed = made > 0 && self.evaluations_planned().is_none();
+        timed.then(|| self.ledger.clock.seen().as_secs_f64() / made as f64)
+    }
     fn previous_hits(&self) -> usize {
         self.previous.len()
     }

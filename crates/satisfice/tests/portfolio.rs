@@ -31,7 +31,8 @@ fn hits(
 }
 
 /// 9^3 = 729 minima, one for each choice of nine places on three axes; uneven ones, because on a grid translations would do as
-/// well. With recombination 2,187 of 2,187 when this was written, without it 260.
+/// well. All of them are found in 20,000 evaluations; in 6,000, six times as many with recombination as without when this was
+/// written: 1,997 and 334.
 #[test]
 fn recombination_finds_a_product_of_places() {
     let valleys = |x: &[f64]| {
@@ -40,11 +41,11 @@ fn recombination_finds_a_product_of_places() {
             .sum()
     };
     let space = Space::cube(3, 0.0, 1.0).unwrap();
-    let (with, without) = (
-        hits("none", 30_000, &space, 1e-4, valleys),
-        hits("recombination", 30_000, &space, 1e-4, valleys),
-    );
-    assert!(with == 3 * 729 && with > 4 * without, "{with} {without}");
+    let all = hits("none", 20_000, &space, 1e-4, valleys);
+    assert_eq!(all, 3 * 729);
+    let with = hits("none", 6_000, &space, 1e-4, valleys);
+    let without = hits("recombination", 6_000, &space, 1e-4, valleys);
+    assert!(with > 4 * without, "{with} {without}");
 }
 
 /// A cusp of fractal walls, as steep as |x|^0.63 on every scale. With the other local searches left out, nothing but the

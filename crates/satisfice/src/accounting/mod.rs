@@ -38,6 +38,8 @@ pub(crate) struct Ledger<T> {
     alarm: Option<Alarm>,
     /// Time since the start at which an evaluation of a batch returns early, so that it can be saved.
     pub(crate) hold: Option<Duration>,
+    /// How many evaluations go on at once as far as the search knows, beside what the budget says.
+    pub(crate) at_once: usize,
     /// When the next points of the trace are due, by evaluations and by time.
     next_count: u64,
     next_time: Duration,
@@ -94,6 +96,7 @@ impl<T> Ledger<T> {
             shared_calls: 0,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             hold: None,
+            at_once: 1,
             next_count: next,
             next_time: next_time(budget, elapsed),
             next_progress: elapsed.saturating_add(PROGRESS_EVERY),

@@ -24,6 +24,13 @@ pub enum ParamKind {
         /// Default.
         default: f64,
     },
+    /// A whole number in `[min, max]`, or `auto`, which is the default.
+    OptionalInteger {
+        /// Least.
+        min: i64,
+        /// Greatest.
+        max: i64,
+    },
     /// A finite real number in `[min, max]`, or `auto`, which is the default.
     OptionalReal {
         /// Least.
@@ -132,7 +139,7 @@ impl Parameter {
         match self.kind {
             ParamKind::Integer { default, .. } => default.to_string(),
             ParamKind::Real { default, .. } => default.to_string(),
-            ParamKind::OptionalReal { .. } => Self::AUTO.to_owned(),
+            ParamKind::OptionalInteger { .. } | ParamKind::OptionalReal { .. } => Self::AUTO.to_owned(),
             ParamKind::Choice { default, .. } | ParamKind::Text { default } => default.to_owned(),
         }
     }
@@ -143,6 +150,9 @@ impl Parameter {
         match self.kind {
             ParamKind::Integer { min, max, .. } => format!("a whole number from {min} to {max}"),
             ParamKind::Real { min, max, .. } => format!("a number from {min} to {max}"),
+            ParamKind::OptionalInteger { min, max } => {
+                format!("{} or a whole number from {min} to {max}", Self::AUTO)
+            }
             ParamKind::OptionalReal { min, max } => format!("{} or a number from {min} to {max}", Self::AUTO),
             ParamKind::Choice { of, .. } => format!("one of {}", of.join(", ")),
             ParamKind::Text { .. } => "any text".to_owned(),
@@ -162,7 +172,10 @@ impl Parameter {
     pub(crate) fn parse(&self, text: &str) -> Result<ParamValue, Error> {
         let bad = || Error::parameter(self.name, text, self.allowed());
         match self.kind {
-            ParamKind::Integer { min, max, .. } => {
+            ParamKind::OptionalInteger { .. } | ParamKind::OptionalReal { .. } if text == Self::AUTO => {
+                Ok(ParamValue::Text(text.to_owned()))
+            }
+            ParamKind::Integer { min, max, .. } | ParamKind::OptionalInteger { min, max } => {
                 let value = text.parse::<i64>().ok().or_else(|| whole(text)).ok_or_else(bad)?;
                 if (min..=max).contains(&value) {
                     Ok(ParamValue::Integer(value))
@@ -170,7 +183,6 @@ impl Parameter {
                     Err(bad())
                 }
             }
-            ParamKind::OptionalReal { .. } if text == Self::AUTO => Ok(ParamValue::Text(text.to_owned())),
             ParamKind::Real { min, max, .. } | ParamKind::OptionalReal { min, max } => {
                 let value = text.parse::<f64>().map_err(|_| bad())?;
                 // NaN is in no range.

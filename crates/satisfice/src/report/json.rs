@@ -40,6 +40,8 @@ struct Limits {
     slices: u64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     horizon: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    parallel: Option<usize>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -63,6 +65,7 @@ impl Run {
                 hits: report.budget.hits,
                 slices: 1,
                 horizon: report.budget.horizon,
+                parallel: report.budget.parallel,
             },
             requested_probe_share: report.requested_probe_share,
             islands: report.islands,
@@ -112,6 +115,7 @@ impl<'de, T: Deserialize<'de> + Identity> Deserialize<'de> for Report<T> {
                 evaluations: run.spec.budget.evaluations,
                 hits: run.spec.budget.hits,
                 horizon: run.spec.budget.horizon,
+                parallel: run.spec.budget.parallel,
                 cancel: None,
             },
             threshold: run.threshold,

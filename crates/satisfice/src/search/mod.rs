@@ -190,8 +190,9 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. Needs the feature `rayon`;
     /// without it one thread works. Reports under a budget of evaluations do not depend on it.
     ///
-    /// With one lane, threads share each batch that is worth it; an engine that proposes one point at a time keeps one of
-    /// them busy. With several [islands](Search::islands), threads share the lanes.
+    /// With one lane, threads share each batch that is worth it. [`Budget::with_parallel`] tells the engine how large batches have to
+    /// be; under a limit of time alone, it is the number of threads. An engine that proposes one point at a time keeps one of them
+    /// busy. With several [islands](Search::islands), threads share the lanes.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;
@@ -415,6 +416,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             exchange,
         };
         let starts = self.take_starts(problem);
+        let at_once = self.threads_at_once(budget);
         for (number, mut lane) in core::mem::take(&mut self.lanes).into_iter().enumerate() {
             let (own_budget, own_probes) = match &running.exchange {
                 Some(_) => (
@@ -430,6 +432,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
                 to_verify(number),
                 Reached::default(),
             );
+            slice.ledger.at_once = at_once;
             slice.starts = starts[lanes::verified_by(number, count, starts.len())].concat();
             if own_budget.evaluations == Some(0) {
                 slice.ledger.stop = Some(StopReason::Evaluations); // fewer evaluations than lanes
@@ -440,6 +443,17 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         }
         running.pause_for_exchange();
         Ok(running)
+    }
+
+    /// Where only the clock limits a slice, its report depends on the machine anyway: then as many evaluations go on at once as there
+    /// are threads, unless the budget says how many.
+    pub(super) fn threads_at_once(&self, budget: &Budget) -> usize {
+        let free = budget.evaluations.or(budget.horizon).is_none() && budget.parallel.is_none();
+        if free && self.islands == 1 {
+            Threads::most(self.threads)
+        } else {
+            1
+        }
     }
 
     /// The positions that the slice evaluates first.

@@ -111,7 +111,10 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             saved.check(&Fingerprint::of(problem))?;
         }
         let running = self.unfinished.take();
-        let running = running.ok_or_else(|| Error::State("no slice has begun".to_owned()))?;
+        let mut running = running.ok_or_else(|| Error::State("no slice has begun".to_owned()))?;
+        for lane in &mut running.lanes {
+            lane.slice.ledger.at_once = self.threads_at_once(&lane.slice.ledger.budget);
+        }
         self.resumed = false;
         Ok(Stepper::new(self, problem, running))
     }

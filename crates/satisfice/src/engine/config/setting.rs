@@ -5,7 +5,7 @@ use core::ops::RangeInclusive;
 use crate::catalogue::{ParamKind, ParamValue, Parameter};
 use crate::error::Error;
 
-/// A type that a field of an engine's settings may have: `usize`, `u64`, `f64`, `Option<f64>`, `bool`, or an enum declared by
+/// A type that a field of an engine's settings may have: `usize`, `u64`, `f64`, `Option<usize>`, `Option<f64>`, `bool`, or an enum declared by
 /// [`engine_choice!`](crate::engine_choice).
 pub trait Setting: Sized {
     /// What limits the values: a range for numbers, `()` for others.
@@ -75,6 +75,32 @@ impl Setting for f64 {
 
     fn text(&self) -> String {
         self.to_string()
+    }
+}
+
+/// `None` is `auto` on the command line.
+impl Setting for Option<usize> {
+    type Range = RangeInclusive<i64>;
+
+    fn kind(_: &Self, range: Self::Range) -> ParamKind {
+        let (min, max) = range.into_inner();
+        ParamKind::OptionalInteger { min, max }
+    }
+
+    fn read(row: &Parameter, text: &str) -> Result<Self, Error> {
+        match row.parse(text)? {
+            ParamValue::Integer(value) => {
+                let value = usize::try_from(value);
+                value
+                    .map(Some)
+                    .map_err(|_| Error::parameter(row.name, text, row.allowed()))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    fn text(&self) -> String {
+        self.map_or_else(|| Parameter::AUTO.to_owned(), |value| value.to_string())
     }
 }
 

@@ -236,8 +236,9 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
             self.started = true;
             self.enter(context, context.space().region(), S::neg_infinity(), out);
         }
-        // Few enough that the clock is read in between.
-        for _ in 0..(points_at_once(context.space().dimension()) / 4).max(1) {
+        // Few enough that the clock is read in between, and no more than the points that are wanted at once.
+        let work = points_at_once(context.space().dimension()) / 4;
+        for _ in 0..work.min(self.batch).max(1) {
             let next = self.depth_first.pop().or_else(|| self.best_first.pop());
             let Some(node) = next else { break };
             self.open(context, node, out);

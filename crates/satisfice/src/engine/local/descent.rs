@@ -51,7 +51,7 @@ impl EngineConfig for Descent {
 
 /// The engine of [`Descent`].
 #[derive(Debug)]
-pub(super) struct RestartedDescent<S> {
+pub(in crate::engine) struct RestartedDescent<S> {
     first_step: S,
     shortest: S,
     /// Empty before a start point has been told.
@@ -78,7 +78,7 @@ const STARTS: usize = 1024;
 
 impl<S: Real> RestartedDescent<S> {
     /// A descent with compass steps from `step` to `shortest`, as shares of each axis.
-    pub(super) fn new(step: f64, shortest: f64) -> Self {
+    pub(in crate::engine) fn new(step: f64, shortest: f64) -> Self {
         Self {
             first_step: S::of(step),
             shortest: S::of(shortest),
@@ -102,7 +102,7 @@ impl<S: Real> RestartedDescent<S> {
     }
 
     /// Ends the descent; the next one starts at a uniform point.
-    pub(super) fn restart(&mut self) {
+    pub(in crate::engine) fn restart(&mut self) {
         self.point.clear();
         self.neighbours = None;
     }
@@ -135,7 +135,12 @@ impl<S: Real> RestartedDescent<S> {
     }
 
     /// Proposes the next neighbour, or a uniform point.
-    pub(super) fn propose(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
+    pub(in crate::engine) fn propose(
+        &mut self,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) {
         let dimension = out.dimension();
         loop {
             // A restored point may be of another space.
@@ -206,8 +211,7 @@ impl<S: Real> RestartedDescent<S> {
     }
 
     /// Goes on from what became of the proposal.
-    pub(super) fn learn(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
-        let (position, outcome) = (batch.point(0), outcomes[0]);
+    pub(in crate::engine) fn learn(&mut self, position: &[S], outcome: Outcome<S>) {
         if outcome.is_hit() {
             return self.restart();
         }
@@ -286,7 +290,7 @@ impl<S: Real> Engine<S> for RestartedDescent<S> {
 
     fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         match origin {
-            Origin::Engine => self.learn(batch, outcomes),
+            Origin::Engine => self.learn(batch.point(0), outcomes[0]),
             Origin::Start => self.keep_starts(batch, outcomes),
             Origin::WarmStart | Origin::Exhaustion => {}
         }

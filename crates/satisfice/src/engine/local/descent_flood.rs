@@ -78,7 +78,7 @@ impl<S: Real> Engine<S> for FloodingDescent<S> {
     fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         self.flood.add_hits(batch, outcomes);
         if origin == Origin::Engine && !self.flooding {
-            self.descent.learn(batch, outcomes);
+            self.descent.learn(batch.point(0), outcomes[0]);
         } else if origin == Origin::Start {
             self.descent.keep_starts(batch, outcomes);
         }

@@ -1,6 +1,7 @@
 //! Sampling and local search.
 
-mod descent;
+mod bandit;
+pub(super) mod descent;
 mod descent_flood;
 pub(super) mod flood;
 pub(super) mod luby;

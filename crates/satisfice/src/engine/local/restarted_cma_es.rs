@@ -1,11 +1,11 @@
 //! Restarted (1+1)-CMA-ES with recombination of hits: for the many optima of a function of continuous coordinates.
 
+use super::bandit::Arm;
 use super::luby::luby;
 use super::one_plus_one::Mutation;
 use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::portfolio::bandit::Arm;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;

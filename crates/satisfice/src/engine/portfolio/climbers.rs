@@ -93,31 +93,22 @@ pub(super) struct Climbers<S> {
     restarts: u64,
     next: usize,
     proposed: usize,
+    active: usize,
     /// The best near miss offered since the last start at one, and its fitness; infinite where there is none.
     offered: Vec<S>,
     offered_fitness: S,
 }
 
 impl<S: Real> Climbers<S> {
-    /// `count` searches at a time: as many candidates of a batch may come from them.
-    pub(super) fn new(count: usize) -> Self {
-        let climber = Climber {
-            position: Vec::new(),
-            fitness: S::infinity(),
-            running: false,
-            stalled: 0,
-            patience: 0,
-            mutation: Mutation::default(),
-            neighbours: None,
-            last: None,
-        };
+    pub(super) fn new() -> Self {
         Self {
-            climbers: vec![climber; count],
+            climbers: Vec::new(),
             moves: Moves::default(),
             integer_axes: Vec::new(),
             restarts: 0,
             next: 0,
             proposed: 0,
+            active: 1,
             offered: Vec::new(),
             offered_fitness: S::infinity(),
         }
@@ -126,9 +117,8 @@ impl<S: Real> Climbers<S> {
     pub(super) fn begin(&mut self, context: &dyn Context<S>) {
         let axes = context.space().axes();
         self.integer_axes = (0..axes.len()).filter(|&j| axes[j].is_integer()).collect();
-        for climber in &mut self.climbers {
-            climber.running = false;
-        }
+        self.climbers.clear();
+        self.next = 0;
         self.offered_fitness = S::infinity();
     }
 
@@ -160,9 +150,22 @@ impl<S: Real> Climbers<S> {
         Ok(())
     }
 
-    /// A new batch begins.
-    pub(super) fn begin_batch(&mut self) {
+    /// A new batch begins, for which so many of the climbers propose.
+    pub(super) fn begin_batch(&mut self, active: usize) {
         self.proposed = 0;
+        self.active = active.max(1);
+        while self.climbers.len() < self.active {
+            self.climbers.push(Climber {
+                position: Vec::new(),
+                fitness: S::infinity(),
+                running: false,
+                stalled: 0,
+                patience: 0,
+                mutation: Mutation::default(),
+                neighbours: None,
+                last: None,
+            });
+        }
     }
 
     /// Proposes for the next climber and names it, unless every one has proposed in this batch.
@@ -173,12 +176,12 @@ impl<S: Real> Climbers<S> {
         rng: &mut SearchRng,
         out: &mut Batch<S>,
     ) -> Option<usize> {
-        if self.proposed == self.climbers.len() {
+        if self.proposed == self.active {
             return None;
         }
         self.proposed += 1;
-        let index = self.next;
-        self.next = (index + 1) % self.climbers.len();
+        let index = self.next % self.active;
+        self.next = (index + 1) % self.active;
         let climber = &mut self.climbers[index];
         if !climber.running {
             self.restarts += 1;

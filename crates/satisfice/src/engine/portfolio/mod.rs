@@ -1,7 +1,8 @@
 //! The default engine: sources of candidates that compete for evaluations by their yield.
 
-pub(super) mod bandit;
 mod climbers;
+pub(super) mod credit;
+mod guests;
 mod moves;
 mod near_misses;
 mod neighbourhoods;
@@ -22,6 +23,8 @@ use crate::{engine_choice, engine_settings};
 engine_choice! {
     /// When the neighbours that a problem names become candidates of [`Portfolio`].
     pub enum NeighbourTiming {
+        /// At once under a limit of evaluations, late under one of time alone.
+        Auto = "auto",
         /// At once: most hits for each evaluation.
         AtOnce = "at-once",
         /// When it is their turn: a fraction of the time, for a fitness of less than a few microseconds with dozens of
@@ -45,7 +48,7 @@ engine_choice! {
         Steps = "steps",
         /// New steps, learned from differences of hits.
         Learning = "learning",
-        /// Recombinations of two hits.
+        /// Recombinations of two hits, and (1+1)-CMA-ES, which recombines them, too.
         Recombination = "recombination",
         /// The neighbours that the problem names.
         Neighbours = "neighbours",
@@ -55,25 +58,28 @@ engine_choice! {
 }
 
 engine_settings! {
-    /// A portfolio of sources of candidates, which compete by their yield:
+    /// A portfolio of sources of candidates, which compete for evaluations by their yield:
     ///
-    /// - uniform points, on a lattice without repetition, so that a small one is covered and the result proved complete;
-    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012;
-    /// - restarted local searches by adaptive moves: along integer axes, to the problem's own neighbours, by a covariance-adapting
-    ///   (1+1) strategy along continuous axes; a search that returns to a known hit ends at once;
-    /// - steps that have led from hit to hit, applied to every hit: the short ones fill neighbourhoods, those learned from
-    ///   differences of hits follow repetitions and manifolds of hits;
-    /// - recombinations of two hits, which find the rest of a product of sets of coordinates; local searches start at those that
-    ///   just miss;
-    /// - populations that adapt their covariance, on continuous axes;
-    /// - the neighbours that the problem names, best first by predicted fitness, from hits and across near misses;
+    /// - restarted descents over neighbours and compass steps, and (1+1)-CMA-ES with recombination of hits on continuous axes;
+    /// - a Gaussian process where F is expensive: where at most 500 evaluations are planned, or where an evaluation takes more than
+    ///   5 ms and only time is limited;
+    /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
+    /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most
+    ///   4,096 points is enumerated at once, a larger one once it is half visited or the budget asks for it;
+    /// - from hits: a flood fill on continuous axes, steps that have led from hit to hit, steps learned from differences of hits,
+    ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness;
+    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012; local searches by adaptive moves; populations
+    ///   that adapt their covariance; uniform points, on a lattice without repetition;
     /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
     ///   hits.
     ///
-    /// The next source is drawn by Thompson sampling on fading counts of hits. No parameter depends on the problem.
+    /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
+    /// share until something hits; any other source that finds nothing takes at most 4 % of the evaluations. All of them learn the
+    /// hits of the others. No parameter depends on the problem.
     pub struct Portfolio {
-        /// Candidates proposed at once, at most: few learn sooner, many feed more threads.
-        pub batch: usize = 32, 1..=65_536;
+        /// Candidates proposed at once. By default as many as evaluations [can go on at once](crate::Budget::with_parallel), 4 in the
+        /// first batch, and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
+        pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.
         pub swarms: usize = 6, 1..=1000;
         /// Particles N of each swarm.
@@ -84,7 +90,7 @@ engine_settings! {
         pub restart: usize = 1000, 1..=1_000_000_000;
         /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time
         /// on a cheap fitness with dozens of neighbours.
-        pub neighbours: NeighbourTiming = NeighbourTiming::AtOnce;
+        pub neighbours: NeighbourTiming = NeighbourTiming::Auto;
         /// A source to leave out, for ablation.
         pub without: Omitted = Omitted::Nothing;
     }
@@ -92,7 +98,7 @@ engine_settings! {
 
 impl EngineConfig for Portfolio {
     const NAME: &'static str = "portfolio";
-    const SUMMARY: &'static str = "swarms, local searches, recombined hits, learned steps and uniform points that compete for evaluations by their yield";
+    const SUMMARY: &'static str = "descents, CMA-ES, a model of expensive F, regions, flood fill, recombined hits and swarms that compete for evaluations by their yield";
     const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012";
 
     /// Whether a space is enumerated depends on how much the budget has left.

@@ -33,7 +33,10 @@ impl<S: Real> Misses<S> {
             order.truncate(count);
         }
         order.sort_unstable_by(rank);
-        let mut best = Self::default();
+        let mut best = Self {
+            fitness: Vec::with_capacity(order.len()),
+            positions: Vec::with_capacity(order.len() * dimension),
+        };
         for index in order {
             best.push(self.fitness[index], self.row(index, dimension));
         }

@@ -9,9 +9,6 @@ use crate::context::{Context, points_at_once};
 use crate::scalar::Real;
 use crate::state::{Reader, Saved, State};
 
-/// Past trials are halved at this number. Long, because it takes many trials to cross a gap between patches
-/// of hits.
-const MEMORY: f64 = 1000.0;
 /// Once so many candidates are known, only hits are expanded: some 60 MB at two axes.
 const MOST: usize = 1 << 20;
 
@@ -60,34 +57,23 @@ pub(super) struct Neighbourhoods<S> {
     table: HashTable<u32>,
     heap: BinaryHeap<Entry>,
     entries: u64,
-    trials: f64,
-    hits: f64,
     /// Sum and number of the fitness of evaluated candidates.
     sum: f64,
     count: f64,
 }
 
 impl<S: Real> Neighbourhoods<S> {
-    pub(super) fn new(lazy: bool) -> Self {
-        Self {
-            lazy,
-            ..Self::default()
-        }
-    }
-
-    /// Forgets all.
-    pub(super) fn begin(&mut self) {
+    /// Forgets all; from now on lazy or not.
+    pub(super) fn begin(&mut self, lazy: bool) {
         *self = Self {
-            lazy: self.lazy,
-            trials: 2.0,
-            hits: 1.0,
+            lazy,
             ..Self::default()
         };
     }
 
-    /// Rate of hits lately as `(hits, trials)`, if there is a candidate to try.
-    pub(super) fn posterior(&self) -> Option<(f64, f64)> {
-        (!self.heap.is_empty()).then_some((self.hits, self.trials))
+    /// Whether there is a candidate to try.
+    pub(super) fn has_more(&self) -> bool {
+        !self.heap.is_empty()
     }
 
     /// Takes note of the hits of a batch, and of the misses that are near to a hit, by their place in the batch.
@@ -212,13 +198,7 @@ impl<S: Real> Neighbourhoods<S> {
     }
 
     /// Counts a candidate and its fitness.
-    pub(super) fn count(&mut self, fitness: S, hit: bool) {
-        self.trials += 1.0;
-        self.hits += f64::from(u8::from(hit));
-        if self.trials > MEMORY {
-            self.trials *= 0.5;
-            self.hits *= 0.5;
-        }
+    pub(super) fn count(&mut self, fitness: S) {
         if fitness.is_finite() {
             self.sum += fitness.f64();
             self.count += 1.0;
@@ -233,14 +213,14 @@ impl<S: Real> Neighbourhoods<S> {
         // The order inside a heap does not matter: equal entries do not occur.
         self.heap.clone().into_sorted_vec().save(state);
         self.entries.save(state);
-        [self.trials, self.hits, self.sum, self.count].save(state);
+        [self.sum, self.count].save(state);
     }
     pub(super) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), crate::Error> {
         self.candidates = from.read()?;
         self.positions = from.read()?;
         self.heap = from.read::<Vec<Entry>>()?.into();
         self.entries = from.read()?;
-        [self.trials, self.hits, self.sum, self.count] = from.read()?;
+        [self.sum, self.count] = from.read()?;
         self.table = HashTable::new();
         let candidates = &self.candidates;
         for (index, candidate) in (0..).zip(candidates) {

@@ -22,10 +22,14 @@ pub(super) enum Source {
     Neighbour,
     /// A near miss of the slice before.
     NearMiss,
+    /// A descent over neighbours.
+    Descent,
+    /// A whole engine.
+    Guest,
 }
 
-/// The names of all sources, in their order.
-const NAMES: [&str; 9] = [
+/// The names of all sources, in their order; whole engines last, in theirs.
+const NAMES: [&str; 14] = [
     "uniform",
     "swarms",
     "climbers",
@@ -35,6 +39,11 @@ const NAMES: [&str; 9] = [
     "populations",
     "neighbours",
     "near misses",
+    "descents",
+    "CMA-ES",
+    "flood fill",
+    "regions",
+    "model",
 ];
 
 /// What each source has proposed and found since the slice began.
@@ -42,8 +51,9 @@ const NAMES: [&str; 9] = [
 pub(super) struct Tally([[u64; 2]; NAMES.len()]);
 
 impl Tally {
-    pub(super) fn count<S: Real>(&mut self, source: Source, outcome: Outcome<S>) {
-        let [proposed, hits] = &mut self.0[source as usize];
+    /// Counts a candidate of the source with this place among the names.
+    pub(super) fn count<S: Real>(&mut self, place: usize, outcome: Outcome<S>) {
+        let [proposed, hits] = &mut self.0[place];
         *proposed += u64::from(outcome != Outcome::NotEvaluated);
         *hits += u64::from(outcome.is_hit());
     }
@@ -60,12 +70,15 @@ impl Tally {
 pub(super) type Tag = (Source, usize);
 
 /// Number of sources with an arm, and some of these.
-pub(super) const ARMS: usize = 6;
+pub(super) const ARMS: usize = 9;
 pub(super) const TRIAL: usize = 3;
 pub(super) const CROSS: usize = 4;
 pub(super) const MEMBER: usize = 5;
+pub(super) const DESCENT: usize = 6;
+pub(super) const STEP: usize = 7;
+pub(super) const NEIGHBOUR: usize = 8;
 
-/// The arm of a source; steps, neighbours and near misses keep their own counts.
+/// The arm of a source; near misses and whole engines keep their own counts.
 pub(super) fn arm_of(source: Source) -> Option<usize> {
     match source {
         Source::Uniform => Some(0),
@@ -74,6 +87,9 @@ pub(super) fn arm_of(source: Source) -> Option<usize> {
         Source::Trial => Some(TRIAL),
         Source::Cross => Some(CROSS),
         Source::Member => Some(MEMBER),
-        Source::Step | Source::Neighbour | Source::NearMiss => None,
+        Source::Descent => Some(DESCENT),
+        Source::Step => Some(STEP),
+        Source::Neighbour => Some(NEIGHBOUR),
+        Source::NearMiss | Source::Guest => None,
     }
 }

@@ -1,41 +1,63 @@
 //! The engine of the portfolio: which source is asked, and what its outcomes teach.
 
-use super::bandit::{Arm, draw};
+mod proposals;
+
+use proposals::SCANNED;
+
 use super::climbers::Climbers;
+use super::credit::{Credit, draw};
+use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
 use super::scan::Scan;
-use super::source::{ARMS, CROSS, MEMBER, Source, TRIAL, Tag, Tally, arm_of};
+use super::source::{ARMS, CROSS, DESCENT, MEMBER, NEIGHBOUR, STEP, Source, TRIAL, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
 use super::{NeighbourTiming, Omitted, Portfolio};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::local::recombination::recombine;
+use crate::engine::local::descent::RestartedDescent;
 use crate::engine::{Ask, Engine, Origin};
 use crate::error::Error;
 use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::state::{Reader, Saved, State};
+use crate::state::{Part, Reader, State};
 
 /// A batch is given up after so many choices of a source that gave no candidate.
 const REJECTED: usize = 100;
-/// Points of an enumeration that are proposed at once.
-const SCANNED: usize = 256;
+/// Points of the first batch, at least: none of them could learn of the others.
+const FIRST: usize = 4;
+/// Batches grow by a point each so many evaluations, up to so many points: small ones learn sooner, large ones cost less time.
+const SLOW: usize = 2048;
+const LARGEST: usize = 32;
+/// A choice of source lasts a candidate more each so many evaluations, until it lasts so many: a choice costs time.
+const TURN: u64 = 128;
+const LONGEST_TURN: u64 = 8;
 /// Share of the evaluations that estimates how complete the result is.
 const PROBES: f64 = 0.02;
 
 /// The engine of [`Portfolio`].
 #[derive(Debug)]
 pub(super) struct Sources<S> {
+    /// Candidates proposed at once: as the user says, and now.
+    asked_for: Option<usize>,
     batch: usize,
-    /// Candidates that come from one choice of source.
+    /// Candidates of a batch that come from one choice of source.
     block: usize,
+    /// The source chosen last, and how many more candidates are to come from it.
+    chosen: Option<(Tag, u64)>,
+    timing: NeighbourTiming,
     without: Omitted,
-    arms: [Arm; ARMS],
+    arms: [Credit; ARMS],
+    /// All of them, and the guests, together.
+    whole: Credit,
+    descents: Vec<RestartedDescent<S>>,
+    next_descent: usize,
+    descended: usize,
+    guests: Guests<S>,
     hits: Vec<S>,
     visited: Option<Visited>,
     /// The lattice point by point, once so many are visited that uniform draws mostly repeat, or if the budget has room for all.
@@ -54,12 +76,18 @@ pub(super) struct Sources<S> {
 
 impl<S: Real> Sources<S> {
     pub(super) fn new(settings: &Portfolio) -> Self {
-        let block = settings.batch.div_ceil(4);
         Self {
-            batch: settings.batch,
-            block,
+            asked_for: settings.batch,
+            batch: 1,
+            block: 1,
+            chosen: None,
             without: settings.without,
-            arms: [Arm::default(); ARMS],
+            arms: [Credit::default(); ARMS],
+            whole: Credit::default(),
+            descents: Vec::new(),
+            next_descent: 0,
+            descended: 0,
+            guests: Guests::new(),
             hits: Vec::new(),
             visited: None,
             scan: Scan::default(),
@@ -69,10 +97,11 @@ impl<S: Real> Sources<S> {
                 settings.alpha,
                 settings.restart,
             ),
-            climbers: Climbers::new(block),
+            climbers: Climbers::new(),
             populations: Populations::new(),
             steps: None,
-            neighbourhoods: Neighbourhoods::new(settings.neighbours == NeighbourTiming::Late),
+            neighbourhoods: Neighbourhoods::default(),
+            timing: settings.neighbours,
             near_misses: NearMisses::new(),
             tags: Vec::new(),
             tally: Tally::default(),
@@ -85,234 +114,64 @@ impl<S: Real> Sources<S> {
         self.hits.len() / self.position.len().max(1)
     }
 
+    /// The source chosen last, as long as its turn lasts, else a new choice; and how many candidates are to come from it.
+    fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
+        if let Some((tag, left @ 1..)) = self.chosen
+            && !(tag.0 == Source::Guest && self.guests.has_part(tag.1))
+        {
+            return (tag, left);
+        }
+        let turn = (self.whole.evaluations() / TURN).min(LONGEST_TURN);
+        let chosen = (self.choose(rng), turn.max(self.block as u64));
+        self.chosen = Some(chosen);
+        chosen
+    }
+
     /// Draws a source, and which step of [`Source::Step`].
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
-        let mut best = (self.arms[0].draw(rng), (Source::Uniform, 0));
+        let price = self.whole.price();
+        let mut best = (self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
             if yields > best.0 {
                 best = (yields, tag);
             }
         };
-        if uses(Omitted::Swarms) {
-            offer(self.arms[1].draw(rng), (Source::Swarm, 0));
+        offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
+        let worth = |arm: &Credit| arm.is_worth_trying(&self.whole);
+        if uses(Omitted::Swarms) && worth(&self.arms[1]) {
+            offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
         }
-        if uses(Omitted::Climbers) {
-            offer(self.arms[2].draw(rng), (Source::Climber, 0));
+        if uses(Omitted::Climbers) && worth(&self.arms[2]) {
+            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
         }
-        if uses(Omitted::Populations) && self.populations.are_usable() {
-            offer(self.arms[MEMBER].draw(rng), (Source::Member, 0));
+        if uses(Omitted::Populations) && self.populations.are_usable() && worth(&self.arms[MEMBER]) {
+            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
         }
         let hits = self.hit_count();
-        if uses(Omitted::Learning) && hits >= 3 {
-            offer(self.arms[TRIAL].draw(rng), (Source::Trial, 0));
+        if uses(Omitted::Learning) && hits >= 3 && worth(&self.arms[TRIAL]) {
+            offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));
         }
-        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 {
-            offer(self.arms[CROSS].draw(rng), (Source::Cross, 0));
+        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && worth(&self.arms[CROSS]) {
+            offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
         }
         if uses(Omitted::Steps)
-            && let Some((index, good, all)) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
+            && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
         {
-            offer(draw(rng, good, all), (Source::Step, index));
+            offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
         }
-        if let Some((good, all)) = self.neighbourhoods.posterior() {
-            offer(draw(rng, good, all), (Source::Neighbour, 0));
+        if self.neighbourhoods.has_more() {
+            offer(self.arms[NEIGHBOUR].draw(price, 2.0, rng), (Source::Neighbour, 0));
         }
         if uses(Omitted::NearMisses)
             && let Some((good, all)) = self.near_misses.posterior()
         {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
+        for (index, arm, weight) in self.guests.arms(&self.whole) {
+            offer(arm.draw(price, weight, rng), (Source::Guest, index));
+        }
         best.1
-    }
-
-    /// Whether a position is inside and worth an evaluation: not proposed before, or not a known hit.
-    fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
-        let space = context.space();
-        let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
-            axis.start() <= x
-                && if axis.is_integer() {
-                    x < axis.end()
-                } else {
-                    x <= axis.end()
-                }
-        });
-        inside
-            && match &mut self.visited {
-                Some(visited) => visited.insert(space, &self.position),
-                None => !context.is_deleted(&self.position),
-            }
-    }
-
-    /// Proposes one candidate; `false` where the source has none left for this batch.
-    fn propose(
-        &mut self,
-        tag: Tag,
-        context: &dyn Context<S>,
-        rng: &mut SearchRng,
-        out: &mut Batch<S>,
-    ) -> bool {
-        let (source, index) = tag;
-        let proposed = match source {
-            Source::Swarm => self
-                .swarms
-                .propose(context.space(), self.visited.as_ref(), rng, out),
-            Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
-            Source::Member => self.populations.propose(context, rng, out),
-            Source::Uniform => {
-                if self.visited.as_ref().is_some_and(Visited::is_dense) {
-                    if !self.scan_on(context, rng) {
-                        return false;
-                    }
-                } else {
-                    rng.position(context.space(), &mut self.position);
-                    if !self.is_fresh(context) {
-                        return true; // this draw was rejected, the next may be accepted
-                    }
-                }
-                out.push(&self.position);
-                Some(0)
-            }
-            Source::Step => {
-                let Some(steps) = &mut self.steps else {
-                    return false;
-                };
-                if !steps.apply(index, &self.hits, &mut self.position) {
-                    return false;
-                }
-                if !self.is_fresh(context) {
-                    return true;
-                }
-                out.push(&self.position);
-                Some(index)
-            }
-            Source::Trial => {
-                if !self.draw_trial(rng) || !self.is_fresh(context) {
-                    // Counted like a miss, or an exhausted source would be asked forever.
-                    self.arms[TRIAL].count(false);
-                    return true;
-                }
-                out.push(&self.position);
-                self.trials
-                    .truncate((self.trials.len() / self.position.len()) * self.position.len());
-                Some(self.trials.len() / self.position.len() - 1)
-            }
-            Source::Cross => {
-                if !recombine(&self.hits, rng, &mut self.position) || !self.is_fresh(context) {
-                    self.arms[CROSS].count(false);
-                    return true;
-                }
-                out.push(&self.position);
-                Some(0)
-            }
-            Source::Neighbour | Source::NearMiss => {
-                let position = &mut self.position;
-                let is_there = match source {
-                    Source::Neighbour => self.neighbourhoods.propose(context, position),
-                    _ => self.near_misses.propose(position),
-                };
-                if !is_there {
-                    return false;
-                }
-                if !self.is_fresh(context) {
-                    return true;
-                }
-                out.push(&self.position);
-                Some(0)
-            }
-        };
-        let Some(index) = proposed else {
-            return false;
-        };
-        if matches!(source, Source::Swarm | Source::Climber)
-            && self.is_repeated(context, (source, index), out)
-        {
-            return true;
-        }
-        self.tags.push((source, index));
-        true
-    }
-
-    /// Takes back the last proposal of a swarm or a climber if that point was visited before, and tells it that nothing came of
-    /// it, which counts like a miss.
-    fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
-        let space = context.space();
-        let last = out.len() - 1;
-        let Some(visited) = &mut self.visited else {
-            return false;
-        };
-        space.keep_inside(out.point_mut(last));
-        if visited.insert(space, out.point(last)) {
-            return false;
-        }
-        match source {
-            Source::Swarm => self.swarms.tell(index, out.point(last), Outcome::NonFinite),
-            _ => self.climbers.tell(index, out.point(last), Outcome::NonFinite),
-        }
-        if let Some(arm) = arm_of(source) {
-            self.arms[arm].count(false);
-        }
-        out.truncate(last);
-        true
-    }
-
-    /// Goes on through the lattice to the next point that is not visited; `false` at its end.
-    fn scan_on(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
-        let Some(visited) = &mut self.visited else {
-            return false;
-        };
-        let space = context.space();
-        let found = self.scan.next(space, visited, rng, &mut self.position);
-        if found {
-            visited.insert(space, &self.position);
-        }
-        found
-    }
-
-    /// Enumerates the rest of the lattice, a block at a time.
-    fn enumerate(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
-        while out.len() < SCANNED && self.scan_on(context, rng) {
-            out.push(&self.position);
-        }
-        self.tags.resize(out.len(), (Source::Uniform, 0));
-        if self.scan.is_over() || self.visited.as_ref().is_some_and(Visited::is_all) {
-            Ask::Covered
-        } else {
-            Ask::More
-        }
-    }
-
-    /// Writes a hit moved by the difference of two others, and appends that difference to `trials`; `false` where it is zero.
-    /// Half of the pairs are neighbours in the order found, which are near to each other in space.
-    fn draw_trial(&mut self, rng: &mut SearchRng) -> bool {
-        let dimension = self.position.len();
-        let count = self.hit_count();
-        let (a, b) = (rng.below(count), rng.below(count));
-        let (reach, far) = rng.uniform_and_sign();
-        let c = if far {
-            rng.below(count)
-        } else {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
-            let apart = 1 + (8.0 * reach) as usize;
-            if b >= apart {
-                b - apart
-            } else {
-                (b + apart).min(count - 1)
-            }
-        };
-        let row = |hit: usize| &self.hits[hit * dimension..(hit + 1) * dimension];
-        let mut moves = false;
-        let start = self.trials.len();
-        for j in 0..dimension {
-            let difference = row(b)[j] - row(c)[j];
-            moves |= difference != S::zero();
-            self.trials.push(difference);
-            self.position[j] = row(a)[j] + difference;
-        }
-        if !moves {
-            self.trials.truncate(start);
-        }
-        moves
     }
 }
 
@@ -339,47 +198,94 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.scan = Scan::new(space);
         self.swarms.begin(dimension);
         self.climbers.begin(context);
+        self.descents.clear();
+        self.next_descent = 0;
+        self.arms = [Credit::default(); ARMS];
+        self.whole = Credit::default();
+        self.chosen = None;
+        self.guests.begin(context, self.without == Omitted::Recombination);
+        let late = match self.timing {
+            NeighbourTiming::Auto => context.evaluations_planned().is_none(),
+            timing => timing == NeighbourTiming::Late,
+        };
         self.populations.begin(context);
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
             Some(steps) => steps.begin(),
             None => self.steps = Some(Translations::new(space)),
         }
-        self.neighbourhoods.begin();
+        self.neighbourhoods.begin(late);
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
         self.tags.clear();
         self.trials.clear();
         self.swarms.begin_batch();
-        self.climbers.begin_batch();
+        self.descended = 0;
+        self.guests.begin_batch();
+        // Fewer than wanted would let workers wait.
+        let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
+        let first = if made == 0 { FIRST } else { 1 };
+        let wanted = self.asked_for.unwrap_or_else(|| context.parallel().max(first));
+        self.batch = self
+            .asked_for
+            .unwrap_or_else(|| (made / SLOW).clamp(1, LARGEST).max(wanted));
+        self.block = self.batch.div_ceil(4);
+        self.climbers.begin_batch(self.block);
+        while self.descents.len() < self.block {
+            self.descents.push(RestartedDescent::new(0.25, 1e-6));
+        }
+        self.guests.look_at_price(context);
         if let Some(visited) = &self.visited
-            && self.scan.goes_alone(context, visited, PROBES, self.batch)
+            && self.scan.goes_alone(context, visited, PROBES, SCANNED)
         {
             return self.enumerate(context, rng, out);
         }
         let mut rejected = 0;
         while out.len() < self.batch && rejected < REJECTED {
-            let tag = self.choose(rng);
+            let (tag, left) = self.next_source(rng);
             let before = out.len();
-            for _ in 0..self.block.min(self.batch - before) {
-                if !self.propose(tag, context, rng, out) {
+            let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
+            if tag.0 == Source::Guest {
+                let answer = self.guests.ask(tag.1, context, rng, out);
+                self.tags.resize(out.len(), tag);
+                match answer {
+                    Answer::Covered => return Ask::Covered,
+                    Answer::Worked if out.len() >= wanted || out.is_empty() => {
+                        self.chosen = Some((tag, left - 1));
+                        return Ask::More;
+                    }
+                    Answer::Worked => self.chosen = None,
+                    Answer::Nothing => {
+                        self.chosen = None;
+                        rejected += 1;
+                    }
+                }
+                continue;
+            }
+            let mut has_more = true;
+            for _ in 0..room {
+                has_more = self.propose(tag, context, rng, out);
+                if !has_more {
                     break;
                 }
             }
-            // A source with nothing left for this batch ends the batch, so that worse ones do not fill it.
+            let made = (out.len() - before) as u64;
+            self.chosen = (has_more && made > 0).then_some((tag, left - made));
+            // A source with nothing left for this batch ends the batch, so that worse ones do not fill it, unless workers would wait.
             if out.len() == before {
-                if !out.is_empty() {
+                if !out.is_empty() && out.len() >= wanted {
                     break;
                 }
                 rejected += 1;
             }
         }
-        if out.is_empty() {
-            if self.visited.as_ref().is_some_and(Visited::is_all) {
-                return Ask::Covered;
-            }
-            // Everything drawn was known: propose the next uniform point, whatever it is.
+        if out.is_empty() && self.visited.as_ref().is_some_and(Visited::is_all) {
+            return Ask::Covered;
+        }
+        // Everything drawn was known: propose uniform points, whatever they are.
+        let least = if self.visited.is_some() { 1 } else { wanted };
+        while out.len() < least {
             out.push_with(|position| rng.position(context.space(), position));
             self.tags.push((Source::Uniform, 0));
         }
@@ -419,6 +325,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
         }
+        self.guests.tell(context, batch, outcomes, origin);
         if origin != Origin::Engine {
             return;
         }
@@ -433,7 +340,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                         steps.count(index, outcome.is_hit());
                     }
                 }
-                Source::Neighbour => self.neighbourhoods.count(outcome.fitness(), outcome.is_hit()),
+                Source::Neighbour => self.neighbourhoods.count(outcome.fitness()),
                 Source::NearMiss => self.near_misses.count(outcome.is_hit()),
                 // Hits are inexact on continuous axes: what was put together from two of them may just miss a third one.
                 Source::Cross => {
@@ -441,12 +348,21 @@ impl<S: Real> Engine<S> for Sources<S> {
                         self.climbers.offer(position, fitness);
                     }
                 }
-                Source::Uniform | Source::Trial => {}
+                Source::Descent => self.descents[index].learn(position, outcome),
+                Source::Uniform | Source::Trial | Source::Guest => {}
             }
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
+            if *outcome == Outcome::NotEvaluated {
+                continue;
+            }
             let hit = outcome.is_hit();
-            self.tally.count(source, *outcome);
+            let place = match source {
+                Source::Guest => self.guests.place(index),
+                _ => source as usize,
+            };
+            self.tally.count(place, *outcome);
+            self.whole.count(hit);
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
             }
@@ -456,7 +372,6 @@ impl<S: Real> Engine<S> for Sources<S> {
                 steps.learn(&self.trials[index * dimension..(index + 1) * dimension], space);
             }
         }
-        Arm::fade(&mut self.arms, outcomes.len());
     }
 
     fn save(&self, state: &mut State) {
@@ -471,6 +386,13 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
+        (self.whole, self.chosen).save(state);
+        (self.batch, self.block, self.next_descent).save(state);
+        self.descents.len().save(state);
+        for descent in &self.descents {
+            Part::save(descent, state);
+        }
+        self.guests.save(state);
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
@@ -485,6 +407,23 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
+        (self.whole, self.chosen) = from.read()?;
+        (self.batch, self.block, self.next_descent) = from.read()?;
+        let descents: usize = from.read()?;
+        self.descents.clear();
+        for _ in 0..descents {
+            let mut descent = RestartedDescent::new(0.25, 1e-6);
+            Part::restore(&mut descent, from)?;
+            self.descents.push(descent);
+        }
+        self.guests.restore(self.position.len(), from)?;
+        let fits = |&(source, index): &Tag| match source {
+            Source::Descent => index < descents,
+            _ => true,
+        };
+        if !self.tags.iter().all(fits) || !self.guests.fit(&self.tags) {
+            return Err(Error::State("its batches do not fit its sources".to_owned()));
+        }
         if !self.near_misses.fit(self.position.len()) {
             return Err(Error::State("its near misses are of another space".to_owned()));
         }

@@ -74,17 +74,17 @@ impl<S: Real> Translations<S> {
         }
     }
 
-    /// The step with the best rate among those that have not met all `hits`, with `(hits, trials)` as a posterior of its rate.
+    /// The step with the best rate among those that have not met all `hits`.
     /// `base` is the rate of untried steps. Cost: O(steps).
-    pub(super) fn best(&self, hits: usize, base: f64) -> Option<(usize, f64, f64)> {
+    pub(super) fn best(&self, hits: usize, base: f64) -> Option<usize> {
         let rate = |step: &Step| (step.hits + base) / (step.trials + 1.0);
         let open = self
             .steps
             .iter()
             .enumerate()
             .filter(|(_, step)| step.cursor < hits);
-        let (index, step) = open.max_by(|(_, a), (_, b)| rate(a).total_cmp(&rate(b)))?;
-        Some((index, step.hits + 0.1, step.trials + 1.0))
+        let (index, _) = open.max_by(|(_, a), (_, b)| rate(a).total_cmp(&rate(b)))?;
+        Some(index)
     }
 
     /// Writes the next hit moved by step `index`; `false` when that step has met all hits.

@@ -195,6 +195,9 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         if self.waits || repeated == n {
             return asked;
         }
+        if let Inner::Eager(eager) = &mut self.state {
+            eager.slice.ledger.at_once = eager.open() + n - repeated;
+        }
         while asked.len() < n {
             let (search, problem) = (&mut self.search, &*self.problem);
             let solution = match &mut self.state {

@@ -15,17 +15,17 @@ const PRIOR_EVALUATIONS: f64 = 20.0;
 
 /// What one source has yielded lately, and in all.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
-pub(in crate::engine) struct Arm {
+pub(super) struct Arm {
     hits: f64,
     evaluations: f64,
-    pub(in crate::engine) total_hits: u64,
-    pub(in crate::engine) total_evaluations: u64,
+    pub(super) total_hits: u64,
+    pub(super) total_evaluations: u64,
 }
 
 impl Arm {
     /// Counts one candidate.
     #[inline]
-    pub(in crate::engine) fn count(&mut self, hit: bool) {
+    pub(super) fn count(&mut self, hit: bool) {
         self.evaluations += 1.0;
         self.hits += f64::from(u8::from(hit));
         self.total_evaluations += 1;
@@ -33,7 +33,7 @@ impl Arm {
     }
 
     /// Lets the past of all arms fade by `evaluations` of all of them together.
-    pub(in crate::engine) fn fade(arms: &mut [Self], evaluations: usize) {
+    pub(super) fn fade(arms: &mut [Self], evaluations: usize) {
         if arms.iter().map(|arm| arm.hits).sum::<f64>() < EVIDENCE {
             return;
         }
@@ -45,7 +45,7 @@ impl Arm {
     }
 
     /// A draw from the posterior of this arm's yield.
-    pub(in crate::engine) fn draw(&self, rng: &mut SearchRng) -> f64 {
+    pub(super) fn draw(&self, rng: &mut SearchRng) -> f64 {
         draw(rng, self.hits + PRIOR_HITS, self.evaluations + PRIOR_EVALUATIONS)
     }
 }
@@ -53,7 +53,7 @@ impl Arm {
 /// A draw from the posterior of a rate after `hits` in `evaluations`, priors included: Gamma(hits, 1/evaluations), the
 /// conjugate of rare hits. Always choosing the arm with the largest draw has logarithmic regret (Agrawal, Goyal 2012,
 /// arXiv 1111.1797); fading for rates that drift is Raj, Kalyani 2017 (arXiv 1707.09727).
-pub(super) fn draw(rng: &mut SearchRng, hits: f64, evaluations: f64) -> f64 {
+fn draw(rng: &mut SearchRng, hits: f64, evaluations: f64) -> f64 {
     Gamma::new(hits, 1.0 / evaluations).map_or(0.0, |gamma| gamma.sample(rng))
 }
 

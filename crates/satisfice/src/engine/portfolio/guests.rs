@@ -1,0 +1,352 @@
+//! Whole engines as sources: each proposes a part of a batch, and learns the hits of all others.
+
+use core::ops::Range;
+
+use super::credit::Credit;
+use super::source::{Source, Tag};
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::exact::BranchAndBound;
+use crate::engine::local::RestartedCmaEs;
+use crate::engine::local::flood::Flood;
+use crate::engine::model::Surrogate;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::state::{Part, Reader, State};
+
+/// A model of F is used where at most so many evaluations are planned, or where one takes so many seconds, and has found so many
+/// points or less; on spaces of at most so many axes.
+const MODELLED: u64 = 500;
+const EXPENSIVE: f64 = 5e-3;
+const MODEL_AXES: usize = 20;
+/// Candidates that compete for a proposal of the model: fewer than where it searches alone, because other sources explore, too.
+const CANDIDATES: usize = 256;
+/// Axes for which a matrix takes at most a few steps' worth of memory and time.
+const CMA_AXES: usize = 200;
+/// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
+const MOST_SEARCHES: usize = 64;
+/// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
+const FLOOD_STEP: f64 = 1e-3;
+
+/// Which engine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+enum Kind {
+    /// (1+1)-CMA-ES with recombination of hits.
+    Cma,
+    /// Flood fill on continuous axes.
+    Flood,
+    /// Best-first regions by the problem's bounds.
+    Regions,
+    /// A Gaussian process.
+    Model,
+}
+
+/// An engine and how it has fared.
+struct Guest<S> {
+    kind: Kind,
+    engine: Box<dyn Engine<S>>,
+    arm: Credit,
+    /// Whether it may still have something to propose.
+    open: bool,
+    /// Its part of the batch that is out.
+    own: Range<usize>,
+}
+
+/// The engines.
+pub(super) struct Guests<S> {
+    guests: Vec<Guest<S>>,
+    /// Searches of (1+1)-CMA-ES side by side.
+    searches: usize,
+    /// What one of them is told or has proposed.
+    part: Batch<S>,
+    outcomes: Vec<Outcome<S>>,
+}
+
+impl<S> core::fmt::Debug for Guests<S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Guests").finish_non_exhaustive()
+    }
+}
+
+/// What came of asking one of them.
+pub(super) enum Answer {
+    /// Candidates, or work on bounds.
+    Worked,
+    /// The whole space is covered, with these candidates.
+    Covered,
+    /// Nothing at the moment.
+    Nothing,
+}
+
+impl<S: Real> Guest<S> {
+    fn new(kind: Kind, searches: usize) -> Self {
+        let engine = match kind {
+            Kind::Cma => RestartedCmaEs {
+                searches,
+                ..RestartedCmaEs::default()
+            }
+            .build(),
+            Kind::Flood => Box::new(FloodAlone(Flood::new(FLOOD_STEP))),
+            Kind::Regions => BranchAndBound {
+                batch: 8,
+                ..BranchAndBound::default()
+            }
+            .build(),
+            Kind::Model => Surrogate {
+                candidates: CANDIDATES,
+                ..Surrogate::default()
+            }
+            .build(),
+        };
+        Self {
+            kind,
+            engine,
+            arm: Credit::default(),
+            open: true,
+            own: 0..0,
+        }
+    }
+}
+
+impl<S: Real> Guests<S> {
+    pub(super) fn new() -> Self {
+        Self {
+            guests: Vec::new(),
+            searches: 1,
+            part: Batch::new(1),
+            outcomes: Vec::new(),
+        }
+    }
+
+    /// A slice begins; without those that recombine hits, if that is wanted.
+    pub(super) fn begin(&mut self, context: &dyn Context<S>, without_recombination: bool) {
+        let space = context.space();
+        let continuous = space.axes().iter().any(|axis| !axis.is_integer());
+        self.part = Batch::new(space.dimension());
+        self.searches = context.parallel().div_ceil(4).min(MOST_SEARCHES);
+        self.guests.clear();
+        for kind in [Kind::Cma, Kind::Flood, Kind::Regions, Kind::Model] {
+            let is_of_use = match kind {
+                Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
+                Kind::Flood => continuous,
+                Kind::Regions => context.lower_bound(&space.region()).is_some(),
+                Kind::Model => context
+                    .evaluations_planned()
+                    .is_some_and(|planned| planned <= MODELLED && space.dimension() <= MODEL_AXES),
+            };
+            if is_of_use {
+                self.open(kind, context);
+            }
+        }
+    }
+
+    fn open(&mut self, kind: Kind, context: &dyn Context<S>) {
+        let mut guest = Guest::new(kind, self.searches);
+        guest.engine.begin(context);
+        self.guests.push(guest);
+    }
+
+    /// Opens the model where F turns out to be expensive.
+    pub(super) fn look_at_price(&mut self, context: &dyn Context<S>) {
+        let expensive = context
+            .seconds_an_evaluation()
+            .is_some_and(|seconds| seconds > EXPENSIVE);
+        if expensive
+            && context.evaluations() <= MODELLED
+            && context.space().dimension() <= MODEL_AXES
+            && self.guests.iter().all(|guest| guest.kind != Kind::Model)
+        {
+            self.open(Kind::Model, context);
+        }
+    }
+
+    /// A new batch begins, of which none has a part.
+    pub(super) fn begin_batch(&mut self) {
+        for guest in &mut self.guests {
+            guest.own = 0..0;
+        }
+    }
+
+    /// Whether it has a part of the batch.
+    pub(super) fn has_part(&self, index: usize) -> bool {
+        !self.guests[index].own.is_empty()
+    }
+
+    /// Its place among the names of all sources.
+    pub(super) fn place(&self, index: usize) -> usize {
+        Source::Guest as usize + self.guests[index].kind as usize
+    }
+
+    /// Offers the credit of each that is worth trying and has no part of the batch yet, with its weight.
+    pub(super) fn arms<'a>(&'a self, all: &'a Credit) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
+        let ready = self.guests.iter().enumerate().filter(move |(_, guest)| {
+            let searches = matches!(guest.kind, Kind::Cma | Kind::Model);
+            guest.open && guest.own.is_empty() && (searches || guest.arm.is_worth_trying(all))
+        });
+        ready.map(|(index, guest)| {
+            let weight = match guest.kind {
+                Kind::Cma => 2.0,
+                Kind::Flood => 1.0,
+                Kind::Regions => 0.3,
+                Kind::Model => 40.0,
+            };
+            (index, &guest.arm, weight)
+        })
+    }
+
+    /// Asks one of them for its part of the batch.
+    pub(super) fn ask(
+        &mut self,
+        index: usize,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) -> Answer {
+        let guest = &mut self.guests[index];
+        let before = context.evaluations_left();
+        self.part.clear();
+        let answer = guest.engine.ask(context, rng, &mut self.part);
+        let calls = before - context.evaluations_left();
+        for _ in 0..calls {
+            guest.arm.count(false);
+        }
+        guest.own = out.len()..out.len() + self.part.len();
+        for position in self.part.points() {
+            out.push(position);
+        }
+        match answer {
+            Ask::Covered => return Answer::Covered,
+            Ask::Exhausted => guest.open = false,
+            Ask::More => {}
+        }
+        if guest.own.is_empty() && calls == 0 {
+            guest.arm.count(false);
+            return Answer::Nothing;
+        }
+        Answer::Worked
+    }
+
+    /// Tells each what became of its part, where the batch is the engine's, and of what else concerns it.
+    pub(super) fn tell(
+        &mut self,
+        context: &dyn Context<S>,
+        batch: &Batch<S>,
+        outcomes: &[Outcome<S>],
+        origin: Origin,
+    ) {
+        let Self {
+            guests,
+            part,
+            outcomes: told,
+            ..
+        } = self;
+        for guest in guests {
+            let own = match origin {
+                Origin::Engine => core::mem::take(&mut guest.own),
+                _ => 0..0,
+            };
+            for outcome in &outcomes[own.clone()] {
+                if *outcome != Outcome::NotEvaluated {
+                    guest.arm.count(outcome.is_hit());
+                }
+            }
+            if !guest.open {
+                continue;
+            }
+            let mut tell = |is_told: &dyn Fn(usize) -> bool, origin| {
+                part.clear();
+                told.clear();
+                for (i, position) in batch.points().enumerate().filter(|&(i, _)| is_told(i)) {
+                    part.push(position);
+                    told.push(outcomes[i]);
+                }
+                if !told.is_empty() {
+                    guest.engine.tell(context, part, told, origin);
+                }
+            };
+            tell(&|i| own.contains(&i), Origin::Engine);
+            // Start points count for what they are; for the rest, the hits of others are as good as found by exhaustion.
+            let origin = match origin {
+                Origin::Start => Origin::Start,
+                _ => Origin::Exhaustion,
+            };
+            let learns_from_all = guest.kind == Kind::Model || origin == Origin::Start;
+            tell(
+                &|i| !own.contains(&i) && (learns_from_all || outcomes[i].is_hit()),
+                origin,
+            );
+        }
+    }
+
+    pub(super) fn save(&self, state: &mut State) {
+        (self.searches, self.guests.len()).save(state);
+        for guest in &self.guests {
+            (guest.kind, guest.arm, guest.open).save(state);
+            (guest.own.start, guest.own.end).save(state);
+            guest.engine.save(state);
+        }
+    }
+
+    pub(super) fn restore(&mut self, dimension: usize, from: &mut Reader<'_>) -> Result<(), Error> {
+        self.part = Batch::new(dimension);
+        let (searches, count): (usize, usize) = from.read()?;
+        if !(1..=MOST_SEARCHES).contains(&searches) {
+            return Err(Error::State(
+                "its searches are not as many as there are".to_owned(),
+            ));
+        }
+        self.searches = searches;
+        self.guests.clear();
+        for _ in 0..count {
+            let (kind, arm, open) = from.read()?;
+            let (start, end) = from.read()?;
+            let mut guest = Guest::new(kind, searches);
+            guest.engine.restore(from)?;
+            self.guests.push(Guest {
+                arm,
+                open,
+                own: start..end,
+                ..guest
+            });
+        }
+        Ok(())
+    }
+
+    /// Whether restored parts of a batch are inside it, and are theirs.
+    pub(super) fn fit(&self, tags: &[Tag]) -> bool {
+        let inside = |own: &Range<usize>| own.start <= own.end && own.end <= tags.len();
+        self.guests.iter().all(|guest| inside(&guest.own))
+            && tags
+                .iter()
+                .all(|&(source, index)| source != Source::Guest || index < self.guests.len())
+    }
+}
+
+/// The flood fill of the hits of others.
+#[derive(Debug)]
+struct FloodAlone<S>(Flood<S>);
+
+impl<S: Real> Engine<S> for FloodAlone<S> {
+    fn begin(&mut self, _: &dyn Context<S>) {
+        self.0.clear();
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, _: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        self.0.ask(context, out);
+        Ask::More
+    }
+
+    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
+        self.0.add_hits(batch, outcomes);
+    }
+
+    fn save(&self, state: &mut State) {
+        self.0.save(state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        self.0.restore(from)
+    }
+}

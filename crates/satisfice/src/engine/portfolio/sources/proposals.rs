@@ -1,0 +1,222 @@
+//! Candidates of one source after the other, and the enumeration of a lattice.
+
+use super::Sources;
+use crate::batch::{Batch, Outcome};
+use crate::context::Context;
+use crate::engine::Ask;
+use crate::engine::local::recombination::recombine;
+use crate::engine::portfolio::source::{CROSS, Source, TRIAL, Tag, arm_of};
+use crate::engine::portfolio::visited::Visited;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+/// Points of an enumeration that are proposed at once.
+pub(super) const SCANNED: usize = 256;
+
+impl<S: Real> Sources<S> {
+    /// Whether a position is inside and worth an evaluation: not proposed before, or not a known hit.
+    pub(super) fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
+        let space = context.space();
+        let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
+            axis.start() <= x
+                && if axis.is_integer() {
+                    x < axis.end()
+                } else {
+                    x <= axis.end()
+                }
+        });
+        inside
+            && match &mut self.visited {
+                Some(visited) => visited.insert(space, &self.position),
+                None => !context.is_deleted(&self.position),
+            }
+    }
+
+    /// Proposes one candidate; `false` where the source has none left for this batch.
+    pub(super) fn propose(
+        &mut self,
+        tag: Tag,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) -> bool {
+        let (source, index) = tag;
+        let proposed = match source {
+            Source::Swarm => self
+                .swarms
+                .propose(context.space(), self.visited.as_ref(), rng, out),
+            Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
+            Source::Member => self.populations.propose(context, rng, out),
+            Source::Descent => {
+                if self.descended == self.block {
+                    return false;
+                }
+                self.descended += 1;
+                let index = self.next_descent % self.block;
+                self.next_descent = (index + 1) % self.block;
+                self.descents[index].propose(context, rng, out);
+                Some(index)
+            }
+            Source::Guest => return false,
+            Source::Uniform => {
+                if self.visited.as_ref().is_some_and(Visited::is_dense) {
+                    if !self.scan_on(context, rng) {
+                        return false;
+                    }
+                } else {
+                    rng.position(context.space(), &mut self.position);
+                    if !self.is_fresh(context) {
+                        return true; // this draw was rejected, the next may be accepted
+                    }
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+            Source::Step => {
+                let Some(steps) = &mut self.steps else {
+                    return false;
+                };
+                if !steps.apply(index, &self.hits, &mut self.position) {
+                    return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                Some(index)
+            }
+            Source::Trial => {
+                if !self.draw_trial(rng) || !self.is_fresh(context) {
+                    // Counted like a miss, or an exhausted source would be asked forever.
+                    self.arms[TRIAL].count(false);
+                    return true;
+                }
+                out.push(&self.position);
+                self.trials
+                    .truncate((self.trials.len() / self.position.len()) * self.position.len());
+                Some(self.trials.len() / self.position.len() - 1)
+            }
+            Source::Cross => {
+                if !recombine(&self.hits, rng, &mut self.position) || !self.is_fresh(context) {
+                    self.arms[CROSS].count(false);
+                    return true;
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+            Source::Neighbour | Source::NearMiss => {
+                let position = &mut self.position;
+                let is_there = match source {
+                    Source::Neighbour => self.neighbourhoods.propose(context, position),
+                    _ => self.near_misses.propose(position),
+                };
+                if !is_there {
+                    return false;
+                }
+                if !self.is_fresh(context) {
+                    return true;
+                }
+                out.push(&self.position);
+                Some(0)
+            }
+        };
+        let Some(index) = proposed else {
+            return false;
+        };
+        if matches!(source, Source::Swarm | Source::Climber | Source::Descent)
+            && self.is_repeated(context, (source, index), out)
+        {
+            return true;
+        }
+        self.tags.push((source, index));
+        true
+    }
+
+    /// Takes back the last proposal of a swarm, a climber or a descent if that point was visited before, and tells it that nothing came of
+    /// it, which counts like a miss.
+    fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
+        let space = context.space();
+        let last = out.len() - 1;
+        let Some(visited) = &mut self.visited else {
+            return false;
+        };
+        space.keep_inside(out.point_mut(last));
+        if visited.insert(space, out.point(last)) {
+            return false;
+        }
+        match source {
+            Source::Swarm => self.swarms.tell(index, out.point(last), Outcome::NonFinite),
+            Source::Descent => self.descents[index].learn(out.point(last), Outcome::NonFinite),
+            _ => self.climbers.tell(index, out.point(last), Outcome::NonFinite),
+        }
+        if let Some(arm) = arm_of(source) {
+            self.arms[arm].count(false);
+        }
+        out.truncate(last);
+        true
+    }
+
+    /// Goes on through the lattice to the next point that is not visited; `false` at its end.
+    fn scan_on(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
+        let Some(visited) = &mut self.visited else {
+            return false;
+        };
+        let space = context.space();
+        let found = self.scan.next(space, visited, rng, &mut self.position);
+        if found {
+            visited.insert(space, &self.position);
+        }
+        found
+    }
+
+    /// Enumerates the rest of the lattice, a block at a time.
+    pub(super) fn enumerate(
+        &mut self,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+        out: &mut Batch<S>,
+    ) -> Ask {
+        while out.len() < SCANNED && self.scan_on(context, rng) {
+            out.push(&self.position);
+        }
+        self.tags.resize(out.len(), (Source::Uniform, 0));
+        if self.scan.is_over() || self.visited.as_ref().is_some_and(Visited::is_all) {
+            Ask::Covered
+        } else {
+            Ask::More
+        }
+    }
+
+    /// Writes a hit moved by the difference of two others, and appends that difference to `trials`; `false` where it is zero.
+    /// Half of the pairs are neighbours in the order found, which are near to each other in space.
+    fn draw_trial(&mut self, rng: &mut SearchRng) -> bool {
+        let dimension = self.position.len();
+        let count = self.hit_count();
+        let (a, b) = (rng.below(count), rng.below(count));
+        let (reach, far) = rng.uniform_and_sign();
+        let c = if far {
+            rng.below(count)
+        } else {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 7")]
+            let apart = 1 + (8.0 * reach) as usize;
+            if b >= apart {
+                b - apart
+            } else {
+                (b + apart).min(count - 1)
+            }
+        };
+        let row = |hit: usize| &self.hits[hit * dimension..(hit + 1) * dimension];
+        let mut moves = false;
+        let start = self.trials.len();
+        for j in 0..dimension {
+            let difference = row(b)[j] - row(c)[j];
+            moves |= difference != S::zero();
+            self.trials.push(difference);
+            self.position[j] = row(a)[j] + difference;
+        }
+        if !moves {
+            self.trials.truncate(start);
+        }
+        moves
+    }
+}
