@@ -1,10 +1,12 @@
 //! Checkpoints of runs.
 
 use satisfice::{Checkpoint, Report};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::Error;
+use crate::sealed::{self, Broken};
 use crate::spec::RunSpec;
 
 /// A checkpoint of a run: its specification, the reports of the slices that have ended, and the state of the search.
@@ -30,12 +32,31 @@ pub(crate) struct Saved<'a, T> {
     pub(crate) search: &'a Checkpoint<T>,
 }
 
+/// The bytes of a checkpoint.
+pub(crate) fn write<T: Serialize>(saved: &Saved<'_, T>) -> serde_json::Result<Vec<u8>> {
+    Ok(sealed::seal(&serde_json::to_string(saved)?).into_bytes())
+}
+
+/// What the bytes of a checkpoint say.
+///
+/// # Errors
+/// [`Error::Checkpoint`] for bytes that are not a checkpoint, or a damaged one.
+pub(crate) fn read<T: DeserializeOwned>(checkpoint: &[u8]) -> Result<T, Error> {
+    let object = sealed::open(checkpoint).map_err(|broken| {
+        Error::Checkpoint(match broken {
+            Broken::Unsealed => "it does not begin with a checksum".to_owned(),
+            Broken::Damaged => "the checkpoint is damaged".to_owned(),
+        })
+    })?;
+    serde_json::from_str(&object).map_err(|error| Error::Checkpoint(error.to_string()))
+}
+
 /// The specification of the run that a checkpoint belongs to.
 ///
 /// # Errors
-/// [`Error::Checkpoint`] for bytes that are not a checkpoint.
+/// [`Error::Checkpoint`] for bytes that are not a checkpoint, or a damaged one.
 pub fn spec(checkpoint: &[u8]) -> Result<RunSpec, Error> {
-    serde_json::from_slice(checkpoint).map_err(|error| Error::Checkpoint(error.to_string()))
+    read(checkpoint)
 }
 
 /// Checks that a checkpoint of `saved` can continue as `now`.

@@ -27,6 +27,7 @@ pub mod options;
 pub mod quantity;
 pub mod report;
 mod run;
+pub mod sealed;
 mod settings;
 mod spec;
 pub mod verify;

@@ -50,8 +50,7 @@ where
     let (mut search, mut reports, mut unfinished);
     if let Some(bytes) = control.resume {
         checkpoint::check_same(&checkpoint::spec(bytes)?, spec)?;
-        let saved: SavedRun<P::Solution> =
-            serde_json::from_slice(bytes).map_err(|error| Error::Checkpoint(error.to_string()))?;
+        let saved: SavedRun<P::Solution> = checkpoint::read(bytes)?;
         unfinished = saved.search.contents.unfinished.is_some();
         search = Search::resume(saved.search, engine)?;
         reports = saved.reports;
@@ -81,7 +80,7 @@ where
                     reports: &reports,
                     search: state,
                 };
-                match serde_json::to_vec(&saved) {
+                match checkpoint::write(&saved) {
                     Ok(bytes) => save(&bytes),
                     Err(error) => failed = Some(error),
                 }

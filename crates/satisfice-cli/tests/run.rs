@@ -158,10 +158,12 @@ fn islands_find_the_same_on_any_number_of_threads() {
 
 #[test]
 fn a_report_has_the_keys_of_the_contract() {
-    let report = report(&format!("{TEAPOTS} --json - --slices 2"));
+    // Too few for the bounds of its boxes to prove either slice complete.
+    let teapots = TEAPOTS.replace("20000", "500");
+    let report = report(&format!("{teapots} --json - --slices 2"));
     let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
     insta::assert_debug_snapshot!("keys", keys);
-    assert_eq!(report["evaluations"], 40_000);
+    assert_eq!(report["evaluations"], 1_000);
     assert_eq!(report["slices"].as_array().unwrap().len(), 2);
     assert_eq!(report["hits"], report["solutions"].as_array().unwrap().len());
     let reference = report["reference_hits"].as_f64().unwrap();
@@ -377,7 +379,8 @@ fn probes_estimate_the_hits_not_seen() {
         (&blind["unseen_estimate"], &blind["unseen_interval"]),
         (&Value::Null, &Value::Null)
     );
-    let probed = report("run teapots --evaluations 400000 --probes 0.5 --slices 2 --json -");
+    let probed =
+        report("run teapots --evaluations 400000 --engine latest-hit-qpso --probes 0.5 --slices 2 --json -");
     let missing = probed["reference_hits"].as_f64().unwrap() - probed["hits"].as_f64().unwrap();
     let interval = &probed["unseen_interval"];
     assert!(

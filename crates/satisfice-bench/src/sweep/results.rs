@@ -6,11 +6,10 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
+use satisfice_catalogue::sealed::{self, Broken};
+
 use super::row::Row;
 use crate::error::Error;
-
-/// The start of a line; 16 hexadecimal digits and `",` follow.
-const CHECKSUM: &str = "{\"checksum\":\"";
 
 /// The file of a sweep, locked until it is dropped.
 #[derive(Debug)]
@@ -106,27 +105,14 @@ pub fn write_all(folder: &Path, rows: &[Row]) -> Result<(), Error> {
 
 /// A line from the JSON of a row.
 fn write(row: &str) -> String {
-    format!("{CHECKSUM}{:016x}\",{}\n", checksum(row.as_bytes()), &row[1..])
+    format!("{}\n", sealed::seal(row))
 }
 
 /// The row of a line, or what is wrong with the line.
 fn read(line: &[u8]) -> Result<Row, String> {
-    let damaged = || "is damaged".to_owned();
-    let line = std::str::from_utf8(line).map_err(|_| damaged())?;
-    let (digits, rest) = line
-        .strip_prefix(CHECKSUM)
-        .and_then(|line| line.split_once("\","))
-        .ok_or_else(|| "is not a finished run".to_owned())?;
-    let row = format!("{{{rest}");
-    if digits != format!("{:016x}", checksum(row.as_bytes())) {
-        return Err(damaged());
-    }
+    let row = sealed::open(line).map_err(|broken| match broken {
+        Broken::Unsealed => "is not a finished run".to_owned(),
+        Broken::Damaged => "is damaged".to_owned(),
+    })?;
     serde_json::from_str(&row).map_err(|error| format!("is not a finished run ({error})"))
-}
-
-/// FNV-1a (Fowler, Noll, Vo 1991): every change of one byte changes it.
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }
