@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use pyo3::prelude::*;
+use satisfice::engine::ConfiguredEngine;
 use satisfice::{Budget, Cancel};
 use satisfice_catalogue::RunSpec;
 
@@ -56,4 +57,12 @@ pub(crate) fn budget(spec: &RunSpec, cancel: &Cancel) -> Budget {
         hits: spec.budget.hits,
         ..Budget::until(cancel)
     }
+}
+
+/// The engine of a complete specification.
+pub(crate) fn engine(spec: &RunSpec) -> PyResult<ConfiguredEngine<f64>> {
+    let texts = spec.engine_parameters.texts();
+    ConfiguredEngine::named(&spec.engine)
+        .and_then(|engine| engine.set_all(texts.iter().map(|(name, text)| (name.as_str(), text.as_str()))))
+        .map_err(refused)
 }

@@ -6,6 +6,7 @@ mod collision;
 mod find;
 mod listing;
 mod problem;
+mod question;
 mod report;
 mod rounds;
 mod saved;

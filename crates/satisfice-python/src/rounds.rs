@@ -11,9 +11,10 @@ use satisfice::{Cancel, IslandRound, StopReason};
 use satisfice_catalogue::RunSpec;
 use serde::{Deserialize, Serialize};
 
-use crate::arguments::{Run, budget};
+use crate::arguments::{Run, budget, engine};
 use crate::caller::Caller;
-use crate::find::{Function, Question, drive, engine};
+use crate::find::drive;
+use crate::question::{Function, Question};
 use crate::refused;
 use crate::report::Report;
 use crate::saved::{Saved, damaged};

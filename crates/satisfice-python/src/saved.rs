@@ -9,7 +9,7 @@ use satisfice::{Checkpoint, Located, Stepper};
 use satisfice_catalogue::{RunSpec, checkpoint};
 use serde::{Deserialize, Serialize};
 
-use crate::find::{Function, Question};
+use crate::question::{Function, Question};
 use crate::refused;
 
 /// The second checkpoint is written so soon, so that a path that cannot be written is noticed.

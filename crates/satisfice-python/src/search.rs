@@ -9,8 +9,8 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 use satisfice::{Cancel, Order, Ticket, Tickets, TracePoint};
 use satisfice_catalogue::RunSpec;
 
-use crate::arguments::{Run, budget};
-use crate::find::{Function, Question, engine};
+use crate::arguments::{Run, budget, engine};
+use crate::question::{Function, Question};
 use crate::refused;
 use crate::report::Report;
 use crate::saved::{Saved, damaged};

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::boxes::{Box32, BoxTree};
 use super::clip::BlockBounds;
+use super::directions::{self, Directions};
 use super::frame::LocalFrame;
-use super::separating_axis::{self, Directions, Triangles};
+use super::separating_axis::Triangles;
 use crate::mesh::{Features, Point, Shape, Topology, Triangle};
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, FeatureKind, Mesh};
@@ -215,7 +216,7 @@ impl FeatureTree {
                 directions.extend(
                     triangles
                         .iter()
-                        .map(|triangle| separating_axis::directions(triangle.map(at))),
+                        .map(|triangle| directions::of_triangle(triangle.map(at))),
                 );
             }
         }

@@ -4,6 +4,7 @@ mod boxes;
 mod cells;
 mod clip;
 mod closest;
+mod directions;
 mod exact;
 mod features;
 mod frame;
@@ -36,8 +37,9 @@ pub use pair_query::Keep;
 pub(crate) use pair_query::PairQuery;
 pub use points::{PointGrid, PointWork};
 pub(crate) use ray::{FirstHit, Slabs, near_segment};
+pub use traverse::TreeWork;
 pub(crate) use traverse::Visit;
-pub use trees::{TreeJoin, TreeWork};
+pub use trees::TreeJoin;
 pub(crate) use watch::{Stop, Watch};
 
 /// How pairs are enumerated. No method changes an answer.

@@ -8,8 +8,8 @@
 //! matrix is wrong by no more. h is below 2 unless the body is larger than any power of two can bring there.
 
 use super::boxes::Group;
+use super::directions::Directions;
 use super::frame::{Filter, LocalFrame, U, power_of_two};
-use super::separating_axis::Directions;
 use crate::Placement;
 use crate::simd::Eight;
 

@@ -1,36 +1,11 @@
 //! Two triangles far apart, by eight candidates for a separating axis, one per lane.
 //!
 //! For any v with |v| <= 1 + 1e-5, `(min v.a - max v.b) / |v|` is a lower bound of the distance, however v was found. Each
-//! triangle contributes its normal and the normals of its sides inside its plane. Rounding: coordinates wrong by e, dot
-//! products of numbers up to H wrong by less than 6u sqrt(3) H, both twice in a gap; `Filter::apart` allows for that.
+//! triangle contributes its four `directions`. Rounding: coordinates wrong by e, dot products of numbers up to H wrong by less
+//! than 6u sqrt(3) H, both twice in a gap; `Filter::apart` allows for that.
 
+use super::directions::Directions;
 use super::relative::Relative;
-
-/// Four directions, component by component.
-pub(crate) type Directions = [[f32; 4]; 3];
-
-/// The directions of a triangle; zero, which separates nothing, where `f32` has none.
-pub(crate) fn directions(triangle: [[f32; 3]; 3]) -> Directions {
-    let [a, b, c] = triangle;
-    let sub = |p: [f32; 3], q: [f32; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let cross = |p: [f32; 3], q: [f32; 3]| {
-        [
-            p[1] * q[2] - p[2] * q[1],
-            p[2] * q[0] - p[0] * q[2],
-            p[0] * q[1] - p[1] * q[0],
-        ]
-    };
-    let sides = [sub(b, a), sub(c, b), sub(a, c)];
-    let normal = cross(sides[0], sides[1]);
-    let [p, q, r] = sides.map(|side| cross(normal, side));
-    let of: Directions = std::array::from_fn(|k| [normal[k], p[k], q[k], r[k]]);
-    // a square above 1e-30 has all its digits, so that the length comes out as 1 within a few roundings
-    let scale: [f32; 4] = std::array::from_fn(|l| {
-        let square = of[0][l] * of[0][l] + of[1][l] * of[1][l] + of[2][l] * of[2][l];
-        if square > 1e-30 { 1.0 / square.sqrt() } else { 0.0 }
-    });
-    of.map(|component| std::array::from_fn(|l| component[l] * scale[l]))
-}
 
 /// Whether two triangles of one frame are proved further than `apart` from each other.
 #[inline(always)]

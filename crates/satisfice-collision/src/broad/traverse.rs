@@ -29,6 +29,17 @@ impl Visit {
     }
 }
 
+/// What a traversal had to do.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TreeWork {
+    /// Pairs of groups of eight boxes compared.
+    pub visits: u64,
+    /// Pairs of features whose boxes are within the threshold.
+    pub candidates: u64,
+    /// Pairs that the distance itself had to decide.
+    pub decisions: u64,
+}
+
 /// What happens to a pair of items that can be within the threshold.
 pub(crate) trait Candidates {
     /// Whether items are points, so that the squared distance itself is known.

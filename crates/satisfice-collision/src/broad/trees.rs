@@ -5,24 +5,13 @@ use super::features::FeatureTree;
 use super::pair::Pair;
 use super::pair_query::{Keep, PairQuery, Visitor};
 use super::sorting::Sorter;
-use super::traverse::{Trees, Visit};
+use super::traverse::{TreeWork, Trees, Visit};
 use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Error, Placement};
 
 /// Visits, and decisions of a row of brute force, between two looks at the watch: 0.1 to 10 ms.
 const LOOK: usize = 1 << 12;
-
-/// What a traversal had to do.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct TreeWork {
-    /// Pairs of groups of eight boxes compared.
-    pub visits: u64,
-    /// Pairs of features whose boxes are within the threshold.
-    pub candidates: u64,
-    /// Pairs that the distance itself had to decide.
-    pub decisions: u64,
-}
 
 /// Finds pairs of features of kept trees. Keeps its memory from call to call.
 ///

@@ -27,6 +27,7 @@ mod count;
 mod deforming;
 mod extent;
 mod filter;
+mod measure;
 mod membership;
 mod narrow;
 mod pairs;

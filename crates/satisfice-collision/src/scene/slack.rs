@@ -1,167 +1,42 @@
-//! How far below the threshold contacts are expected to be in the next frame, measured between the frames.
+//! The contacts of two bodies that are expected to hold in the next frame, and by how much.
 //!
-//! Rigid bodies are expected to go on as they do. A contact whose distance, with the bodies in the expected places, is below the
-//! threshold by more than the bodies are away from these places still holds, whatever else is the case.
+//! A contact whose distance, with the bodies in the expected places, is below the threshold by more than the bodies are away from
+//! these places still holds, whatever else is the case.
 
-use std::collections::BTreeMap;
-
-use super::pairs::{Record, Status};
-use super::{State, World};
+use crate::Placement;
 use crate::broad::Pair;
-use crate::distance::{Point, Proximity};
-use crate::{FeatureKind, Placement};
 
 /// The contacts of a record in the order of falling slack.
 pub(super) struct Slack {
     /// Where the bodies are expected; `None` if one deforms: deforming bodies are expected to stay.
-    places: Option<[Placement; 2]>,
+    pub(super) places: Option<[Placement; 2]>,
     /// By how much each contact will be below the threshold, rounded down.
     falling: Vec<f32>,
     pub(super) likely: Vec<Pair>,
 }
 
 impl Slack {
-    /// How many of the contacts hold although the bodies are `drift` away from where they were expected.
-    fn holding(&self, drift: f64) -> usize {
-        self.falling.partition_point(|&slack| f64::from(slack) > drift)
-    }
-}
-
-impl World {
-    /// Measures the distance of every contact whose bodies moved in the last frame, so that the next pass can tell from the
-    /// bodies' motion alone which of them still hold. For the time between frames: no answer changes by it. Cost: one distance a
-    /// contact.
-    pub fn measure_contacts(&mut self) {
-        self.predicts = true;
-        let expected: BTreeMap<u32, Placement> = self
-            .came_from
-            .iter()
-            .map(|&(slot, from)| (slot, self.next_place(slot, &from.into())))
-            .collect();
-        let wanted = |record: &Record| {
-            record.status == Status::Current && record.slack.is_none() && !record.pairs.is_empty()
-        };
-        let records: Vec<u32> = self
-            .pairs
-            .iter()
-            .filter(|(_, record)| wanted(record))
-            .map(|(id, _)| id)
-            .collect();
-        for id in records {
-            let slack = self.measure(&self.pairs[id], &expected);
-            self.pairs[id].slack = Some(Box::new(slack));
-        }
-    }
-
-    /// Where a rigid body is in the next frame if it moves as it did from `from` on.
-    fn next_place(&self, slot: u32, from: &Placement) -> Placement {
-        let now = self.state(slot).placement;
-        let step = from.inverse().and_then(|back| back.then(&now));
-        step.and_then(|step| now.then(&step)).unwrap_or(now)
-    }
-
-    fn measure(&self, record: &Record, expected: &BTreeMap<u32, Placement>) -> Slack {
-        let [a, b] = record.bodies;
-        let delta = self.threshold.get();
-        let place = |slot: u32| expected.get(&slot).copied().unwrap_or(self.state(slot).placement);
-        let places = self.are_rigid(record).then(|| [place(a), place(b)]);
-        let slack = |pair: &Pair| {
-            let nearest = self.proximity_of(record.bodies, *pair);
-            let (delta, distance) = match &places {
-                Some(places) => {
-                    let points = self.closest_points(record, *pair, &nearest);
-                    (delta - self.rounding(record, places), distance_at(points, places))
-                }
-                None => (delta, nearest.distance),
-            };
-            // a distance is within one unit in the last place; the cast may round up by half of one of f32
-            let slack = ((delta - distance * (1.0 + 1e-12)) * (1.0 - 1e-12)).max(0.0) as f32;
-            slack.next_down().max(0.0)
-        };
+    /// Orders contacts by their slack, which is at least 0.
+    pub(super) fn new(
+        places: Option<[Placement; 2]>,
+        contacts: &[Pair],
+        slack: impl Fn(&Pair) -> f32,
+    ) -> Self {
         // numbers that are not negative are ordered as their bits are
         let mut order: Vec<(u32, u32)> = (0..)
-            .zip(&record.pairs)
+            .zip(contacts)
             .map(|(at, pair)| (!slack(pair).to_bits(), at))
             .collect();
         order.sort_unstable();
-        Slack {
+        Self {
             places,
             falling: order.iter().map(|(bits, _)| f32::from_bits(!bits)).collect(),
-            likely: order.iter().map(|(_, at)| record.pairs[*at as usize]).collect(),
+            likely: order.iter().map(|(_, at)| contacts[*at as usize]).collect(),
         }
     }
 
-    /// How many of the likely contacts of a record hold for certain, by the bound of motion.
-    pub(super) fn holding(&self, record: &Record) -> usize {
-        match &record.slack {
-            Some(slack) if record.status == Status::Behind => slack.holding(self.drift(record, slack)),
-            _ => 0,
-        }
-    }
-
-    /// By how much the distance of two features can exceed what was expected of it.
-    fn drift(&self, record: &Record, slack: &Slack) -> f64 {
-        let [a, b] = record.bodies;
-        match &slack.places {
-            Some(places) => self.state(a).away_from(&places[0]) + self.state(b).away_from(&places[1]),
-            None => self.motion_of(a) + self.motion_of(b),
-        }
-    }
-
-    /// The closest points of a pair in the bodies' own coordinates.
-    fn closest_points(&self, record: &Record, pair: Pair, nearest: &Proximity) -> [Point; 2] {
-        let (kind_a, kind_b) = self.kind.features();
-        [
-            self.state(record.bodies[0])
-                .own_point(kind_a, pair.a, nearest.weights_a),
-            self.state(record.bodies[1])
-                .own_point(kind_b, pair.b, nearest.weights_b),
-        ]
-    }
-
-    /// Whether neither body of a record deforms.
-    fn are_rigid(&self, record: &Record) -> bool {
-        record
-            .bodies
-            .iter()
-            .all(|&slot| self.state(slot).deforming.is_none())
-    }
-
-    /// What placing and weighing the closest points may round: in proportion to the lengths involved.
-    fn rounding(&self, record: &Record, places: &[Placement; 2]) -> f64 {
-        let largest = |place: &Placement| {
-            place
-                .translation()
-                .iter()
-                .fold(0.0_f64, |most, c| most.max(c.abs()))
-        };
-        let sizes: f64 = record.bodies.iter().map(|&slot| self.state(slot).extent()).sum();
-        1e-12 * (sizes + largest(&places[0]) + largest(&places[1]))
-    }
-}
-
-impl State {
-    /// The point of a feature with these weights, before the placement.
-    fn own_point(&self, kind: FeatureKind, feature: u32, weights: [f64; 3]) -> Point {
-        let corners = self
-            .corners_of(kind, feature)
-            .map(|v| self.vertices()[v as usize]);
-        if kind == FeatureKind::Vertex {
-            return corners[0];
-        }
-        std::array::from_fn(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
-    }
-}
-
-/// How far two points are from each other with their bodies in these places; infinite where a square overflows or vanishes.
-fn distance_at([p, q]: [Point; 2], [a, b]: &[Placement; 2]) -> f64 {
-    let (p, q) = (a.apply(p), b.apply(q));
-    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let square = x * x + y * y + z * z;
-    let vanishes = square < 1e-290 && [x, y, z] != [0.0; 3];
-    if vanishes || !square.is_finite() {
-        f64::INFINITY
-    } else {
-        square.sqrt()
+    /// How many of the contacts hold although the bodies are `drift` away from where they were expected.
+    pub(super) fn holding(&self, drift: f64) -> usize {
+        self.falling.partition_point(|&slack| f64::from(slack) > drift)
     }
 }

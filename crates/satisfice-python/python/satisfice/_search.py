@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _satisfice
+from ._arguments import question, run_arguments
 from ._files import Keeper, write
 from ._workers import LOOK_EVERY, MOST_LOSSES, ExecutorLike, Given, Guarded, Own, check_pickle, is_killed, shaped
 
@@ -90,8 +91,6 @@ class Search:
         ordered: bool = False,
         name: str = "function",
     ) -> None:
-        from ._find import question, run_arguments
-
         self._search = _satisfice.Search(
             question(name, bounds, delta, separation, integrality, categories, x0),
             run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1),

@@ -1,0 +1,76 @@
+//! A function of Python as a problem: its space and what a hit is.
+
+use pyo3::prelude::*;
+use satisfice::problem::{FnProblem, evaluated_elsewhere};
+use satisfice::{Axis, Search, Space};
+use satisfice_catalogue::{RunSpec, Settings};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::arguments::engine;
+use crate::refused;
+
+/// A function is called by Python, never by the search.
+pub(crate) type Function = FnProblem<f64, fn(&[f64]) -> f64>;
+
+/// The space and what a hit is, as a dict.
+#[derive(Clone, FromPyObject, Serialize, Deserialize)]
+#[pyo3(from_item_all)]
+pub(crate) struct Question {
+    /// Lower and upper end of each axis, and whether it is one of integers.
+    axes: Vec<(f64, f64, bool)>,
+    delta: f64,
+    separation: Option<Vec<f64>>,
+    /// Points to evaluate first.
+    starts: Vec<Vec<f64>>,
+    /// What a report says about the problem: its name, and its parameters as JSON.
+    name: String,
+    parameters: String,
+}
+
+impl Question {
+    pub(crate) fn dimension(&self) -> usize {
+        self.axes.len()
+    }
+
+    pub(crate) fn problem(&self) -> PyResult<Function> {
+        let axes = self.axes.iter().map(|&(lower, upper, integer)| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "Python has checked that they are whole and small"
+            )]
+            if integer {
+                Axis::integer(lower as i64, upper as i64)
+            } else {
+                Axis::continuous(lower, upper)
+            }
+        });
+        let space = Space::new(axes).map_err(refused)?;
+        let problem = evaluated_elsewhere(space, self.delta);
+        match &self.separation {
+            None => Ok(problem.separation(0.0)),
+            Some(radii) => problem.separations(radii).map_err(refused),
+        }
+    }
+
+    /// A search by the engine of a complete specification.
+    pub(crate) fn search(&self, spec: &RunSpec) -> PyResult<Search<Function>> {
+        let mut search = Search::with(engine(spec)?).seed(spec.seed).islands(spec.islands);
+        if let Some(share) = spec.probes {
+            search = search.probes(share);
+        }
+        Ok(search.start_from(&self.starts))
+    }
+
+    /// Enters the problem in a specification.
+    pub(crate) fn enter(&self, spec: &mut RunSpec) -> PyResult<()> {
+        spec.problem.clone_from(&self.name);
+        let parameters: Value = serde_json::from_str(&self.parameters).map_err(refused)?;
+        let mut settings = Settings::default();
+        for (name, value) in parameters.as_object().into_iter().flatten() {
+            settings.set(name, value.clone());
+        }
+        spec.problem_parameters = settings;
+        Ok(())
+    }
+}
