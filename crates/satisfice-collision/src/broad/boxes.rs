@@ -20,7 +20,7 @@ impl Box32 {
         max: [f32::NEG_INFINITY; 3],
     };
 
-    /// The least box around some points.
+    /// The smallest box around some points.
     #[inline(always)]
     pub(crate) fn around<const N: usize>(points: [[f32; 3]; N]) -> Self {
         points.iter().fold(Self::EMPTY, |bounds, point| Self {
@@ -29,7 +29,7 @@ impl Box32 {
         })
     }
 
-    /// The least box around both.
+    /// The smallest box around both.
     #[inline]
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self {
@@ -74,7 +74,7 @@ pub(crate) struct BoxTree {
     pub(crate) order: Vec<u32>,
     /// From the items' boxes up to the one group of the root.
     levels: Vec<Vec<Group>>,
-    /// Level 0 of a tree of points; the level itself is then empty. What is missing in the last group is the last point again.
+    /// Level 0 of a tree of points; `levels[0]` is then empty. Copies of the last point fill the last group.
     points: Vec<[Eight; 3]>,
     /// Which lanes of each group hold an item that moved at the last refit.
     moved: Vec<Vec<u8>>,
@@ -113,7 +113,7 @@ impl BoxTree {
         tree
     }
 
-    /// Measures the tree anew after its items have moved; `boxes` are by item. Cost: O(n), and no allocation.
+    /// Refits the tree after its items have moved; `boxes` are by item. Cost: O(n), and no allocation.
     pub(crate) fn refit(&mut self, boxes: &[Box32], threads: usize) {
         let Some((items, above)) = self.levels.split_first_mut() else {
             return;
@@ -128,7 +128,7 @@ impl BoxTree {
         bound(items, above, threads);
     }
 
-    /// The same for a tree of points, in a frame.
+    /// [`Self::refit`] for a tree of points, in a frame.
     pub(crate) fn refit_points(&mut self, points: &[[f64; 3]], frame: &LocalFrame, threads: usize) {
         let Some((_, above)) = self.levels.split_first_mut() else {
             return;
@@ -199,7 +199,7 @@ impl BoxTree {
         groups.iter().map(|group| f64::from(sides(group))).sum()
     }
 
-    /// How many items there are.
+    /// The number of items.
     pub(crate) fn len(&self) -> usize {
         self.order.len()
     }
@@ -230,7 +230,7 @@ impl BoxTree {
         &self.points[group as usize]
     }
 
-    /// How many lanes of a group hold something.
+    /// The number of lanes in use in a group.
     #[inline(always)]
     pub(crate) fn lanes(&self, level: u8, group: u32) -> usize {
         let items = match level {
@@ -241,7 +241,7 @@ impl BoxTree {
     }
 }
 
-/// What bounds a group of eight.
+/// Something that bounds a group of eight.
 trait Bounded: Sync {
     fn bounds(&self) -> Box32;
 }
@@ -325,7 +325,7 @@ impl Work for PlacePoints<'_> {
     fn run<L: Lanes>(self, lanes: L) {
         let (origin, axes) = (wide(self.frame.origin), self.frame.axes());
         for (group, order) in self.groups.iter_mut().zip(self.order.chunks(8)) {
-            // the last group may have less than eight: one of them stands for those missing
+            // the last group may have fewer than eight: one of them fills the other lanes
             let ids: [u32; 8] = std::array::from_fn(|lane| order[lane.min(order.len() - 1)]);
             let mut rows = [[0.0; 4]; 8];
             for lane in 0..8 {

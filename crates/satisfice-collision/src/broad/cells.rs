@@ -1,23 +1,23 @@
-//! Points sorted into the cells of a uniform grid by counting, structure of arrays.
+//! Points sorted into the cells of a uniform grid by counting, as a structure of arrays.
 
 use super::clip::{Part, Placed, greater, lesser};
 
 /// Cells along one axis at most: the cell of a coordinate then stays exact enough to be useful, and no index overflows.
 const PER_AXIS: usize = 1 << 15;
-/// Points up to which one pass sorts; more are first dealt out to groups of layers, each small enough for the cache.
+/// Up to this many points are sorted in one pass; more are first dealt out to groups of layers that fit into the cache.
 const ONE_PASS: usize = 1 << 16;
 
 /// 2^23: added to a number from 0 to 2^22, it leaves the nearest whole number in the lowest bits of the sum.
 const WHOLE: f32 = 8_388_608.0;
 
-/// The nearest whole number of a number clamped to `0..=last`; monotone, branch-free and fit for vectors.
+/// The nearest whole number of a number clamped to `0..=last`; monotone and branch-free, so that it vectorises.
 #[inline(always)]
 pub(crate) fn whole(real: f32, last: f32) -> usize {
     ((lesser(greater(real, 0.0), last) + WHOLE).to_bits() & 0x7f_ffff) as usize
 }
 
-/// A uniform grid in a frame. `cell` is monotone in the coordinate, whatever is rounded on the way: the cells between those
-/// of a - r and a + r hold every point within r of a.
+/// A uniform grid in a frame. `cell` is monotone in the coordinate despite rounding: the cells between those of a - r and
+/// a + r hold every point within r of a.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cells {
     lower: [f32; 3],
@@ -28,7 +28,7 @@ pub(crate) struct Cells {
 
 /// Points a cell has on average where there are any; measured: between 4 and 12 there is little difference.
 const OCCUPANCY: f32 = 6.0;
-/// Points looked at to learn how they are distributed.
+/// The size of the sample that estimates how many points share a cell.
 const SAMPLE: usize = 512;
 
 impl Cells {
@@ -55,7 +55,7 @@ impl Cells {
         self.count
     }
 
-    /// The cell along `axis` of a coordinate; what lies outside belongs to the outermost cells.
+    /// The cell of a coordinate along `axis`; coordinates outside belong to the outermost cells.
     #[inline(always)]
     pub(crate) fn cell(&self, axis: usize, c: f32) -> usize {
         whole((c - self.lower[axis]) * self.inverse, self.last[axis])
@@ -73,19 +73,19 @@ impl Cells {
     }
 }
 
-/// How wide the cells are made. What a sample told is kept for the calls that follow, which often are frames of one motion.
+/// Chooses the width of cells. Keeps the result of a sample for the calls that follow, which often are frames of one motion.
 #[derive(Debug, Default)]
 pub(crate) struct Fit {
-    /// Of the points that the sample was taken of: how many they were, the reach, and by how much the edge was shortened.
+    /// Of the sampled points: their number, the reach, and the factor by which the edge was shortened.
     points: usize,
     reach: f32,
     shortened: f32,
-    /// Calls since then.
+    /// Calls since the sample.
     age: u32,
     sample: Vec<usize>,
 }
 
-/// Calls after which another sample is taken.
+/// A sample is used for this many calls.
 const FRESH: u32 = 16;
 
 impl Fit {
@@ -117,7 +117,7 @@ impl Fit {
     }
 }
 
-/// Points on surfaces fill few cells; a sample tells how many share one, and by what factor the edge is to be shortened.
+/// The factor by which to shorten the edge: points on surfaces fill few cells, and a sample estimates how many share one.
 fn shortened(
     mut crowd: impl FnMut(&Cells) -> f32,
     min: [f32; 3],
@@ -136,10 +136,10 @@ fn shortened(
     edge / longest
 }
 
-/// How many points, on average over the points, share a point's cell, estimated from a sample.
+/// The mean over all points of the number of points in their cell, estimated from a sample.
 fn crowd(parts: &[Part], n: usize, cells: &Cells, sample: &mut Vec<usize>) -> f32 {
     let stride = n.div_ceil(SAMPLE);
-    // of all parts as one, so that nothing depends on how many there are
+    // all parts as one sequence, so that the result does not depend on their number
     let points = parts.iter().flat_map(|part| &part.points).step_by(stride);
     sample.clear();
     sample.extend(points.map(|point| cells.index(&point.q)));
@@ -158,7 +158,7 @@ pub(crate) struct Sorted {
     pub(crate) id: Vec<u32>,
     /// One entry per cell and one for the end.
     pub(crate) start: Vec<u32>,
-    /// The cell of each point in its old order, so that it is computed once.
+    /// The cell of each point, in the order of the input; computed once.
     cell_of: Vec<u32>,
     grouped: Vec<Vec<Placed>>,
     offsets: Vec<Vec<u32>>,
@@ -337,7 +337,7 @@ struct CellGroup<'a> {
     y: &'a mut [f32],
     z: &'a mut [f32],
     id: &'a mut [u32],
-    /// Memory: a number for each point.
+    /// Scratch space: one number per point.
     cell_of: &'a mut [u32],
     /// Zero on entry.
     start: &'a mut [u32],
@@ -356,7 +356,7 @@ impl CellGroup<'_> {
         for segment in segments.clone() {
             let (cell_of, behind) = std::mem::take(&mut rest).split_at_mut(segment.len());
             rest = behind;
-            // apart from the counting, which waits for memory, so that several are computed at a time
+            // in a loop of its own: counting waits for memory, so that cells would be computed one at a time
             for (cell_of, point) in cell_of.iter_mut().zip(segment) {
                 *cell_of = (cells.index(&point.q) - self.first) as u32;
             }

@@ -1,10 +1,12 @@
-//! The part of a body that may be near the other: bounding boxes of blocks of points, and the points inside a region brought into a frame.
+//! The part of a body that may be near the other: bounding boxes of blocks of points, and the points inside a region, in
+//! coordinates of a frame.
 
 use super::frame::LocalFrame;
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Aabb, Error};
 
-/// Points a run has. Meshes number neighbours closely, so a run of 128 is small and is skipped or taken as a whole.
+/// Points in a run. Meshes number neighbours closely, so that a run has a small box and is usually inside or outside as a
+/// whole.
 pub(crate) const RUN: usize = 64;
 
 /// The bounding boxes of a body's points, run by run.
@@ -18,7 +20,7 @@ impl BlockBounds {
     /// Measures `points`.
     ///
     /// # Errors
-    /// [`Error::NonFiniteVertex`] naming the first offender.
+    /// [`Error::NonFiniteVertex`], which names the first vertex that is not finite.
     pub(crate) fn measure(&mut self, points: &[[f64; 3]], threads: usize) -> Result<(), Error> {
         self.whole = None;
         self.boxes.clear();
@@ -45,7 +47,7 @@ impl BlockBounds {
         Ok(())
     }
 
-    /// Takes over what was measured elsewhere, of the same points.
+    /// Copies the bounds of the same points from elsewhere.
     pub(crate) fn copy(&mut self, known: &Self) {
         self.boxes.clone_from(&known.boxes);
         self.whole = known.whole;
@@ -61,7 +63,7 @@ impl BlockBounds {
         &self.boxes
     }
 
-    /// Lists the runs that reach into a region, ascending.
+    /// Lists the runs whose boxes meet a region, in ascending order.
     pub(crate) fn inside(&self, region: &Aabb, list: &mut Vec<u32>) {
         list.clear();
         let runs = (0..).zip(&self.boxes);
@@ -91,7 +93,7 @@ const EMPTY: Aabb = Aabb {
     max: [f64::NEG_INFINITY; 3],
 };
 
-/// The least box that holds both.
+/// The smallest box that holds both.
 pub(crate) fn union(a: &Aabb, b: &Aabb) -> Aabb {
     Aabb {
         min: std::array::from_fn(|k| a.min[k].min(b.min[k])),
@@ -99,7 +101,7 @@ pub(crate) fn union(a: &Aabb, b: &Aabb) -> Aabb {
     }
 }
 
-/// What both have in common; `None` if that is nothing.
+/// The intersection of two boxes; `None` if they do not meet.
 pub(crate) fn intersection(a: &Aabb, b: &Aabb) -> Option<Aabb> {
     let min: [f64; 3] = std::array::from_fn(|k| a.min[k].max(b.min[k]));
     let max: [f64; 3] = std::array::from_fn(|k| a.max[k].min(b.max[k]));
@@ -135,7 +137,7 @@ impl Work for MeasureBlocks<'_> {
                 finite &= c.is_finite();
             }
             all_finite &= finite;
-            // plain comparisons: what is not finite is refused anyway
+            // plain comparisons: points that are not finite are refused anyway
             let least = |a: f64, b: f64| if a < b { a } else { b };
             let greatest = |a: f64, b: f64| if a > b { a } else { b };
             let fold = |of: &[f64; 12], k: usize, pick: fn(f64, f64) -> f64| {
@@ -176,7 +178,7 @@ impl Default for Part {
 }
 
 impl Part {
-    /// Measures the box anew.
+    /// Recomputes the box.
     pub(crate) fn measure(&mut self) {
         dispatch(MeasurePart(self));
     }
@@ -191,7 +193,7 @@ impl Work for MeasurePart<'_> {
     fn run<L: Lanes>(self, lanes: L) {
         let Part { points, min, max } = self.0;
         let none = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
-        // two, because each waits for what it was
+        // two accumulators, because each operation waits for the one before
         let mut extremes = [none; 2];
         let mut widen = |of: usize, Placed { q: [x, y, z], .. }: &Placed| {
             lanes.widen(&mut extremes[of], [*x, *y, *z, 0.0]);
@@ -208,7 +210,7 @@ impl Work for MeasurePart<'_> {
     }
 }
 
-/// What is to be clipped: the runs of a body, the region that counts and the frame to place points in.
+/// A body to be clipped to a region, and the frame of the result.
 #[derive(Clone, Copy)]
 pub(crate) struct Clip<'a> {
     pub(crate) points: &'a [[f64; 3]],
@@ -277,7 +279,7 @@ impl Work for Placing<'_> {
             let bounds = &boxes[run];
             let all = region.contains(bounds.min) && region.contains(bounds.max);
             let (first, last) = (run * RUN, points.len().min((run + 1) * RUN));
-            // always written, kept by moving the end
+            // every point is written, and kept by moving the end: no branch
             let mut len = self.to.len();
             self.to.resize(len + last - first, Placed::default());
             for at in first..last {
@@ -294,13 +296,13 @@ impl Work for Placing<'_> {
     }
 }
 
-/// Three numbers and a fourth that says nothing.
+/// Three numbers and an unused fourth lane.
 #[inline(always)]
 pub(crate) fn wide([x, y, z]: [f64; 3]) -> [f64; 4] {
     [x, y, z, 0.0]
 }
 
-/// A point and whatever number lies behind it: one load, but for the last.
+/// A point and the number after it: one load, except for the last point.
 #[inline(always)]
 pub(crate) fn four(points: &[[f64; 3]], at: usize) -> [f64; 4] {
     match points.as_flattened().get(3 * at..3 * at + 4) {

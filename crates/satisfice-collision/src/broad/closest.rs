@@ -25,7 +25,7 @@ use subtrees::Subtrees;
 /// Visits between two looks at the watch.
 const LOOK: u64 = 256;
 
-/// What has been found by its distance, then by its key.
+/// A result, ordered by distance, then by key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ranked<T> {
     pub(crate) distance: f64,
@@ -48,7 +48,7 @@ impl<T: Ord> PartialOrd for Ranked<T> {
     }
 }
 
-/// The closest that have been found so far, over any number of searches: at most so many, all below a cutoff if there is one.
+/// The closest results of any number of searches: at most a given number, all below a cutoff if there is one.
 #[derive(Debug)]
 pub(crate) struct Closest<T> {
     wanted: usize,
@@ -77,25 +77,25 @@ impl<T: Ord + Copy> Closest<T> {
         }
     }
 
-    /// Nothing further away than this is of interest any more.
+    /// Results further away than this no longer matter.
     pub(crate) fn bound(&self) -> f64 {
         let last = self.found.peek().filter(|_| self.found.len() >= self.wanted);
         let cutoff = self.cutoff.map_or(f64::INFINITY, Threshold::get);
         last.map_or(cutoff, |last| last.distance)
     }
 
-    /// Whether nothing can change any more.
+    /// Whether no further result can change the answer.
     pub(crate) fn is_settled(&self) -> bool {
         self.wanted == 0 || (self.any_contact && self.found.len() == 1 && self.bound() == 0.0)
     }
 
-    /// Whether what is at least so far away, and has at least this key if it is not further, is of no interest any more.
+    /// Whether results at this distance with this key, or beyond, no longer matter.
     pub(crate) fn excludes(&self, distance: f64, key: T) -> bool {
         let last = self.found.peek().filter(|_| self.found.len() >= self.wanted);
         last.is_some_and(|last| Ranked { distance, key } >= *last)
     }
 
-    /// Takes a pair, if it is close enough.
+    /// Adds a pair if it is close enough.
     fn offer(&mut self, a: &Shape, b: &Shape, key: T) {
         if self.excludes(0.0, key) || distance::measure(a, b) * (1.0 - 2.0 * ACCURACY) > self.bound() {
             return;
@@ -118,7 +118,7 @@ impl<T: Ord + Copy> Closest<T> {
         }
     }
 
-    /// What was found, the closest first.
+    /// The results, closest first.
     pub(crate) fn into_sorted(self) -> Vec<Ranked<T>> {
         self.found.into_sorted_vec()
     }
@@ -306,7 +306,7 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
         }
     }
 
-    /// Puts aside what is to be opened later, unless nothing in it is of interest.
+    /// Queues an entry unless nothing in it matters.
     fn push(&mut self, mut open: Open) {
         let visit = open.visit;
         open.rank = u64::from(visit.level_a) + u64::from(visit.level_b);
@@ -346,7 +346,7 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
         }
     }
 
-    /// Whether nothing below is of interest any more, as distances and numbers tell.
+    /// Whether distances and numbers prove that nothing below matters any more.
     fn excludes(&self, open: &Open) -> bool {
         self.least(open.visit).is_some_and(|least| {
             self.closest
@@ -461,7 +461,7 @@ impl<T: Ord + Copy, K: Fn(Pair) -> T> ClosestSearch<'_, T, K> {
         }
     }
 
-    /// Puts aside a part of what is opened.
+    /// Queues a part of an opened entry.
     fn push_below(&mut self, open: &Open, gap: f64, visit: Visit) {
         self.push(Open {
             gap: gap.to_bits(),

@@ -1,4 +1,4 @@
-//! The question that the fast filter leaves open, asked of the exact decision.
+//! The exact decision for pairs of points that the fast filter leaves open.
 
 use crate::distance::{Threshold, vertex_vertex};
 

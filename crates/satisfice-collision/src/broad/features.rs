@@ -28,19 +28,19 @@ pub struct FeatureTree {
     pub(crate) frame: LocalFrame,
     boxes: Vec<Box32>,
     placed: Vec<[f32; 3]>,
-    /// Of triangles only.
+    /// For triangles only.
     directions: Vec<Directions>,
     /// Whether each vertex moved at the last refit.
     moved: Vec<bool>,
     pub(crate) tree: BoxTree,
-    /// Of the tree when it was built, in the unit of the coordinates.
+    /// The sum of sides when the tree was built, in the unit of the coordinates.
     built_sum_of_sides: f64,
 }
 
-/// A tree whose boxes have grown by this factor since it was built is worth building anew.
+/// A tree is rebuilt once its boxes have grown by this factor since it was built.
 const DEGRADED: f64 = 1.5;
 
-/// What a refit saw.
+/// The result of a refit.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Refit {
     /// Vertices whose coordinates changed.
@@ -49,7 +49,7 @@ pub struct Refit {
     pub motion: f64,
 }
 
-/// Vertices being moved, and what is seen of it: the motion squared.
+/// Vertices being moved, and their squared motion.
 struct Move<'a> {
     moved: &'a mut [bool],
     old: &'a mut [Point],
@@ -62,7 +62,7 @@ impl Work for Move<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> Refit {
         let Self { moved, old, new } = self;
-        // four at a time, so that the maximum of one need not wait for that of the one before
+        // four at a time, so that no maximum waits for the one before
         let (mut count, mut most) = (0, [0.0; 4]);
         let mut step = |lane: usize, moved: &mut bool, old: &mut Point, new: &Point| {
             let way = [new[0] - old[0], new[1] - old[1], new[2] - old[2]];
@@ -137,7 +137,7 @@ impl FeatureTree {
         self.tree.sum_of_sides() / self.frame.scale > DEGRADED * self.built_sum_of_sides
     }
 
-    /// Moves the vertices and measures the boxes anew; which features are siblings stays. Cost: O(n), no allocation.
+    /// Moves the vertices and recomputes the boxes; the tree keeps its shape. Cost: O(n), no allocation.
     ///
     /// # Errors
     /// [`Error::NonFiniteVertex`], or [`Error::Parameter`] if the number of vertices differs; the tree is then as before.
@@ -188,7 +188,7 @@ impl FeatureTree {
         }
     }
 
-    /// The boxes of what is not a point.
+    /// The boxes of edges or triangles.
     fn measure(&mut self, vertices: &[Point]) {
         let Self {
             frame,
@@ -227,7 +227,7 @@ impl FeatureTree {
         1.7321 * self.frame.half / self.frame.scale
     }
 
-    /// How many features there are.
+    /// The number of features.
     #[must_use]
     pub fn len(&self) -> usize {
         self.tree.len()
@@ -239,13 +239,13 @@ impl FeatureTree {
         self.len() == 0
     }
 
-    /// What the features are.
+    /// The kind of the features.
     #[must_use]
     pub fn kind(&self) -> FeatureKind {
         self.kind
     }
 
-    /// The vertices, where they were put last.
+    /// The vertices at the last refit.
     #[must_use]
     pub fn vertices(&self) -> &[Point] {
         &self.vertices
@@ -261,7 +261,7 @@ impl FeatureTree {
         self.topology.features(self.kind, self.vertices.len())
     }
 
-    /// Where a feature is, in the body's own coordinates.
+    /// The shape of a feature in the coordinates of the body.
     #[inline]
     pub(crate) fn shape(&self, feature: u32) -> Shape {
         self.features().shape(feature, |v| self.point(v))
@@ -282,7 +282,7 @@ impl FeatureTree {
         self.features().corners(feature)
     }
 
-    /// The triangles, if that is what the tree is about.
+    /// The triangles of a tree over triangles.
     pub(crate) fn triangles(&self) -> Option<Triangles<'_>> {
         match self.features() {
             Features::Triangles(corners) => Some(Triangles {

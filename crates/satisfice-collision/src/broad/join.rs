@@ -11,32 +11,32 @@ use super::pair::Pair;
 use super::watch::Watch;
 use crate::simd::{Eight, Lanes, Work};
 
-/// Tests between two looks at the watch: some 20 us, or 0.2 ms where most are pairs.
+/// Tests between two calls of the watch: tens of microseconds.
 const LOOK: u64 = 1 << 16;
-/// From so many tests in one cell on a finer look is worth its overhead.
+/// A cell with more tests than this gets a grid of its own.
 const DENSE: usize = 1 << 17;
 
-/// A cell with too many tests in it: the serial numbers of its points and of their candidates.
+/// A cell with too many tests: the numbers of its points and of their candidates.
 #[derive(Debug)]
 pub(crate) struct DenseCell {
     pub(crate) a: Vec<u32>,
     pub(crate) b: Vec<u32>,
 }
 
-/// What one task keeps between frames.
+/// The memory of a task, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     near: [Vec<f32>; 3],
     near_id: Vec<u32>,
     /// The pairs found.
     pub(crate) found: Vec<Pair>,
-    /// Cells to be split in frames of their own.
+    /// Cells to be split.
     pub(crate) dense_cells: Vec<DenseCell>,
     /// Squared distances computed.
     pub(crate) tests: u64,
     /// Pairs decided exactly because the filter could not.
     pub(crate) in_band: u64,
-    /// When to look at the watch next, in tests, and how many pairs it was told of.
+    /// The number of tests at which to ask the watch next, and the number of pairs already reported to it.
     next_look: u64,
     told: usize,
 }
@@ -51,7 +51,7 @@ impl Scratch {
         self.told = 0;
     }
 
-    /// Whether to stop, as the watch says.
+    /// Asks the watch whether to stop.
     fn is_enough(&mut self, watch: &Watch<'_>) -> bool {
         self.next_look = self.tests + LOOK;
         let new = self.found.len() - std::mem::replace(&mut self.told, self.found.len());
@@ -110,7 +110,7 @@ impl<const ONE_BODY: bool> Work for Join<'_, ONE_BODY> {
 }
 
 impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
-    /// Whether the watch says that it is enough.
+    /// Joins a cell. Returns whether the watch says to stop.
     #[inline(always)]
     fn cell<L: Lanes>(&mut self, lanes: L, cell: usize, own: Range<usize>) -> bool {
         let reach = self.filter.reach;
@@ -207,7 +207,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
                 copy.append(lanes, points(z, y), min, max);
             }
         }
-        // what is left of the last eight must be no candidate
+        // the unused lanes of the last eight must not be candidates
         let len = copy.len;
         for axis in copy.to {
             axis[len..len + 8].fill(f32::INFINITY);

@@ -1,4 +1,4 @@
-//! Points without a partner nearby are dropped before they are sorted: a coarse bitmap of where the other body is.
+//! Drops points without a partner nearby before they are sorted, by a coarse bitmap of the other body.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -10,23 +10,23 @@ const SIDE: usize = 64;
 const ROWS: usize = SIDE * SIDE;
 /// Fewer points than this are sorted faster than culled.
 const WORTH: usize = 1 << 15;
-/// Points that tell whether the other body fills the overlap, so that a cull would hold nothing back: uniform points of this
-/// number are near to half of the cells.
+/// The size of the sample that tells whether the other body fills the overlap, so that a cull would drop little: this many
+/// uniform points are near half of the cells.
 const SAMPLE: usize = 1 << 13;
 
 /// Drops points without a partner nearby. Keeps its memory from call to call.
 #[derive(Debug, Default)]
 pub(crate) struct OccupancyCull {
     grid: Grid,
-    /// Where one body is; atomic, because several threads mark it.
+    /// The cells of one body; atomic, because several threads mark them.
     marks: Vec<AtomicU64>,
-    /// What is near to that.
+    /// The marked cells and their neighbours.
     near: Vec<u64>,
     spare: Vec<u64>,
 }
 
 impl OccupancyCull {
-    /// Drops the points of either body that have no cell of the other's nearby. Returns how many.
+    /// Drops the points of either body that have no occupied cell of the other nearby. Returns their number.
     pub(crate) fn cull(&mut self, a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
         let count = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
         let before = count(a) + count(b);
@@ -36,7 +36,7 @@ impl OccupancyCull {
         self.grid = Grid::new(&a.iter().chain(b.iter()), reach);
         self.clear();
         let step = count(a).div_ceil(SAMPLE);
-        // of all parts as one, so that nothing depends on how many there are
+        // all parts as one sequence, so that the result does not depend on their number
         let points = a.iter().flat_map(|part| &part.points);
         points.step_by(step).for_each(|point| self.mark(point));
         self.widen();
@@ -62,13 +62,13 @@ impl OccupancyCull {
         self.marks.iter_mut().for_each(|row| *row.get_mut() = 0);
     }
 
-    /// Most points lie where others do, and then nothing is written that other threads would have to read again.
+    /// Marks the cell of a point. Most cells are marked already; then nothing is written, and no cache line changes hands.
     #[inline(always)]
     fn mark(&self, point: &Placed) {
         let (row, bit) = self.grid.cell(point);
         let row = &self.marks[row];
         if row.load(Ordering::Relaxed) >> bit & 1 == 0 {
-            // whoever reads it has joined the threads
+            // the threads are joined before it is read
             row.fetch_or(1 << bit, Ordering::Relaxed);
         }
     }
@@ -84,7 +84,7 @@ impl OccupancyCull {
         self.widen();
     }
 
-    /// Enters as near every marked cell and those adjacent to it, corners included.
+    /// Marks as near every marked cell and those adjacent to it, corners included.
     fn widen(&mut self) {
         let Self {
             marks, near, spare, ..
@@ -102,7 +102,7 @@ impl OccupancyCull {
         add(near, &spare[SIDE..]);
     }
 
-    /// Drops the points that are not near, and measures what is left.
+    /// Drops the points that are not near, and recomputes the boxes.
     fn keep(&self, parts: &mut [Part], threads: usize) {
         let one = |part: &mut Part| {
             let mut len = 0;
@@ -124,7 +124,7 @@ impl OccupancyCull {
     }
 }
 
-/// Marks what is marked in as many of the other rows as there are.
+/// Adds the marks of other rows, as many as there are in both.
 fn add(rows: &mut [u64], others: &[u64]) {
     rows.iter_mut().zip(others).for_each(|(row, other)| *row |= other);
 }

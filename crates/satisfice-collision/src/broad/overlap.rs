@@ -1,9 +1,9 @@
-//! The regions of two bodies that can have partners in the other: the overlap of their inflated boxes, tightened.
+//! The region of each of two bodies that can have partners in the other: the overlap of their inflated boxes, tightened.
 
 use super::clip::{BlockBounds, inflate, intersection, union};
 use crate::Aabb;
 
-/// What of two bodies can have partners in the other. Keeps its memory from call to call.
+/// Finds the parts of two bodies that can have partners in the other. Keeps its memory from call to call.
 #[derive(Debug, Default)]
 pub(crate) struct Overlap {
     /// The runs of each body that reach into its region, ascending: often neighbours, so that work is shared out by these and

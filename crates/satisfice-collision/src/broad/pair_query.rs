@@ -10,10 +10,10 @@ use crate::distance::{self, Threshold, Triangle, TriangleBatch};
 use crate::simd::dispatch;
 use crate::{Error, FeatureKind, Placement, Shape};
 
-/// Which pairs of features count at all; `None` for all of them.
+/// Decides which pairs of features count; `None` for all.
 pub type Keep<'a> = Option<&'a (dyn Fn(u32, u32) -> bool + Sync)>;
 
-/// Which pairs of features are wanted.
+/// Two posed bodies and the pairs of features to find.
 #[derive(Clone, Copy)]
 pub(crate) struct PairQuery<'a> {
     pub(crate) a: (&'a FeatureTree, &'a Placement),
@@ -27,7 +27,7 @@ pub(crate) struct PairQuery<'a> {
 }
 
 impl PairQuery<'_> {
-    /// Refuses poses that take a vertex out of the range of `f64`.
+    /// Checks that no pose takes a vertex out of the range of `f64`.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (tree, pose) in [self.a, self.b] {
             check_pose(tree, pose)?;
@@ -49,8 +49,7 @@ impl PairQuery<'_> {
         self.keep.is_none_or(|keep| keep(a, b))
     }
 
-    /// Brings both trees into one frame: that of the body with the coarser one. `then` is told whether the first of the trees
-    /// is `b`.
+    /// Calls `then` with both trees in one frame, the coarser one of the two, and with whether the first tree is that of `b`.
     pub(crate) fn in_common_frame<R>(&self, then: impl FnOnce(Trees<'_>, bool) -> R) -> R {
         let (a, b) = (self.a.0, self.b.0);
         if self.one_body {
@@ -91,7 +90,7 @@ impl PairQuery<'_> {
         )
     }
 
-    /// How to see that two triangles are far apart in a descent of these trees.
+    /// The separating-axis test for a descent of these trees; `None` unless the features are triangles.
     pub(crate) fn separating_axes<'t>(&'t self, trees: &Trees<'t>, flip: bool) -> Option<SeparatingAxes<'t>> {
         let (first, second) = if flip {
             (self.b.0, self.a.0)
@@ -107,8 +106,8 @@ impl PairQuery<'_> {
         })
     }
 
-    /// Goes on with a descent that `stack` holds: at most `most` visits, at most about `enough` pairs, which are appended to
-    /// `found` without order. The descent starts with `start` and has ended when the stack is empty.
+    /// Continues the descent in `stack`: at most `most` visits and about `enough` pairs, which are appended to `found` in no
+    /// order. A descent starts with `start` and has ended when the stack is empty.
     pub(crate) fn step(
         &self,
         stack: &mut Vec<Visit>,
@@ -140,7 +139,7 @@ impl PairQuery<'_> {
         })
     }
 
-    /// Where a descent starts.
+    /// Puts the start of a descent onto the stack.
     pub(crate) fn start(&self, stack: &mut Vec<Visit>) {
         stack.clear();
         if !self.apart() {
@@ -164,7 +163,7 @@ impl PairQuery<'_> {
         ]
     }
 
-    /// How the first body lies in the frame of the second, or the other way round if they are flipped.
+    /// The pose of the first body in the frame of the second, or the other way round if `flip`.
     pub(crate) fn composition(&self, flip: bool) -> Composition {
         let ((a, pose_a), (b, pose_b)) = if flip { (self.b, self.a) } else { (self.a, self.b) };
         Composition::new(&a.frame, pose_a, &b.frame, pose_b)
@@ -196,9 +195,9 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
     /// Whether the first tree of the descent is `b`.
     flip: bool,
     found: &'a mut Vec<Pair>,
-    /// How to see that two triangles are far apart, if that is what the pairs are.
+    /// The separating-axis test, for pairs of triangles.
     axes: Option<SeparatingAxes<'a>>,
-    /// Triangles that wait to be decided with others.
+    /// Pairs of triangles to be decided as a batch.
     waiting: TriangleBatch<Pair>,
     /// Pairs after which the descent pauses.
     enough: usize,
@@ -224,7 +223,7 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
         }
     }
 
-    /// Goes on with a descent: at most about `most` visits.
+    /// Continues a descent: at most about `most` visits.
     pub(crate) fn descend(&mut self, trees: Trees<'_>, stack: &mut Vec<Visit>, most: usize) -> TreeWork {
         let visits = dispatch(Descend {
             trees,
@@ -294,7 +293,7 @@ fn apart(
     (0..3).any(|k| (centre_a[k] - centre_b[k]).abs() > reach + slack)
 }
 
-/// Refuses a pose that takes a vertex out of the range of `f64`.
+/// Checks that a pose takes no vertex out of the range of `f64`.
 fn check_pose(tree: &FeatureTree, pose: &Placement) -> Result<(), Error> {
     let farthest =
         tree.frame.half / tree.frame.scale + tree.frame.origin.iter().fold(0.0, |m, c| c.abs().max(m));

@@ -1,4 +1,4 @@
-//! All pairs of points within a threshold, of two bodies or inside one, exactly and in order.
+//! All pairs of points within a threshold, of two bodies or within one: exact and sorted.
 
 use super::cells::{Cells, Fit, Sorted};
 use super::clip::{BlockBounds, Clip, Part, union};
@@ -15,13 +15,13 @@ use crate::distance::Threshold;
 use crate::simd::dispatch;
 use crate::{Aabb, Error};
 
-/// How deep dense cells may be split; each gets a frame of its own, at most half as wide as the one before.
+/// Dense cells are split at most this often; each gets a frame of its own, at most half as wide as the one before.
 const DEEPEST: u32 = 40;
 
-/// Points from which threads share the work: to wake one takes as long as some hundreds of points do.
+/// From this many points on, threads share the work: waking one takes as long as hundreds of points.
 const SHARED: usize = 1 << 15;
 
-/// Does both, side by side where there are threads for it.
+/// Runs both, in parallel if `shared`.
 fn both<A: Send, B: Send>(
     shared: bool,
     one: impl FnOnce() -> A + Send,
@@ -34,7 +34,7 @@ fn both<A: Send, B: Send>(
     }
 }
 
-/// What an enumeration had to do.
+/// The work of an enumeration.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PointWork {
     /// Points of both bodies outside the overlap of the inflated boxes.
@@ -93,7 +93,7 @@ impl PointGrid {
         }
     }
 
-    /// What the last call did.
+    /// The work of the last call.
     #[must_use]
     pub fn work(&self) -> PointWork {
         self.work
@@ -122,7 +122,7 @@ impl PointGrid {
         self.within_until(points, None, threshold, &Watch::none())
     }
 
-    /// [`PointGrid::between`] for as long as the watch lets it.
+    /// [`PointGrid::between`], until the watch stops it.
     pub(crate) fn between_until(
         &mut self,
         a: &[[f64; 3]],
@@ -134,7 +134,7 @@ impl PointGrid {
         Ok(&self.pairs)
     }
 
-    /// [`PointGrid::within`] for as long as the watch lets it, of points that may have been measured already.
+    /// [`PointGrid::within`], until the watch stops it; `measured` are the bounds of the points, if known.
     pub(crate) fn within_until(
         &mut self,
         points: &[[f64; 3]],
@@ -237,7 +237,7 @@ impl PointGrid {
         Ok(())
     }
 
-    /// Brings what both bodies have near the other into a frame.
+    /// Places the points of both bodies that may be near the other in a common frame; `None` if there are none.
     fn clip<const ONE_BODY: bool>(
         &mut self,
         a: &[[f64; 3]],
@@ -340,7 +340,7 @@ impl PointGrid {
         tasks
     }
 
-    /// Looks at a crowded cell in a frame of its own.
+    /// Finds the pairs of a dense cell in a frame of its own.
     fn split_dense_cell<const ONE_BODY: bool>(
         &mut self,
         decide: &ExactTest<'_>,

@@ -1,4 +1,5 @@
-//! What a segment meets first in a posed tree of triangles: boxes in the order in which it enters them, triangles decided exactly.
+//! The first triangle of a posed tree that a segment meets: boxes in the order in which it enters them, triangles decided
+//! exactly.
 //!
 //! A side of a box is wrong by at most e, the error of its frame, and the ends of the segment by 2^-46 times all lengths
 //! involved, as in `relative`. Ways along the segment are computed in `f64`; their rounding moves a point of it by less than
@@ -75,7 +76,7 @@ impl<T: Ord + Copy> FirstHit<T> {
         Self { segment, hit: None }
     }
 
-    /// Nothing beyond this part of the way is of interest any more.
+    /// Hits beyond this parameter no longer matter.
     pub(crate) fn bound(&self) -> f64 {
         self.hit.as_ref().map_or(1.0, |(first, ..)| first.at_most())
     }
@@ -93,7 +94,7 @@ impl<T: Ord + Copy> FirstHit<T> {
         self.hit = Some((first, triangle, key));
     }
 
-    /// Adds what the segment meets of a tree of triangles; those that `keep` leaves out do not count.
+    /// Adds the hits of the segment in a tree of triangles; triangles that `keep` rejects do not count.
     pub(crate) fn add(
         &mut self,
         (tree, pose): (&FeatureTree, &Placement),
@@ -130,7 +131,7 @@ impl<T: Ord + Copy> FirstHit<T> {
         }
     }
 
-    /// The key of what was found, and at which part of the way.
+    /// The key of the first hit, and its parameter along the segment.
     pub(crate) fn found(self) -> Option<(T, f64)> {
         let (mut first, triangle, key) = self.hit?;
         Some((key, first.value(&self.segment, &triangle)))

@@ -1,4 +1,4 @@
-//! Two box trees, or one with itself, descended together: which items can be within the threshold.
+//! The descent of two box trees, or of one with itself: which items can be within the threshold.
 
 use std::cmp::Ordering;
 
@@ -29,7 +29,7 @@ impl Visit {
     }
 }
 
-/// What a traversal had to do.
+/// The work of a traversal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TreeWork {
     /// Pairs of groups of eight boxes compared.
@@ -40,11 +40,11 @@ pub struct TreeWork {
     pub decisions: u64,
 }
 
-/// What happens to a pair of items that can be within the threshold.
+/// Receives the pairs of items that can be within the threshold.
 pub(crate) trait Candidates {
     /// Whether items are points, so that the squared distance itself is known.
     const POINTS: bool;
-    /// Takes a pair of items; `sure` if it is within the threshold for certain.
+    /// Receives a pair of items; `sure` if it is certainly within the threshold.
     fn candidate(&mut self, a: u32, b: u32, sure: bool);
     /// Whether enough has been found.
     fn enough(&self) -> bool {
@@ -52,10 +52,10 @@ pub(crate) trait Candidates {
     }
 }
 
-/// Of a group with itself: each pair of different lanes once.
+/// For a group with itself: each pair of different lanes once.
 const DIFFERENT: u64 = 0x0080_c0e0_f0f8_fcfe;
 
-/// Two trees and how they lie.
+/// Two trees and their relative pose.
 #[derive(Clone, Copy)]
 pub(crate) struct Trees<'a> {
     pub(crate) a: &'a BoxTree,
@@ -69,7 +69,7 @@ pub(crate) struct Trees<'a> {
 }
 
 impl Trees<'_> {
-    /// Where a traversal starts; nothing if a tree is empty.
+    /// Pushes the start of a traversal; nothing if a tree is empty.
     pub(crate) fn start(&self, to: &mut Vec<Visit>) {
         if let (Some(level_a), Some(level_b)) = (self.a.root(), self.b.root()) {
             to.push(Visit {
@@ -81,7 +81,7 @@ impl Trees<'_> {
         }
     }
 
-    /// Which pairs of the lanes of two groups count: bit `8 i + j` speaks of lane `i` of the first and `j` of the second.
+    /// The pairs of lanes of two groups that count: bit `8 i + j` is lane `i` of the first and lane `j` of the second.
     #[inline(always)]
     pub(super) fn wanted(&self, at: Visit) -> u64 {
         let (lanes_a, lanes_b) = (self.a.lanes(at.level_a, at.a), self.b.lanes(at.level_b, at.b));
@@ -186,10 +186,10 @@ struct Leaf {
     b: u32,
 }
 
-/// Compares the leaves below a visit, those named by `below`, without the way over the stack. Returns how many they are.
+/// Compares the leaves in `below` under a visit without using the stack. Returns their number.
 ///
-/// First all are compared, then those looked at that have something near: one in several has, which nobody could foretell, and
-/// a wrong guess costs as much as a comparison. `found` is room for them.
+/// All are compared before any is delivered: only one in several has near items, and a mispredicted branch costs as much as a
+/// comparison. `found` is scratch space.
 #[inline(always)]
 fn leaves<L: Lanes, C: Candidates>(
     lanes: L,
@@ -211,7 +211,7 @@ fn leaves<L: Lanes, C: Candidates>(
     }
     for (n, &leaf) in found.iter().enumerate().take(count) {
         if visit.enough() {
-            // these wait until somebody wants more
+            // the rest stays on the stack
             stack.extend(found[n..count].iter().map(|leaf| Visit::leaf(leaf.a, leaf.b)));
             break;
         }
@@ -220,7 +220,7 @@ fn leaves<L: Lanes, C: Candidates>(
     visits
 }
 
-/// The next pair of lanes of a mask that is not 0, which loses it.
+/// Removes and returns the next pair of lanes of a mask that is not 0.
 #[inline(always)]
 pub(super) fn next(mask: &mut u64) -> (usize, usize) {
     let at = mask.trailing_zeros() as usize & 63;
@@ -261,12 +261,12 @@ fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit) 
     let mut room = [[0.0; 8]; 3];
     let points_a = trees.relative.points(a.points(at.a), &mut room);
     let near = lanes.all_closer(columns(b.points(at.b)), points_a, filter.definitely_outside_sq);
-    // no item with itself, which is all that is near in most of these
+    // no item with itself: usually nothing else is near
     let is_one = trees.one_body && at.a == at.b;
     near & if is_one { DIFFERENT } else { u64::MAX }
 }
 
-/// Hands over what is near in a leaf and wanted.
+/// Delivers the near and wanted pairs of a leaf.
 #[inline(always)]
 fn deliver<C: Candidates>(
     trees: Trees<'_>,

@@ -1,4 +1,4 @@
-//! All pairs of features within a threshold by kept box trees, of bodies that may have been posed since.
+//! All pairs of features within a threshold, by kept box trees of posed bodies.
 
 use super::boxes::{BoxTree, Dirty};
 use super::features::FeatureTree;
@@ -10,7 +10,7 @@ use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Error, Placement};
 
-/// Visits, and decisions of a row of brute force, between two looks at the watch: 0.1 to 10 ms.
+/// Visits, or decisions of a row of brute force, between two calls of the watch.
 const LOOK: usize = 1 << 12;
 
 /// Finds pairs of features of kept trees. Keeps its memory from call to call.
@@ -61,7 +61,7 @@ impl TreeJoin {
         }
     }
 
-    /// What the last call did.
+    /// The work of the last call.
     #[must_use]
     pub fn work(&self) -> TreeWork {
         self.work
@@ -92,7 +92,7 @@ impl TreeJoin {
         Ok(&self.pairs)
     }
 
-    /// All pairs `i < j` of features of one body, where it was put last, that are within the threshold and kept.
+    /// All pairs `i < j` of features of one body at its last refit that are within the threshold and kept.
     pub fn within(&mut self, body: &FeatureTree, threshold: Threshold, keep: Keep<'_>) -> &[Pair] {
         let body = (body, &Placement::IDENTITY);
         let query = PairQuery {
@@ -107,8 +107,7 @@ impl TreeJoin {
         &self.pairs
     }
 
-    /// The same without a tree, for a comparison or for a handful of features: every pair is decided. A query of one body
-    /// gives each pair once.
+    /// The answer of [`Self::all`] without a tree, for comparison or for a handful of features: every pair is decided.
     pub(crate) fn brute_force(&mut self, query: &PairQuery<'_>, watch: &Watch<'_>) -> &[Pair] {
         self.pairs.clear();
         self.work = TreeWork::default();
@@ -148,7 +147,7 @@ impl TreeJoin {
             };
             (found, decisions)
         });
-        // in their order, however many threads there are
+        // in order of rows, for any number of threads
         for (found, decisions) in rows.collect::<Vec<_>>() {
             self.pairs.extend(found);
             self.work.decisions += decisions;
@@ -156,7 +155,7 @@ impl TreeJoin {
         &self.pairs
     }
 
-    /// All pairs that a query asks for, or as many as the watch has time for.
+    /// All pairs of a query, or those found before the watch stops it.
     pub(crate) fn all(&mut self, query: &PairQuery<'_>, watch: &Watch<'_>) -> &[Pair] {
         if query.apart() {
             self.work = TreeWork::default();
@@ -204,7 +203,7 @@ impl TreeJoin {
         trees.start(&mut self.tasks[0].stack);
         let big = |tree: &BoxTree| tree.len() > 4096;
         if self.threads > 1 && (big(trees.a) || big(trees.b)) {
-            // broad steps first, until there is enough to share out
+            // breadth first, until there are enough tasks to share
             let tasks = self.threads * 16;
             let mut open = std::mem::take(&mut self.tasks[0].stack);
             let mut next = Vec::new();

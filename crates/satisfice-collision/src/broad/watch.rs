@@ -1,11 +1,11 @@
-//! A question asked now and then while pairs are enumerated, from any thread: is it enough?
+//! The stop condition of an enumeration, asked now and then from any thread.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Told how many pairs there are by now; says whether to stop.
+/// Gets the number of pairs found so far; returns whether to stop.
 pub(crate) type Stop<'a> = &'a (dyn Fn(usize) -> bool + Sync);
 
-/// What every thread of an enumeration looks at.
+/// The stop condition shared by all threads of an enumeration.
 pub(crate) struct Watch<'a> {
     stop: Option<Stop<'a>>,
     found: AtomicUsize,
@@ -13,7 +13,7 @@ pub(crate) struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// To the end.
+    /// Never stops.
     pub(crate) const fn none() -> Self {
         Self {
             stop: None,
@@ -22,7 +22,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Until `stop` says so.
+    /// Stops when `stop` returns true.
     pub(crate) const fn until(stop: Stop<'a>) -> Self {
         Self {
             stop: Some(stop),
@@ -30,7 +30,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Tells of `new` pairs and asks. Once the answer is yes, it stays so.
+    /// Reports `new` pairs and asks whether to stop. A yes is final.
     #[cold]
     #[inline(never)]
     pub(crate) fn ask(&self, new: usize) -> bool {
@@ -42,7 +42,7 @@ impl<'a> Watch<'a> {
         self.stopped()
     }
 
-    /// Whether the answer was yes: something may be missing.
+    /// Whether the enumeration was stopped, so that pairs may be missing.
     pub(crate) fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

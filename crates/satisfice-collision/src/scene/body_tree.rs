@@ -85,7 +85,7 @@ impl BodyTree {
             + (self.places.capacity() + self.free.capacity() + self.changed.capacity()) * 4
     }
 
-    /// Builds the tree anew over these boxes, in a frame around them; all of them have changed. Cost: O(n log n).
+    /// Rebuilds the tree over these boxes, in a frame around them; all of them have changed. Cost: O(n log n).
     pub(super) fn build(&mut self, boxes: &[(u32, Aabb)]) {
         self.choose_frame(boxes);
         let placed = boxes.iter().map(|(body, bounds)| (*body, self.place(bounds)));
@@ -96,7 +96,7 @@ impl BodyTree {
         }
     }
 
-    /// Builds the tree anew over these boxes.
+    /// Rebuilds the tree over these boxes.
     fn arrange(&mut self, boxes: &[(u32, Box32)]) {
         self.nodes.clear();
         self.free.clear();
@@ -201,7 +201,7 @@ impl BodyTree {
         node.set_box(lane_in(place), to);
     }
 
-    /// Puts a body that is not in the tree into it. Cost: O(log n).
+    /// Inserts a body. Cost: O(log n).
     fn insert(&mut self, body: u32, to: &Box32) {
         if self.places.len() <= body as usize {
             self.places.resize(body as usize + 1, NONE);
@@ -285,7 +285,7 @@ impl BodyTree {
         }
     }
 
-    /// Takes a body out. Cost: O(log n).
+    /// Removes a body. Cost: O(log n).
     pub(super) fn remove(&mut self, body: u32) {
         let Some(mut place) = self.place_of(body) else {
             return;

@@ -1,4 +1,4 @@
-//! What the last update changed: contacts and pairs of bodies that began, persisted although looked at again, or ended.
+//! What the last update changed: contacts and pairs of bodies that began, persisted although recomputed, or ended.
 
 use std::cmp::Ordering;
 use std::iter::Peekable;
@@ -7,27 +7,27 @@ use super::pairs::NONE;
 use super::{BodyId, Contact, World};
 use crate::broad::Pair;
 
-/// What has become of a contact or of a pair of bodies.
+/// The change of a contact or of a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ChangeKind {
     /// It was not there before.
     Begun,
-    /// It was there and still is; it was looked at because one of its bodies moved.
+    /// It was there and still is; it was recomputed because one of its bodies moved.
     Persisting,
     /// It is no longer there.
     Ended,
 }
 
-/// What has become of a contact.
+/// The change of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Change {
     /// The contact.
     pub contact: Contact,
-    /// What has become of it.
+    /// Its change.
     pub kind: ChangeKind,
 }
 
-/// What has become of two bodies, or of one with itself.
+/// The change of two bodies, or of one with itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BodyChange {
     /// The body of the first features. For pairs of equal features the one with the lower index.
@@ -40,7 +40,7 @@ pub struct BodyChange {
     pub contacts: usize,
 }
 
-/// The contacts that two bodies had before the last update looked at them.
+/// The contacts that two bodies had before the last update examined them.
 struct Entry {
     bodies: [BodyId; 2],
     /// [`NONE`] if the record was taken out.
@@ -48,7 +48,7 @@ struct Entry {
     before: Vec<Pair>,
 }
 
-/// What the last update looked at.
+/// The records that the last update examined.
 #[derive(Default)]
 pub(super) struct Log {
     entries: Vec<Entry>,
@@ -57,7 +57,7 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// A new frame: what the last update did is forgotten.
+    /// Starts a new frame and forgets the last update.
     pub(super) fn begin(&mut self) {
         if std::mem::take(&mut self.is_over) {
             self.entries.clear();
@@ -80,8 +80,8 @@ impl Log {
 }
 
 impl World {
-    /// The contacts that the last update looked at: those that began or ended, and those that persist although one of their
-    /// bodies moved. Contacts of bodies at rest are not among them. In the order in which bodies were looked at; those of two
+    /// The contacts that the last update examined: those that began or ended, and those that persist although one of their
+    /// bodies moved. Contacts of bodies at rest are not among them. In the order in which bodies were examined; those of two
     /// bodies are sorted. A body that is added, removed, replaced, excluded or moved afterwards ends this: there are no changes
     /// until the next update.
     pub fn changes(&self) -> impl Iterator<Item = Change> {
@@ -99,7 +99,7 @@ impl World {
         })
     }
 
-    /// The pairs of bodies that began to touch in the last update, were looked at and still touch, or touch no longer. Kinds
+    /// The pairs of bodies that began to touch in the last update, were examined and still touch, or touch no longer. Kinds
     /// with two different features name two bodies once for each order.
     pub fn body_changes(&self) -> impl Iterator<Item = BodyChange> {
         let entries = self.log.entries.iter().filter(|_| self.log.is_over);

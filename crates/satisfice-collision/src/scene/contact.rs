@@ -1,4 +1,4 @@
-//! What a world answers: contacts, frames, and how complete they are.
+//! The answers of a world: contacts, frames, and how complete they are.
 
 use super::{BodyId, Skips};
 
@@ -32,12 +32,12 @@ pub enum Completeness {
     Unknown,
 }
 
-/// What an update of a world did.
+/// The result of an update of a world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Update {
-    /// Whether there can be contacts that are not known yet.
+    /// Whether all contacts are known.
     pub completeness: Completeness,
-    /// Pairs of bodies, or bodies with themselves, whose contacts were looked for.
+    /// Pairs of bodies, or bodies with themselves, whose contacts were recomputed.
     pub recomputed: usize,
     /// What was skipped, and why.
     pub skips: Skips,

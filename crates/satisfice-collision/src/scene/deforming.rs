@@ -1,4 +1,4 @@
-//! The vertices of a deforming body, what of them moved, and its own trees.
+//! The vertices of a deforming body, which of them moved, and its own trees.
 
 use crate::broad::{BlockBounds, FeatureTree};
 use crate::distance::Point;
@@ -7,9 +7,9 @@ use crate::{Adjacency, Error, FeatureKind, Mesh};
 /// How the vertices move to the next frame.
 #[derive(Default, Clone, Copy)]
 struct Displacement {
-    /// How many of them do.
+    /// The number of vertices that move.
     count: usize,
-    /// The square of the longest way.
+    /// The square of the longest motion.
     square: f64,
 }
 
@@ -26,10 +26,10 @@ impl Displacement {
     }
 }
 
-/// A tree and the versions of the vertices it has seen.
+/// A tree and the versions of the vertices that it was fitted to.
 struct KeptTree {
     tree: FeatureTree,
-    /// The version it was fitted to last, and the one before. What it marks as moved is what moved in between.
+    /// The versions of the last two fits. The tree marks the features that moved between them.
     version: u64,
     from: Option<u64>,
 }
@@ -48,7 +48,7 @@ pub(super) struct Deforming {
     trees: [Option<KeptTree>; 3],
     /// Share of the vertices that moved last.
     pub(super) share: f64,
-    /// How often in a row a refitted tree had degraded so far that it was built anew.
+    /// The number of rebuilds of degraded trees in a row.
     pub(super) rebuilds: u32,
     /// Vertices within the excluded ring of each vertex.
     pub(super) rings: Option<Adjacency>,
@@ -81,7 +81,7 @@ impl Deforming {
         self.ring.is_some()
     }
 
-    /// Remembers where the vertices go at the next frame.
+    /// Stores the vertices of the next frame.
     pub(super) fn deform(&mut self, vertices: &[Point]) -> Result<(), Error> {
         if vertices.len() != self.vertices.len() {
             return Err(Error::parameter(
@@ -99,7 +99,7 @@ impl Deforming {
         Ok(())
     }
 
-    /// Goes to the next frame. Returns how far no vertex moves, or `None` if none moves at all.
+    /// Goes to the next frame. Returns a bound on the motion of all vertices, or `None` if none moves.
     pub(super) fn advance(&mut self) -> Option<f64> {
         let [next, _] = &mut self.next_blocks;
         std::mem::swap(self.blocks.get_or_insert_default(), next);
@@ -118,8 +118,8 @@ impl Deforming {
         self.blocks.as_ref()
     }
 
-    /// Builds the tree over features of this kind, or refits it if the vertices have moved since; builds it anew if they have
-    /// moved so far that it has degraded.
+    /// Builds the tree over features of this kind, or refits it if the vertices have moved since; rebuilds it if it has
+    /// degraded.
     pub(super) fn ensure_tree(&mut self, mesh: &Mesh, kind: FeatureKind) -> Result<(), Error> {
         let slot = &mut self.trees[kind as usize];
         if let Some(kept) = slot {

@@ -1,4 +1,4 @@
-//! The box of a mesh, and what placements make of it.
+//! The box of a mesh and of its placements.
 
 use crate::mesh::Point;
 use crate::{Aabb, Placement};
@@ -29,7 +29,7 @@ impl Extent {
         self.size
     }
 
-    /// Whether no vertex leaves the range of numbers, as far as that is seen at once.
+    /// A quick proof that no vertex leaves the range of numbers; false if there is none.
     pub(super) fn stays_finite(&self, placement: &Placement) -> bool {
         (4.0 * self.size + largest(&placement.translation())).is_finite()
     }
@@ -53,8 +53,8 @@ impl Extent {
         }
     }
 
-    /// How far no vertex is from itself in two placements: the way is an affine function of the point, so that it is
-    /// longest at a corner, and the same everywhere without a turn.
+    /// A bound on the motion of all vertices between two placements. The motion is an affine function of the point, so that it
+    /// is longest at a corner; without a rotation it is the same everywhere.
     pub(super) fn motion(&self, one: &Placement, two: &Placement) -> f64 {
         let square =
             |old: Point, new: Point| -> f64 { (0..3).map(|k| (new[k] - old[k]) * (new[k] - old[k])).sum() };

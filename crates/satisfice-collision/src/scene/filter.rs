@@ -1,4 +1,4 @@
-//! Which pairs of features count: those of neighbours on a mesh and of vertices that are left out do not.
+//! Which pairs of features count: not those of neighbours on a mesh, nor those of excluded vertices.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -35,12 +35,12 @@ impl<'a> PairFilter<'a> {
         }
     }
 
-    /// Whether any pair of features can be left out.
+    /// Whether the filter rejects any pair.
     pub(super) fn is_needed(&self) -> bool {
         self.one_body || self.a.counted.is_some() || self.b.counted.is_some()
     }
 
-    /// Adds what was left out to the counts of a query.
+    /// Adds the rejected pairs to the counts of a query.
     pub(super) fn count(&self, skips: &mut Skips) {
         skips.mesh_neighbours += self.neighbours.load(Ordering::Relaxed);
         skips.filtered_vertices += self.filtered.load(Ordering::Relaxed);

@@ -12,9 +12,8 @@ use crate::distance::{Point, Proximity};
 use crate::{FeatureKind, Placement};
 
 impl World {
-    /// Measures the distance of every contact whose bodies moved in the last frame, so that the next pass can tell from the
-    /// bodies' motion alone which of them still hold. For the time between frames: no answer changes by it. Cost: one distance a
-    /// contact.
+    /// Measures the distance of every contact whose bodies moved in the last frame. The next pass then knows from the motion of
+    /// the bodies alone which of them still hold. Call it between frames; it changes no answer. Cost: one distance per contact.
     pub fn measure_contacts(&mut self) {
         self.predicts = true;
         let expected: BTreeMap<u32, Placement> = self
@@ -65,7 +64,7 @@ impl World {
         Slack::new(places, &record.pairs, slack)
     }
 
-    /// How many of the likely contacts of a record hold for certain, by the bound of motion.
+    /// The number of likely contacts of a record that certainly hold, by the bound of motion.
     pub(super) fn holding(&self, record: &Record) -> usize {
         match &record.slack {
             Some(slack) if record.status == Status::Behind => slack.holding(self.drift(record, slack)),
@@ -73,7 +72,7 @@ impl World {
         }
     }
 
-    /// By how much the distance of two features can exceed what was expected of it.
+    /// A bound on how far the distance of two features can exceed the expected one.
     fn drift(&self, record: &Record, slack: &Slack) -> f64 {
         let [a, b] = record.bodies;
         match &slack.places {
@@ -101,7 +100,7 @@ impl World {
             .all(|&slot| self.state(slot).deforming.is_none())
     }
 
-    /// What placing and weighing the closest points may round: in proportion to the lengths involved.
+    /// A bound on the rounding of placing and weighing the closest points, in proportion to the lengths involved.
     fn rounding(&self, record: &Record, places: &[Placement; 2]) -> f64 {
         let largest = |place: &Placement| {
             place

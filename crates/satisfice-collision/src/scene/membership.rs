@@ -9,14 +9,14 @@ use super::state::State;
 use super::{SharedMesh, World};
 use crate::{Error, FeatureKind};
 
-/// Counts that tell how many pairs of bodies are kept from colliding.
+/// Counts from which the number of pairs that may not collide follows.
 #[derive(Default)]
 pub(super) struct Membership {
     /// Excluded pairs of slots, both ways.
     excluded: BTreeSet<(u32, u32)>,
-    /// How many bodies there are with these groups and this mask.
+    /// The number of bodies with these groups and this mask.
     classes: BTreeMap<(u32, u32), u64>,
-    /// Pairs of bodies that are kept apart, and pairs that may collide, if they have been counted since the last change.
+    /// Pairs of bodies that may not collide and pairs that may, if counted since the last change.
     counted: Option<(u64, u64)>,
     /// Fixed and rigid bodies.
     pub(super) rigid: u64,
@@ -140,7 +140,7 @@ impl World {
     }
 
     /// Gives a body another mesh, in its placement; a deforming body starts from the vertices of the new mesh, whatever was given
-    /// for the next frame. Its vertex predicate is forgotten, and its contacts are looked for anew.
+    /// for the next frame. Its vertex predicate is forgotten, and its contacts are found again.
     ///
     /// # Errors
     /// As [`World::add`], and [`Error::Parameter`] if there is no such body. The world is then as before.
@@ -205,7 +205,7 @@ impl World {
         Ok(())
     }
 
-    /// Keeps two bodies from colliding, or one from colliding with itself.
+    /// Excludes contacts of two bodies, or of one with itself.
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
@@ -228,7 +228,7 @@ impl World {
         Ok(())
     }
 
-    /// Takes an exclusion back.
+    /// Removes an exclusion.
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
@@ -273,7 +273,7 @@ impl World {
         self.dirty.push(record);
     }
 
-    /// Takes a record out; its contacts end with the next update.
+    /// Removes a record; its contacts end with the next update.
     pub(super) fn remove_record(&mut self, record: u32) {
         let bodies = self.pairs[record].bodies.map(|slot| self.id(slot));
         let was_new = self.pairs[record].status == Status::New;

@@ -98,19 +98,19 @@ pub struct World {
     pairs: Pairs,
     /// What moves in the next frame.
     pending: Vec<Pending>,
-    /// Bodies whose partners have to be looked for anew.
+    /// Bodies whose partners must be found again.
     unpaired: Vec<u32>,
-    /// Records whose contacts are to be looked for.
+    /// Records to examine.
     dirty: Vec<u32>,
-    /// Whether one of them may have been taken out since, or be listed twice.
+    /// Whether one of them may have been removed since, or be listed twice.
     has_removed_dirty: bool,
     /// Counts the frames in which something changed.
     frame: u64,
-    /// Whether contacts are measured between frames, so that it is of interest where bodies came from.
+    /// Whether contacts are measured between frames, which needs to know where bodies came from.
     predicts: bool,
-    /// Where the bodies that moved in this frame came from, if it is of interest.
+    /// Where the bodies that moved in this frame came from; empty unless `predicts`.
     came_from: Vec<(u32, CompactPlacement)>,
-    /// Counts what changes the known contacts: a pass that began before is of no more use.
+    /// Counts the changes of the known contacts: each ends the passes that began before.
     answers: u64,
     log: Log,
     workspaces: Vec<Workspace>,

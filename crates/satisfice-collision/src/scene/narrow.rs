@@ -10,7 +10,7 @@ use crate::Error;
 use crate::broad::{Dirty, Pair, PairQuery, PointGrid, TreeJoin, Watch, inflate, intersection};
 use crate::distance::{self, PairKind, Point, Threshold};
 
-/// What a thread needs to find pairs. Keeps its memory.
+/// The memory that a thread needs to find pairs.
 #[derive(Default)]
 pub(super) struct Workspace {
     grid: PointGrid,
@@ -31,7 +31,7 @@ impl Workspace {
         }
     }
 
-    /// Forgets posed vertices, whose body has another mesh now.
+    /// Forgets the posed vertices: their body has another mesh now.
     pub(super) fn forget(&mut self) {
         self.posed.iter_mut().for_each(|posed| posed.of = None);
     }
@@ -40,7 +40,7 @@ impl Workspace {
 /// The vertices of a body in the world.
 #[derive(Default)]
 struct Posed {
-    /// Of which body, and when it moved there.
+    /// The body, and the frame in which it moved there.
     of: Option<(u32, u32, u64)>,
     points: Vec<Point>,
 }
@@ -61,7 +61,7 @@ impl Posed {
     }
 }
 
-/// What was found about a record.
+/// The result for a record.
 pub(super) struct Found {
     pub(super) pairs: Vec<Pair>,
     pub(super) verlet: Option<Box<VerletList>>,
@@ -71,7 +71,7 @@ pub(super) struct Found {
 }
 
 impl World {
-    /// What the plan of a record depends on.
+    /// The situation of a record, from which its plan follows.
     pub(super) fn situation(&self, record: &Record) -> Situation {
         let [a, b] = record.bodies;
         let (one, two) = (self.state(a), self.state(b));
@@ -100,7 +100,7 @@ impl World {
         a != b && intersection(one, &inflate(two, self.threshold.get())).is_none()
     }
 
-    /// Finds the pairs of a record, or as many as the watch has time for. The trees that the plan wants are there.
+    /// Finds the pairs of a record, or those found before the watch stops it. The trees of the plan exist.
     pub(super) fn find(
         &self,
         record: &Record,
@@ -207,7 +207,7 @@ impl World {
         })
     }
 
-    /// By trees, or by deciding every pair. Of pairs that were known in the last frame, those of which nothing moved are kept.
+    /// By trees, or by deciding every pair. Known pairs of the last frame of which neither feature moved are kept.
     fn by_tree(
         &self,
         record: &Record,
@@ -257,7 +257,7 @@ impl World {
         Ok(pairs)
     }
 
-    /// The question asked of two bodies whose trees are there.
+    /// The query for two bodies whose trees exist.
     pub(super) fn pair_query<'a>(
         &'a self,
         [a, b]: [u32; 2],
@@ -284,7 +284,7 @@ impl World {
         distance::within(&a.shape(kind_a, pair.a), &b.shape(kind_b, pair.b), self.threshold)
     }
 
-    /// Sees to the trees of two deforming bodies.
+    /// Brings the trees of two deforming bodies up to date.
     pub(super) fn ensure_trees(&mut self, [a, b]: [u32; 2]) -> Result<(), Error> {
         let (kind_a, kind_b) = self.kind.features();
         self.state_mut(a).ensure_tree(kind_a)?;

@@ -1,4 +1,4 @@
-//! What is kept about pairs of bodies whose boxes meet, found from either body without a table.
+//! Records of the pairs of bodies whose boxes meet, found from either body without a table.
 //!
 //! A record belongs to two bodies, or to one and itself, and is a member of the list of each. A member is named by twice the
 //! number of its record, plus one for the second body.
@@ -13,15 +13,15 @@ pub(super) const NONE: u32 = u32::MAX;
 /// How far the contacts of a record can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Status {
-    /// They have never been looked for.
+    /// Never searched for.
     New,
-    /// They are those of the present frame.
+    /// Those of the present frame.
     Current,
-    /// They are among those of the present frame, of which there may be more.
+    /// Some of those of the present frame.
     Partial,
-    /// They are those of the last frame.
+    /// Those of the last frame.
     Behind,
-    /// They are those of some earlier frame, or some of them.
+    /// Some of those of an earlier frame.
     Stale,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Record {
     next: [u32; 2],
     before: [u32; 2],
     pub(super) status: Status,
-    /// Whether it is listed to be looked at.
+    /// Whether it is in the list of records to examine.
     pub(super) is_dirty: bool,
     /// Whether the exact boxes were apart when they were compared last.
     pub(super) apart: bool,
@@ -80,17 +80,17 @@ impl std::ops::IndexMut<u32> for Pairs {
 }
 
 impl Pairs {
-    /// How many records there are of two different bodies.
+    /// The number of records of two different bodies.
     pub(super) fn of_two(&self) -> usize {
         self.records.len() - self.free.len() - self.own
     }
 
-    /// How many records there are.
+    /// The number of records.
     pub(super) fn len(&self) -> usize {
         self.records.len() - self.free.len()
     }
 
-    /// How many of them have boxes that are apart.
+    /// The number of records whose boxes are apart.
     pub(super) fn apart(&self) -> usize {
         self.apart
     }
@@ -154,7 +154,7 @@ impl Pairs {
         id
     }
 
-    /// Takes a record out; its contacts are returned.
+    /// Removes a record and returns its contacts.
     pub(super) fn remove(&mut self, id: u32) -> Vec<Pair> {
         let record = &mut self.records[id as usize];
         let (bodies, next, before) = (record.bodies, record.next, record.before);
@@ -176,7 +176,7 @@ impl Pairs {
         pairs
     }
 
-    /// Whether a record is there.
+    /// Whether the record exists.
     pub(super) fn contains(&self, id: u32) -> bool {
         self.records
             .get(id as usize)
@@ -212,7 +212,7 @@ impl Pairs {
     }
 }
 
-/// How many lists a record is a member of.
+/// The number of lists that a record is a member of.
 fn sides(bodies: [u32; 2]) -> usize {
     1 + usize::from(bodies[0] != bodies[1])
 }
@@ -228,7 +228,7 @@ impl Record {
         }
     }
 
-    /// A new grid has found many or few pairs, or a tree was tried.
+    /// Notes whether a new grid found few pairs; `None` changes nothing.
     pub(super) fn note_sparse(&mut self, sparse: Option<bool>) {
         self.sparse = match sparse {
             Some(true) => self.sparse.saturating_add(1),

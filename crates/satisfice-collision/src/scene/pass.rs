@@ -6,17 +6,17 @@ use super::{Completeness, Contact, Frame, Skips, World};
 use crate::Error;
 use crate::broad::{Pair, PairQuery, Visit};
 
-/// Contacts verified between two questions to the budget.
+/// Contacts verified between two calls of `stop`.
 const STRIDE: usize = 128;
-/// Pairs of groups of eight boxes visited between two questions to the budget.
+/// Pairs of groups of eight boxes visited between two calls of `stop`.
 const VISITS: usize = 16;
 
-/// A descent on several threads goes on in so many parts, however many threads there are.
+/// A parallel descent has this many parts, for any number of threads.
 const PARTS: usize = 16;
-/// Visits of each part between two questions to the budget.
+/// Visits of each part between two calls of `stop`.
 const VISITS_OF_PART: usize = 256;
 
-/// A frame that is being enumerated piece by piece.
+/// A frame that is enumerated piece by piece.
 ///
 /// Contacts of bodies that did not move are there at once. Then come the contacts of the last frame that hold by the bound of
 /// motion (see [`World::measure_contacts`]), at no cost, and the others of the last frame are verified, the closest first; the
@@ -41,9 +41,9 @@ const VISITS_OF_PART: usize = 256;
 /// ```
 pub struct Pass {
     frame: u64,
-    /// What was known when it began.
+    /// The number of the answer when the pass began.
     answers: u64,
-    /// What has to be looked at, in this order.
+    /// The records to examine, in order.
     links: Vec<Progress>,
     /// Contacts of bodies at rest.
     resting: usize,
@@ -52,7 +52,7 @@ pub struct Pass {
     skips: Skips,
 }
 
-/// What a pass has delivered of one record.
+/// The progress of a pass in one record.
 struct Progress {
     record: u32,
     /// So many of the likely contacts, from the first on, hold by the bound of motion.
@@ -82,7 +82,7 @@ enum Phase {
 }
 
 impl Pass {
-    /// How many contacts have been found so far, those of bodies at rest included.
+    /// The number of contacts found so far, including those of bodies at rest.
     #[must_use]
     pub fn found(&self) -> usize {
         self.resting + self.delivered
@@ -97,7 +97,7 @@ impl Pass {
         }
     }
 
-    /// What was skipped so far, and why.
+    /// The work skipped so far, by reason.
     #[must_use]
     pub fn skips(&self) -> Skips {
         self.skips
@@ -228,7 +228,7 @@ impl World {
         for link in &mut pass.links {
             let record = link.record;
             if !link.is_verified {
-                // what was not verified stays likely
+                // contacts that were not verified stay likely
                 self.pairs[record].status = Status::Stale;
                 self.pairs[record].slack = None;
                 continue;
@@ -354,7 +354,7 @@ impl World {
     }
 }
 
-/// Goes on with a descent on the threads of the current pool. What is found, and in which order, does not depend on their number.
+/// Continues a descent on the current rayon pool. The results and their order do not depend on the number of threads.
 fn step_in_parts(query: &PairQuery<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pair>) {
     use rayon::prelude::*;
     let mut parts: Vec<(Vec<Visit>, Vec<Pair>)> = (0..PARTS).map(|_| Default::default()).collect();

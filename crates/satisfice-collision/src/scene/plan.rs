@@ -12,7 +12,7 @@ pub(super) enum Plan {
     Apart,
     /// A list with a margin still holds: its pairs are decided.
     Refilter,
-    /// Trees are descended; if `wide`, with a margin, which makes a list for the next frames.
+    /// Trees are descended; if `wide`, with a margin, which gives a list for the next frames.
     Tree { wide: bool },
     /// A new grid; vertices only.
     Grid,
@@ -20,7 +20,7 @@ pub(super) enum Plan {
     All,
 }
 
-/// What a plan depends on.
+/// Everything that a plan depends on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Situation {
     /// The method that the user asked for.
@@ -31,17 +31,17 @@ pub(super) struct Situation {
     pub(super) is_apart: bool,
     /// Whether both features are vertices.
     pub(super) is_points: bool,
-    /// Whether a list with a margin is there and holds.
+    /// Whether there is a list with a margin that still holds.
     pub(super) list_holds: bool,
-    /// How many features there are of both kinds.
+    /// The number of features on each side.
     pub(super) counts: [usize; 2],
-    /// Whether building both trees pays at once, or they are there.
+    /// Whether both trees exist or are shared, so that building them pays at once.
     pub(super) trees_pay: bool,
     /// The greatest share of vertices of a body that moved one by one.
     pub(super) moved_share: f64,
     /// Frames in a row in which a new grid found fewer pairs than there are vertices.
     pub(super) sparse: i16,
-    /// By how much the bodies come closer in a frame at most, in thresholds.
+    /// A bound on how much closer the bodies come in a frame, in thresholds.
     pub(super) motion: f64,
 }
 

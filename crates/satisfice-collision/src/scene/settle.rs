@@ -1,4 +1,5 @@
-//! Going to the next frame: what moves, which boxes meet now, and which records have to be looked at. Linear in what moves.
+//! Going to the next frame: which bodies move, whose boxes meet now, and which records to examine. Linear in the bodies that
+//! move.
 
 use super::World;
 use super::body::{BodyId, Motion};
@@ -18,7 +19,7 @@ const ALL_RECORDS: f64 = 0.2;
 
 /// A body that moves in the next frame.
 pub(super) struct Pending {
-    /// [`NONE`] if that was taken back.
+    /// [`NONE`] if the body was removed since.
     slot: u32,
     /// Where a rigid body goes.
     to: Option<CompactPlacement>,
@@ -120,7 +121,7 @@ impl World {
         }
     }
 
-    /// A record has to be looked at.
+    /// Lists a record to be examined.
     fn mark_dirty(&mut self, record: u32) {
         if !std::mem::replace(&mut self.pairs[record].is_dirty, true) {
             self.dirty.push(record);
@@ -148,7 +149,7 @@ impl World {
         self.unpaired.retain(|&other| other != slot);
     }
 
-    /// The known contacts are about to change: what the last update changed is no longer of interest.
+    /// The known contacts are about to change: the changes of the last update are forgotten.
     pub(super) fn changing(&mut self) {
         self.answers += 1;
         self.log.begin();
@@ -186,8 +187,8 @@ impl World {
         self.begin_pairs(&changes);
     }
 
-    /// Moves what moves, and lists the bodies that leave their boxes in the tree with new ones. Notes the motion of each, or marks
-    /// its records if there is no room for that.
+    /// Moves the bodies, and lists those that leave their boxes in the tree, with new boxes. Notes the motion of each, or marks
+    /// its records if `motions` is empty.
     fn move_bodies(&mut self, motions: &mut [f64]) -> Vec<Change> {
         let (frame, half) = (self.frame, self.half_threshold());
         let mut changes = Vec::new();
@@ -225,7 +226,7 @@ impl World {
         changes
     }
 
-    /// Adds the bodies whose partners have to be looked for anew.
+    /// Adds the bodies whose partners must be found again.
     fn add_unpaired(&mut self, changes: &mut Vec<Change>) {
         if self.unpaired.is_empty() {
             return;
@@ -240,7 +241,7 @@ impl World {
             });
         }
         changes.sort_by_key(|change| change.body);
-        // of a body that is there twice, the box that predicts its motion comes first
+        // if a body is there twice, the box that predicts its motion comes first
         changes.dedup_by(|again, first| {
             let is_same = again.body == first.body;
             first.is_recheck |= is_same && again.is_recheck;
@@ -248,7 +249,7 @@ impl World {
         });
     }
 
-    /// Builds the tree over bodies anew, in another frame.
+    /// Rebuilds the tree over bodies in another frame.
     fn build_tree(&mut self) -> Vec<Change> {
         let half = self.half_threshold();
         let states = (0..).zip(&self.states);
@@ -266,7 +267,7 @@ impl World {
         changes
     }
 
-    /// Marks the records of all bodies that have moved, and takes out those whose boxes are apart now.
+    /// Marks the records of all bodies that have moved, and removes those whose boxes are apart now.
     fn go_through_records(&mut self, changes: &[Change], motions: &[f64]) {
         let mut has_changed = vec![false; self.states.len()];
         for change in changes {
@@ -315,7 +316,7 @@ impl World {
         self.threshold.get() * 0.5 * (1.0 + 1e-9)
     }
 
-    /// Takes out the records of changed bodies whose boxes are apart now.
+    /// Removes the records of changed bodies whose boxes are apart now.
     fn end_pairs(&mut self, changes: &[Change]) {
         for change in changes {
             let mut member = self.pairs.first(change.body);
@@ -367,7 +368,7 @@ impl World {
     }
 }
 
-/// A box that will hold a body for some frames if it goes on as from `old` to `new`, and for about one if it turns.
+/// A box that will hold a body for some frames if it continues as from `old` to `new`, and for about one if it turns.
 fn fattened(wanted: &Aabb, old: &Aabb, new: &Aabb, motion: f64) -> Aabb {
     let most = MOST * new.size();
     let mut fat = inflate(wanted, motion.min(most));

@@ -56,7 +56,7 @@ impl SharedMesh {
         self.0.trees[kind as usize].get_or_init(|| FeatureTree::new(&self.0.mesh, kind))
     }
 
-    /// Whether a tree is there or several bodies would share it, so that building it pays at once.
+    /// Whether the tree exists or several bodies would share it, so that building it pays at once.
     pub(super) fn pays_for_tree(&self, kind: FeatureKind) -> bool {
         self.0.trees[kind as usize].get().is_some() || Arc::strong_count(&self.0) > 2
     }

@@ -1,4 +1,4 @@
-//! What was not done, and why.
+//! Work that was skipped, by reason.
 
 /// Work that a query left out, counted by reason, in the order in which the reasons are tried.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -66,7 +66,7 @@ impl State {
         check(&self.mesh, placement, &extent.posed(placement))
     }
 
-    /// Goes to a placement. Returns how far no vertex moves, or `None` if it is there already.
+    /// Goes to a placement. Returns a bound on the motion of all vertices, or `None` if nothing moves.
     pub(super) fn go_to(&mut self, placement: &Placement) -> Option<f64> {
         if *placement == self.placement {
             return None;

@@ -149,7 +149,7 @@ impl World {
     ) -> Result<(), Error> {
         use rayon::prelude::*;
         let mut workspaces = std::mem::take(&mut self.workspaces);
-        // the first one works on all threads, for records that are looked at one by one
+        // the first one works on all threads, for records that are examined one by one
         workspaces.resize_with(threads + 1, || Workspace::new(false));
         let result = dirty.chunks(CHUNK).try_for_each(|chunk| {
             if watch.stopped() {
@@ -221,7 +221,7 @@ impl World {
         }
     }
 
-    /// The records to be looked at, each once. They have to be put back.
+    /// The records to examine, each once. The caller puts them back.
     pub(super) fn take_dirty(&mut self) -> Vec<u32> {
         let mut dirty = std::mem::take(&mut self.dirty);
         if std::mem::take(&mut self.has_removed_dirty) {
@@ -232,7 +232,7 @@ impl World {
         dirty
     }
 
-    /// Adds what was never looked at. So many of the records whose boxes meet were.
+    /// Adds the work that no record stands for; `looked` records whose boxes meet were examined.
     pub(super) fn with_counts(&mut self, skips: Skips, looked: usize) -> Skips {
         let (filtered, wanted) = self.counts();
         let (kind_a, kind_b) = self.feature_kinds();

@@ -1,17 +1,17 @@
-//! Boxes that change: many at once, from the bottom up, and which of them meet what they did not meet before.
+//! Changed boxes: many at once, from the bottom up, and the pairs that meet now and did not before.
 
 use super::{BodyTree, NONE, lane_in, lanes, node_of, size_of_box};
 use crate::broad::Box32;
 use crate::simd::{Lanes, Work, dispatch};
 
-/// The tree is built anew if its boxes have grown to so many times their size since it was built...
+/// The tree is rebuilt if its boxes have grown to this many times their size since it was built...
 const GROWN: f64 = 1.5;
-/// ...or if more than this share of the bodies have to be put elsewhere in a frame.
+/// ...or if more than this share of the bodies change their leaf in a frame.
 const REBUILT: f64 = 0.3;
-/// A body stays in its leaf unless the leaf grows to more than so many times its size.
+/// A body stays in its leaf unless the box of the leaf grows to more than this many times its size.
 const STAYS: f32 = 1.5;
 
-/// A body whose box changes, or whose partners have to be looked for anew.
+/// A body whose box changes, or whose partners must be found again.
 #[derive(Clone, Copy)]
 pub(in crate::scene) struct Change {
     pub(in crate::scene) body: u32,
@@ -95,7 +95,7 @@ impl BodyTree {
         known.union(&change.to).sum_of_sides() <= STAYS * known.sum_of_sides()
     }
 
-    /// Builds the tree anew in its frame.
+    /// Rebuilds the tree in its frame.
     fn rebuild(&mut self, changes: &[Change]) {
         let mut boxes = Vec::with_capacity(self.bodies + changes.len());
         for change in changes {

@@ -51,7 +51,7 @@ impl World {
     /// The `k` closest pairs of features at any distance, by distance, then by number: of what would be contacts if the threshold
     /// were infinite. Neither the threshold nor the known contacts matter.
     ///
-    /// Bodies whose boxes are further apart than what was found are not looked at.
+    /// Bodies whose boxes are further apart than the best answer are not visited.
     ///
     /// ```
     /// use satisfice_collision::distance::{PairKind, Threshold};
@@ -318,7 +318,7 @@ impl Probe {
     }
 }
 
-/// How far away something may be to be of interest; negative if nothing is any more.
+/// The distance up to which results matter; negative if none do.
 fn reach<T: Ord + Copy>(closest: &Closest<T>) -> f64 {
     if closest.is_settled() {
         f64::NEG_INFINITY
