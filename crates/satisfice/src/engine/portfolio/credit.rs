@@ -13,6 +13,8 @@ const PRIOR_HITS: f64 = 0.15;
 /// Share of all evaluations that a source which has found nothing may take, and so many for a start.
 const BARREN_SHARE: f64 = 0.04;
 const BARREN_START: f64 = 8.0;
+/// Share of what is found from a hit that counts for the source which found the place.
+const PLACE_SHARE: f64 = 0.2;
 
 /// What one source has yielded lately, and in all.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
@@ -63,6 +65,37 @@ impl Credit {
             self.hits + PRIOR_HITS * weight,
             self.evaluations + PRIOR_HITS * price,
         )
+    }
+}
+
+/// What a hit in a new place is worth: the hits that others have found from it, and what they took.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Patches {
+    /// Hits of the sources that look for new places.
+    places: f64,
+    /// Hits and evaluations of those that go on from hits.
+    hits: f64,
+    evaluations: f64,
+}
+
+impl Patches {
+    pub(super) fn count_explorer(&mut self, hit: bool) {
+        self.places += f64::from(u8::from(hit));
+    }
+
+    pub(super) fn count_exploiter(&mut self, hit: bool) {
+        self.hits += f64::from(u8::from(hit));
+        self.evaluations += 1.0;
+    }
+
+    /// The yield of a source that looks for new places and hits at this rate, with what is found from its hits; of that only a share
+    /// counts, because what others find now from earlier hits is for certain.
+    pub(super) fn worth(&self, rate: f64) -> f64 {
+        if self.places == 0.0 {
+            return rate;
+        }
+        let (hits, evaluations) = (self.hits / self.places, self.evaluations / self.places);
+        rate.max(PLACE_SHARE * rate * (1.0 + hits) / (1.0 + rate * evaluations))
     }
 }
 
@@ -129,6 +162,21 @@ mod tests {
             arm.count(false);
         }
         assert!(arm.hits / arm.evaluations < 0.02, "{arm:?}");
+    }
+
+    /// Ten hits and a hundred evaluations follow each hit in a new place.
+    #[test]
+    fn a_new_place_is_worth_what_follows() {
+        let mut patches = Patches::default();
+        approx::assert_relative_eq!(patches.worth(0.01), 0.01);
+        patches.count_explorer(true);
+        for i in 0..100 {
+            patches.count_exploiter(i % 10 == 0);
+        }
+        // 11 hits in 1 / 0.01 + 100 evaluations.
+        approx::assert_relative_eq!(patches.worth(0.01), 0.2 * 11.0 / 200.0, max_relative = 1e-12);
+        // What finds hits sooner than others go on from them needs no share.
+        approx::assert_relative_eq!(patches.worth(0.5), 0.5);
     }
 
     #[test]

@@ -21,8 +21,9 @@ use crate::state::{Part, Reader, State};
 const MODELLED: u64 = 500;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
-/// Candidates that compete for a proposal of the model: fewer than where it searches alone, because other sources explore, too.
-const CANDIDATES: usize = 256;
+/// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
+const CANDIDATES: (usize, usize) = (256, 1024);
+const POINTS_OF_LEAST: u64 = 300;
 /// Axes for which a matrix takes at most a few steps' worth of memory and time.
 const CMA_AXES: usize = 200;
 /// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
@@ -54,11 +55,41 @@ struct Guest<S> {
     own: Range<usize>,
 }
 
+/// What depends on the budget.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+struct Sizes {
+    /// Searches of (1+1)-CMA-ES side by side.
+    searches: usize,
+    /// Candidates of the model.
+    candidates: usize,
+}
+
+impl Sizes {
+    /// For so many evaluations at once, and so many in all, if that is known.
+    fn new(parallel: usize, planned: Option<u64>) -> Self {
+        let (least, most) = CANDIDATES;
+        let candidates = planned.map_or(least, |planned| {
+            let more = (POINTS_OF_LEAST / planned.clamp(1, POINTS_OF_LEAST)).pow(2);
+            least
+                .saturating_mul(usize::try_from(more).unwrap_or(most))
+                .min(most)
+        });
+        Self {
+            searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
+            candidates,
+        }
+    }
+
+    fn are_possible(&self) -> bool {
+        (1..=MOST_SEARCHES).contains(&self.searches)
+            && (CANDIDATES.0..=CANDIDATES.1).contains(&self.candidates)
+    }
+}
+
 /// The engines.
 pub(super) struct Guests<S> {
     guests: Vec<Guest<S>>,
-    /// Searches of (1+1)-CMA-ES side by side.
-    searches: usize,
+    sizes: Sizes,
     /// What one of them is told or has proposed.
     part: Batch<S>,
     outcomes: Vec<Outcome<S>>,
@@ -81,10 +112,10 @@ pub(super) enum Answer {
 }
 
 impl<S: Real> Guest<S> {
-    fn new(kind: Kind, searches: usize) -> Self {
+    fn new(kind: Kind, sizes: Sizes) -> Self {
         let engine = match kind {
             Kind::Cma => RestartedCmaEs {
-                searches,
+                searches: sizes.searches,
                 ..RestartedCmaEs::default()
             }
             .build(),
@@ -95,7 +126,7 @@ impl<S: Real> Guest<S> {
             }
             .build(),
             Kind::Model => Surrogate {
-                candidates: CANDIDATES,
+                candidates: sizes.candidates,
                 ..Surrogate::default()
             }
             .build(),
@@ -114,7 +145,7 @@ impl<S: Real> Guests<S> {
     pub(super) fn new() -> Self {
         Self {
             guests: Vec::new(),
-            searches: 1,
+            sizes: Sizes::new(1, None),
             part: Batch::new(1),
             outcomes: Vec::new(),
         }
@@ -125,7 +156,7 @@ impl<S: Real> Guests<S> {
         let space = context.space();
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
         self.part = Batch::new(space.dimension());
-        self.searches = context.parallel().div_ceil(4).min(MOST_SEARCHES);
+        self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
         self.guests.clear();
         for kind in [Kind::Cma, Kind::Flood, Kind::Regions, Kind::Model] {
             let is_of_use = match kind {
@@ -143,7 +174,7 @@ impl<S: Real> Guests<S> {
     }
 
     fn open(&mut self, kind: Kind, context: &dyn Context<S>) {
-        let mut guest = Guest::new(kind, self.searches);
+        let mut guest = Guest::new(kind, self.sizes);
         guest.engine.begin(context);
         self.guests.push(guest);
     }
@@ -172,6 +203,16 @@ impl<S: Real> Guests<S> {
     /// Whether it has a part of the batch.
     pub(super) fn has_part(&self, index: usize) -> bool {
         !self.guests[index].own.is_empty()
+    }
+
+    /// Whether it looks for hits in new places.
+    pub(super) fn explores(&self, index: usize) -> bool {
+        matches!(self.guests[index].kind, Kind::Cma)
+    }
+
+    /// Whether it goes on from hits.
+    pub(super) fn exploits(&self, index: usize) -> bool {
+        matches!(self.guests[index].kind, Kind::Flood)
     }
 
     /// Its place among the names of all sources.
@@ -281,7 +322,7 @@ impl<S: Real> Guests<S> {
     }
 
     pub(super) fn save(&self, state: &mut State) {
-        (self.searches, self.guests.len()).save(state);
+        (self.sizes, self.guests.len()).save(state);
         for guest in &self.guests {
             (guest.kind, guest.arm, guest.open).save(state);
             (guest.own.start, guest.own.end).save(state);
@@ -291,18 +332,18 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn restore(&mut self, dimension: usize, from: &mut Reader<'_>) -> Result<(), Error> {
         self.part = Batch::new(dimension);
-        let (searches, count): (usize, usize) = from.read()?;
-        if !(1..=MOST_SEARCHES).contains(&searches) {
+        let (sizes, count): (Sizes, usize) = from.read()?;
+        if !sizes.are_possible() {
             return Err(Error::State(
-                "its searches are not as many as there are".to_owned(),
+                "its engines are of a size that there is not".to_owned(),
             ));
         }
-        self.searches = searches;
+        self.sizes = sizes;
         self.guests.clear();
         for _ in 0..count {
             let (kind, arm, open) = from.read()?;
             let (start, end) = from.read()?;
-            let mut guest = Guest::new(kind, searches);
+            let mut guest = Guest::new(kind, sizes);
             guest.engine.restore(from)?;
             self.guests.push(Guest {
                 arm,

@@ -5,7 +5,7 @@ mod proposals;
 use proposals::SCANNED;
 
 use super::climbers::Climbers;
-use super::credit::{Credit, draw};
+use super::credit::{Credit, Patches, draw};
 use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
@@ -57,6 +57,7 @@ pub(super) struct Sources<S> {
     descents: Vec<RestartedDescent<S>>,
     next_descent: usize,
     descended: usize,
+    patches: Patches,
     guests: Guests<S>,
     hits: Vec<S>,
     visited: Option<Visited>,
@@ -87,6 +88,7 @@ impl<S: Real> Sources<S> {
             descents: Vec::new(),
             next_descent: 0,
             descended: 0,
+            patches: Patches::default(),
             guests: Guests::new(),
             hits: Vec::new(),
             visited: None,
@@ -131,22 +133,29 @@ impl<S: Real> Sources<S> {
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
-        let mut best = (self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
+        let explorer = |yields: f64| self.patches.worth(yields);
+        let mut best = (explorer(self.arms[0].draw(price, 0.3, rng)), (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
             if yields > best.0 {
                 best = (yields, tag);
             }
         };
-        offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
+        offer(
+            explorer(self.arms[DESCENT].draw(price, 4.0, rng)),
+            (Source::Descent, 0),
+        );
         let worth = |arm: &Credit| arm.is_worth_trying(&self.whole);
         if uses(Omitted::Swarms) && worth(&self.arms[1]) {
-            offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
+            offer(explorer(self.arms[1].draw(price, 0.5, rng)), (Source::Swarm, 0));
         }
         if uses(Omitted::Climbers) && worth(&self.arms[2]) {
-            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
+            offer(explorer(self.arms[2].draw(price, 0.5, rng)), (Source::Climber, 0));
         }
         if uses(Omitted::Populations) && self.populations.are_usable() && worth(&self.arms[MEMBER]) {
-            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
+            offer(
+                explorer(self.arms[MEMBER].draw(price, 1.5, rng)),
+                (Source::Member, 0),
+            );
         }
         let hits = self.hit_count();
         if uses(Omitted::Learning) && hits >= 3 && worth(&self.arms[TRIAL]) {
@@ -169,7 +178,13 @@ impl<S: Real> Sources<S> {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
         for (index, arm, weight) in self.guests.arms(&self.whole) {
-            offer(arm.draw(price, weight, rng), (Source::Guest, index));
+            let yields = arm.draw(price, weight, rng);
+            let yields = if self.guests.explores(index) {
+                explorer(yields)
+            } else {
+                yields
+            };
+            offer(yields, (Source::Guest, index));
         }
         best.1
     }
@@ -202,6 +217,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.next_descent = 0;
         self.arms = [Credit::default(); ARMS];
         self.whole = Credit::default();
+        self.patches = Patches::default();
         self.chosen = None;
         self.guests.begin(context, self.without == Omitted::Recombination);
         let late = match self.timing {
@@ -363,6 +379,17 @@ impl<S: Real> Engine<S> for Sources<S> {
             };
             self.tally.count(place, *outcome);
             self.whole.count(hit);
+            match source {
+                Source::Uniform | Source::Swarm | Source::Climber | Source::Member | Source::Descent => {
+                    self.patches.count_explorer(hit);
+                }
+                Source::Guest if self.guests.explores(index) => self.patches.count_explorer(hit),
+                Source::Step | Source::Trial | Source::Cross | Source::Neighbour => {
+                    self.patches.count_exploiter(hit)
+                }
+                Source::Guest if self.guests.exploits(index) => self.patches.count_exploiter(hit),
+                Source::Guest | Source::NearMiss => {}
+            }
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
             }
@@ -386,7 +413,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
-        (self.whole, self.chosen).save(state);
+        (self.whole, self.patches, self.chosen).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);
         for descent in &self.descents {
@@ -407,7 +434,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
-        (self.whole, self.chosen) = from.read()?;
+        (self.whole, self.patches, self.chosen) = from.read()?;
         (self.batch, self.block, self.next_descent) = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();
