@@ -9,7 +9,7 @@ use clap::error::ErrorKind;
 use crate::arguments::Satisfice;
 
 /// Exit code of every error.
-const ERROR: u8 = 2;
+pub(crate) const ERROR: u8 = 2;
 
 /// Reports an error.
 pub(crate) fn report(error: &anyhow::Error) -> ExitCode {

@@ -42,6 +42,7 @@
 //! }
 //! ```
 
+mod allocator;
 mod arguments;
 mod bench;
 mod checkpoint;
@@ -65,6 +66,7 @@ mod verify;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+pub use allocator::Allocator;
 use arguments::Subcommands;
 use satisfice::catalogue::Catalogued;
 use satisfice_catalogue::Catalogue;

@@ -65,6 +65,15 @@ pub(crate) fn remove_partial_files() {
     }
 }
 
+/// As [`remove_partial_files`], where the list may be in use and memory may have ended.
+pub(crate) fn try_remove_partial_files() {
+    if let Ok(files) = PARTIAL.try_lock() {
+        for path in files.iter() {
+            drop(fs::remove_file(path));
+        }
+    }
+}
+
 impl Output {
     /// Opens `path`, or stdout for `-`. A link is written through.
     pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {

@@ -289,4 +289,84 @@ fn the_closest_pairs_need_no_threshold() {
         "{}",
         told.stdout
     );
+    assert!(
+        told.stdout
+            .contains("  answer        proved: no other pair is closer\n")
+            && !told.stdout.contains("completeness"),
+        "{}",
+        told.stdout
+    );
+    // Of two by two pairs all are listed.
+    for (name, x) in [("c.obj", 0.0), ("d.obj", 2.0)] {
+        fs::write(folder.path().join(name), format!("v {x} 0 0\nv {x} 1 0\n")).unwrap();
+    }
+    for (call, says) in [
+        ("--closest 1", "  answer        proved: no other pair is closer\n"),
+        ("--closest 9", "  completeness  proved: these are all\n"),
+        (
+            "--threshold 3 --first",
+            "  answer        one pair, whichever is found first\n",
+        ),
+        (
+            "--threshold 3 --touching",
+            "  answer        proved: no other bodies touch, ",
+        ),
+        ("--threshold 3", "  completeness  proved: these are all\n"),
+    ] {
+        let told = satisfice_in(folder.path(), &format!("collide c.obj d.obj {call}"));
+        assert!(told.stdout.contains(says), "{call}: {}", told.stdout);
+        let says_once = told.stdout.matches("proved").count() + told.stdout.matches("unknown").count();
+        assert!(says_once <= 1, "{call}: {}", told.stdout);
+    }
+}
+
+/// A mesh that is larger than memory: one line, and what was there before stays.
+#[cfg(unix)]
+#[test]
+fn a_mesh_beyond_memory_is_one_line() {
+    const TRIANGLES: u32 = 400_000;
+    let folder = tempfile::tempdir().unwrap();
+    let mut stl = vec![0; 80];
+    stl.extend(TRIANGLES.to_le_bytes());
+    for k in 0..TRIANGLES {
+        let x = k as f32;
+        let corners = [[0.0; 3], [x, 0.0, 0.0], [x + 0.5, 0.0, 0.0], [x, 1.0, 0.0]];
+        stl.extend(corners.as_flattened().iter().flat_map(|c| c.to_le_bytes()));
+        stl.extend([0; 2]);
+    }
+    fs::write(folder.path().join("large.stl"), stl).unwrap();
+    fs::write(folder.path().join("pairs.csv"), "of an earlier run").unwrap();
+    for (kilobytes, call) in [
+        (
+            120_000,
+            "collide large.stl large.stl --threshold .1 --out pairs.csv",
+        ),
+        (
+            60_000,
+            "run sat --set variables=10000 --evaluations 1000 --json pairs.csv",
+        ),
+    ] {
+        let done = std::process::Command::new("sh")
+            .arg("-c")
+            .arg(format!(
+                "ulimit -v {kilobytes}; exec {} {call}",
+                env!("CARGO_BIN_EXE_satisfice")
+            ))
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(2), "{call}: {said}");
+        assert!(
+            said.starts_with("error: memory ended, ") && said.lines().count() == 1,
+            "{call}: {said}"
+        );
+        let names: Vec<_> = fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name())
+            .collect();
+        assert_eq!(names.len(), 2, "{call}: {names:?}");
+        let csv = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+        assert_eq!(csv, "of an earlier run", "{call}");
+    }
 }

@@ -7,6 +7,7 @@ use anyhow::Context;
 use satisfice_collision::distance::Proximity;
 
 use super::scene::Pair;
+use crate::allocator::fallibly;
 
 /// Appends an element.
 ///
@@ -16,14 +17,16 @@ pub(super) fn push<T>(list: &mut Vec<T>, element: T) -> anyhow::Result<()> {
     if list.len() == list.capacity() {
         // Doubles, as `push` does, but does not abort; a smaller step where so much is not free.
         let most = list.len().max(1024);
-        list.try_reserve_exact(most)
-            .or_else(|_| list.try_reserve_exact(most / 8))
-            .with_context(|| {
-                format!(
-                    "memory ends after {} pairs: ask for fewer by --max-pairs N",
-                    list.len()
-                )
-            })?;
+        fallibly(|| {
+            list.try_reserve_exact(most)
+                .or_else(|_| list.try_reserve_exact(most / 8))
+        })
+        .with_context(|| {
+            format!(
+                "memory ends after {} pairs: ask for fewer by --max-pairs N",
+                list.len()
+            )
+        })?;
     }
     list.push(element);
     Ok(())
@@ -41,13 +44,15 @@ pub(super) struct Lists {
 impl Lists {
     /// Sees to room for so many pairs in all.
     fn reserve(&mut self, pairs: usize) -> Result<(), TryReserveError> {
-        self.pairs
-            .try_reserve_exact(pairs.saturating_sub(self.pairs.len()))?;
-        self.distances.try_reserve_exact(pairs)?;
-        if let Some(witnesses) = &mut self.witnesses {
-            witnesses.try_reserve_exact(pairs)?;
-        }
-        Ok(())
+        fallibly(|| {
+            self.pairs
+                .try_reserve_exact(pairs.saturating_sub(self.pairs.len()))?;
+            self.distances.try_reserve_exact(pairs)?;
+            match &mut self.witnesses {
+                Some(witnesses) => witnesses.try_reserve_exact(pairs),
+                None => Ok(()),
+            }
+        })
     }
 
     /// The pairs that there is room for.
@@ -98,7 +103,7 @@ impl Room {
         let known = state.lists.capacity();
         if !state.is_full && (known == 0 || found > known - known / 4) {
             let wanted = (found + found / 2).max(1 << 16);
-            let spare = Vec::<u8>::new().try_reserve_exact(SPARE + SEARCH * wanted);
+            let spare = fallibly(|| Vec::<u8>::new().try_reserve_exact(SPARE + SEARCH * wanted));
             state.is_full = spare.and_then(|()| state.lists.reserve(wanted)).is_err();
         }
         !state.is_full

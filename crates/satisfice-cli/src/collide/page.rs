@@ -58,7 +58,8 @@ pub(super) fn html(report: &Report<'_>, asked: Option<Axis>, missed: &[Pair]) ->
         let mesh = &body.mesh;
         page.body(&body.name, mesh.vertices(), mesh.triangles(), mesh.lines());
     }
-    page.fact("Completeness", summary::completeness(report));
+    let (name, says) = summary::assurance(report);
+    page.fact(name, says);
     page.fact("Time", summary::elapsed(head));
     page.fact("Evaluations", shown::count(head.evaluations));
     for (reason, count) in &report.skipped {

@@ -42,7 +42,8 @@ pub(super) fn summary(report: &Report<'_>) -> String {
         false => format!("the closest {kind} pairs by {}", head.engine),
     });
     lines.line("pairs", &count(report));
-    lines.line("completeness", &completeness(report));
+    let (name, says) = assurance(report);
+    lines.line(&name.to_lowercase(), &says);
     if let Some((least, most)) = report.pairs.range() {
         let unmeasured = match head.unmeasured {
             0 => String::new(),
@@ -59,9 +60,6 @@ pub(super) fn summary(report: &Report<'_>) -> String {
         lines.line("closest seen", &format!("{} apart", digits(best.fitness)));
     }
     lines.line("time", &elapsed(&report.head));
-    if let Some(asked) = asked(report) {
-        lines.line("listed", asked);
-    }
     for overlap in report.overlaps.iter().flatten().take(SHOWN_BODIES) {
         lines.line("overlap", &overlap.text(&report.world.bodies));
     }
@@ -112,7 +110,15 @@ fn count(report: &Report<'_>) -> String {
     }
 }
 
-pub(super) fn completeness(report: &Report<'_>) -> String {
+/// How sure the answer is: a name and what it says. Where all pairs are asked for, whether these are all.
+pub(super) fn assurance(report: &Report<'_>) -> (&'static str, String) {
+    match asked(report) {
+        Some(answer) => ("Answer", answer.to_owned()),
+        None => ("Completeness", completeness(report)),
+    }
+}
+
+fn completeness(report: &Report<'_>) -> String {
     let head = &report.head;
     if head.completeness == Completeness::Proved {
         return "proved: these are all".to_owned();
@@ -147,23 +153,29 @@ fn was_stopped(head: &Head) -> bool {
     matches!(head.stop_reason, StopReason::Cancelled | StopReason::Time)
 }
 
-/// What the list is, if it is not all pairs.
+/// What is sure about a list that is asked not to have all pairs, unless it has all.
 fn asked(report: &Report<'_>) -> Option<&'static str> {
+    let request = &report.world.request;
     let was_stopped = was_stopped(&report.head);
-    match report.world.request.find {
+    let has_all = report.head.completeness == Completeness::Proved;
+    match request.find {
         Find::All => None,
+        Find::First | Find::Closest(_) if has_all => None,
         Find::Touching if was_stopped => {
-            Some("one pair of each two bodies that were found to touch; others may touch as well")
+            Some("unknown: one pair of each two bodies that were found to touch; others may touch as well")
         }
-        Find::Touching if report.world.request.solid => Some(
-            "one pair of each two bodies that touch, which means: surfaces closer than the threshold, or one inside the other; no other bodies do, that is proved",
+        Find::Touching if request.solid => Some(
+            "proved: no other bodies touch, which means: surfaces closer than the threshold, or one inside the other; one pair of each two is listed",
         ),
         Find::Touching => Some(
-            "one pair of each two bodies that touch, which means: surfaces closer than the threshold; no others are, that is proved; --solid also finds bodies inside others",
+            "proved: no other bodies touch, which means: surfaces closer than the threshold; one pair of each two is listed; --solid also finds bodies inside others",
         ),
+        Find::First if report.head.hits == 0 => Some("unknown: no pair was found until then"),
         Find::First => Some("one pair, whichever is found first"),
-        Find::Closest(_) if was_stopped => Some("the closest of the pairs found; others may be closer"),
-        Find::Closest(_) => Some("the closest pairs, that is proved"),
+        Find::Closest(_) if was_stopped => {
+            Some("unknown: the closest of the pairs found; others may be closer")
+        }
+        Find::Closest(_) => Some("proved: no other pair is closer"),
     }
 }
 
