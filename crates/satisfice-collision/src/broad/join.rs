@@ -6,14 +6,13 @@ use super::cells::{Cells, Sorted};
 use super::clip::{greater, lesser};
 use super::exact::ExactTest;
 use super::frame::Filter;
-use super::groups::Groups;
 use super::pair::Pair;
 use super::watch::Watch;
 use crate::simd::{Eight, Lanes, Work};
 
 /// Tests between two calls of the watch: tens of microseconds.
 const LOOK: u64 = 1 << 16;
-/// A cell with more tests than this gets a grid of its own.
+/// A cell with more tests than this is left to trees.
 const DENSE: usize = 1 << 17;
 
 /// A cell with too many tests: the numbers of its points and of their candidates.
@@ -30,7 +29,7 @@ pub(crate) struct Scratch {
     near_id: Vec<u32>,
     /// The pairs found.
     pub(crate) found: Vec<Pair>,
-    /// Cells to be split.
+    /// Cells left to trees.
     pub(crate) dense_cells: Vec<DenseCell>,
     /// Squared distances computed.
     pub(crate) tests: u64,
@@ -81,13 +80,7 @@ pub(crate) struct Join<'a, const ONE_BODY: bool> {
     pub(crate) cells: &'a Cells,
     pub(crate) filter: &'a Filter,
     pub(crate) decide: &'a ExactTest<'a>,
-    /// Of two bodies the points of `a` are known by rank.
-    pub(crate) groups: &'a Groups,
-    /// Number of this task.
-    pub(crate) task: usize,
     pub(crate) layers: Range<usize>,
-    /// Whether dense cells may be handed back.
-    pub(crate) split: bool,
     pub(crate) watch: &'a Watch<'a>,
     pub(crate) scratch: &'a mut Scratch,
 }
@@ -127,7 +120,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
         if near == 0 {
             return false;
         }
-        if self.split && own.len() * near > DENSE {
+        if own.len() * near > DENSE {
             let others = usize::from(ONE_BODY) * own.len();
             let dense = DenseCell {
                 a: self.a.id[own].to_vec(),
@@ -139,12 +132,7 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
         for (i, at) in own.enumerate() {
             let q = [self.a.c[0][at], self.a.c[1][at], self.a.c[2][at]];
             let skip = if ONE_BODY { i + 1 } else { 0 };
-            let (id, place) = (self.a.id[at], self.scratch.found.len());
-            self.scan(lanes, q, id, skip, near);
-            let count = self.scratch.found.len() - place;
-            if !ONE_BODY && count > 0 {
-                self.groups.found(id, self.task, place, count);
-            }
+            self.scan(lanes, q, self.a.id[at], skip, near);
             self.scratch.tests += near as u64;
             if self.scratch.tests >= self.scratch.next_look && self.scratch.is_enough(self.watch) {
                 return true;
@@ -255,7 +243,6 @@ impl<const ONE_BODY: bool> Join<'_, ONE_BODY> {
                 }
                 if dx * dx + dy * dy + dz * dz >= definitely_inside_sq {
                     *in_band += 1;
-                    let a = if ONE_BODY { a } else { self.groups.id(a) };
                     if !self.decide.closer(a, b) {
                         continue;
                     }

@@ -8,7 +8,6 @@ mod directions;
 mod exact;
 mod features;
 mod frame;
-mod groups;
 mod join;
 mod occupancy;
 mod overlap;

@@ -1,22 +1,22 @@
 //! All pairs of points within a threshold, of two bodies or within one: exact and sorted.
 
+use super::boxes::Dirty;
 use super::cells::{Cells, Fit, Sorted};
 use super::clip::{BlockBounds, Clip, Part, union};
 use super::exact::ExactTest;
+use super::features::FeatureTree;
 use super::frame::{Filter, LocalFrame};
-use super::groups::Groups;
 use super::join::{DenseCell, Join, Scratch};
 use super::occupancy::OccupancyCull;
 use super::overlap::Overlap;
 use super::pair::Pair;
+use super::pair_query::PairQuery;
 use super::sorting::Sorter;
+use super::trees::TreeJoin;
 use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::simd::dispatch;
-use crate::{Aabb, Error};
-
-/// Dense cells are split at most this often; each gets a frame of its own, at most half as wide as the one before.
-const DEEPEST: u32 = 40;
+use crate::{Error, FeatureKind, Mesh, Placement};
 
 /// From this many points on, threads share the work: waking one takes as long as hundreds of points.
 const SHARED: usize = 1 << 15;
@@ -68,7 +68,6 @@ pub struct PointGrid {
     fit: Fit,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
-    groups: Groups,
     sorter: Sorter,
     pairs: Vec<Pair>,
     work: PointWork,
@@ -130,7 +129,7 @@ impl PointGrid {
         threshold: Threshold,
         watch: &Watch<'_>,
     ) -> Result<&[Pair], Error> {
-        self.run::<false>(a, b, None, threshold, watch, 0)?;
+        self.run::<false>(a, b, None, threshold, watch)?;
         Ok(&self.pairs)
     }
 
@@ -142,7 +141,7 @@ impl PointGrid {
         threshold: Threshold,
         watch: &Watch<'_>,
     ) -> Result<&[Pair], Error> {
-        self.run::<true>(points, points, measured, threshold, watch, 0)?;
+        self.run::<true>(points, points, measured, threshold, watch)?;
         Ok(&self.pairs)
     }
 
@@ -153,7 +152,6 @@ impl PointGrid {
         measured: Option<&BlockBounds>,
         threshold: Threshold,
         watch: &Watch<'_>,
-        depth: u32,
     ) -> Result<(), Error> {
         self.pairs.clear();
         self.work = PointWork::default();
@@ -201,9 +199,6 @@ impl PointGrid {
         }
         let filter = frame.filter(threshold.get());
         let cells = self.fit.cells(&self.parts[0], filter.reach);
-        if !ONE_BODY {
-            self.groups.rank(&mut self.parts[0]);
-        }
         let ([sorted_a, sorted_b], [parts_a, parts_b]) = (&mut self.sorted, &self.parts);
         both(
             shared && !ONE_BODY,
@@ -215,25 +210,19 @@ impl PointGrid {
             },
         );
         let decide = ExactTest { a, b, threshold };
-        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, depth < DEEPEST, watch);
+        let tasks = self.join::<ONE_BODY>(&cells, &filter, &decide, watch);
         for task in 0..tasks {
             for dense in std::mem::take(&mut self.tasks[task].dense_cells) {
                 if watch.stopped() {
                     break;
                 }
-                self.split_dense_cell::<ONE_BODY>(&decide, task, &dense, watch, depth)?;
+                self.join_dense_cell::<ONE_BODY>(&decide, task, &dense, watch)?;
             }
             self.work.tests += self.tasks[task].tests;
             self.work.in_band += self.tasks[task].in_band;
         }
-        let found = &self.tasks[..tasks];
-        if ONE_BODY {
-            let found = found.iter().map(|task| task.found.as_slice());
-            self.sorter.sort(found, &mut self.pairs, self.threads);
-        } else {
-            let found = |task: usize| found[task].found.as_slice();
-            self.groups.gather(tasks, found, &mut self.pairs, self.threads);
-        }
+        let found = self.tasks[..tasks].iter().map(|task| task.found.as_slice());
+        self.sorter.sort(found, &mut self.pairs);
         Ok(())
     }
 
@@ -295,10 +284,8 @@ impl PointGrid {
         cells: &Cells,
         filter: &Filter,
         decide: &ExactTest<'_>,
-        split: bool,
         watch: &Watch<'_>,
     ) -> usize {
-        let groups = &self.groups;
         let a = &self.sorted[0];
         let b = if ONE_BODY { a } else { &self.sorted[1] };
         let layers = cells.count()[2];
@@ -306,7 +293,7 @@ impl PointGrid {
         let tasks = if self.threads < 2 || points < SHARED / 8 {
             1
         } else {
-            (self.threads * 8).min(layers).min(super::groups::TASKS)
+            (self.threads * 8).min(layers)
         };
         self.tasks
             .resize_with(tasks.max(self.tasks.len()), Scratch::default);
@@ -320,10 +307,7 @@ impl PointGrid {
                 cells,
                 filter,
                 decide,
-                groups,
-                task,
                 layers,
-                split,
                 watch,
                 scratch,
             });
@@ -340,52 +324,49 @@ impl PointGrid {
         tasks
     }
 
-    /// Finds the pairs of a dense cell in a frame of its own.
-    fn split_dense_cell<const ONE_BODY: bool>(
+    /// Finds the pairs of a dense cell by trees.
+    fn join_dense_cell<const ONE_BODY: bool>(
         &mut self,
         decide: &ExactTest<'_>,
         task: usize,
         DenseCell { a: own, b: others }: &DenseCell,
         watch: &Watch<'_>,
-        depth: u32,
     ) -> Result<(), Error> {
-        let id = |a: u32| if ONE_BODY { a } else { self.groups.id(a) };
-        let a: Vec<_> = own.iter().map(|&a| decide.a[id(a) as usize]).collect();
-        let b: Vec<_> = others.iter().map(|&b| decide.b[b as usize]).collect();
-        let bounds = Aabb::of_points(a.iter().copied());
-        let whole = self.runs[0].whole();
-        let halves = bounds
-            .zip(whole)
-            .is_some_and(|(bounds, whole)| bounds.size() <= whole.size() / 2.0);
-        let depth = if halves { depth + 1 } else { DEEPEST };
-        let mut inner = Self::new();
-        let mut take = |inner: &Self, b: &[u32]| {
-            self.work.tests += inner.work.tests;
-            self.work.in_band += inner.work.in_band;
-            let found = &mut self.tasks[task].found;
-            if ONE_BODY {
-                found.extend(inner.pairs.iter().map(|pair| {
-                    let (a, b) = (own[pair.a as usize], b[pair.b as usize]);
-                    let (a, b) = (a.min(b), a.max(b));
+        let tree = |ids: &[u32], points: &[[f64; 3]]| {
+            let vertices = ids.iter().map(|&id| points[id as usize]).collect();
+            Mesh::new(vertices, vec![], vec![]).map(|mesh| FeatureTree::new(&mesh, FeatureKind::Vertex))
+        };
+        let tree_a = tree(own, decide.a)?;
+        let mut join = TreeJoin::new();
+        let mut find = |tree_b: &FeatureTree, ids: &[u32], one_body: bool| {
+            let query = PairQuery {
+                a: (&tree_a, &Placement::IDENTITY),
+                b: (tree_b, &Placement::IDENTITY),
+                one_body,
+                threshold: decide.threshold,
+                keep: None,
+                moved: [Dirty::All; 2],
+            };
+            let pairs = join.all(&query, watch).iter().map(|pair| {
+                let (a, b) = (own[pair.a as usize], ids[pair.b as usize]);
+                if ONE_BODY && a > b {
+                    Pair { a: b, b: a }
+                } else {
                     Pair { a, b }
-                }));
-                return;
-            }
-            for group in inner.pairs.chunk_by(|p, q| p.a == q.a) {
-                let a = own[group[0].a as usize];
-                self.groups.found(a, task, found.len(), group.len());
-                found.extend(group.iter().map(|pair| Pair {
-                    a,
-                    b: b[pair.b as usize],
-                }));
-            }
+                }
+            });
+            self.tasks[task].found.extend(pairs);
+            let work = join.work();
+            // a visit compares eight points with eight
+            self.work.tests += 64 * work.visits;
+            self.work.in_band += work.decisions;
         };
         if ONE_BODY {
-            inner.run::<true>(&a, &a, None, decide.threshold, watch, depth)?;
-            take(&inner, own);
+            find(&tree_a, own, true);
         }
-        inner.run::<false>(&a, &b, None, decide.threshold, watch, depth)?;
-        take(&inner, others);
+        if !others.is_empty() {
+            find(&tree(others, decide.b)?, others, false);
+        }
         Ok(())
     }
 }

@@ -232,6 +232,6 @@ impl TreeJoin {
             self.work.decisions += work.decisions;
         }
         let found = self.tasks.iter().map(|task| task.found.as_slice());
-        self.sorter.sort(found, &mut self.pairs, self.threads);
+        self.sorter.sort(found, &mut self.pairs);
     }
 }
