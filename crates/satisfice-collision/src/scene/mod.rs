@@ -40,7 +40,6 @@ mod skips;
 mod slack;
 mod state;
 mod update;
-mod verlet;
 
 #[cfg(test)]
 mod tests;

@@ -2,9 +2,8 @@
 
 use super::filter::PairFilter;
 use super::pairs::{Record, Status};
-use super::plan::{FRAMES, Plan, Situation};
+use super::plan::{Plan, Situation};
 use super::state::State;
-use super::verlet::VerletList;
 use super::{Skips, World};
 use crate::Error;
 use crate::broad::{Dirty, Pair, PairQuery, PointGrid, TreeJoin, Watch, inflate, intersection};
@@ -64,7 +63,6 @@ impl Posed {
 /// The result for a record.
 pub(super) struct Found {
     pub(super) pairs: Vec<Pair>,
-    pub(super) verlet: Option<Box<VerletList>>,
     pub(super) skips: Skips,
     /// Whether a new grid found fewer pairs than there are vertices.
     pub(super) sparse: Option<bool>,
@@ -76,21 +74,17 @@ impl World {
         let [a, b] = record.bodies;
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
-        let motion = |slot: u32| self.motion_of(slot);
         Situation {
             method: self.method,
             status: record.status,
             is_one_body: a == b,
             is_apart: self.boxes_apart(record.bodies),
             is_points: self.kind == PairKind::VertexVertex,
-            list_holds: record.verlet.as_ref().is_some_and(|list| list.holds()),
-            counts: [one.count(kind_a), two.count(kind_b)],
             trees_pay: [(one, kind_a), (two, kind_b)]
                 .iter()
                 .all(|(state, kind)| state.deforming.is_none() && state.mesh.pays_for_tree(*kind)),
             moved_share: one.moved_share(self.frame).max(two.moved_share(self.frame)),
             sparse: record.sparse,
-            motion: (motion(a) + motion(b)) / self.threshold.get(),
         }
     }
 
@@ -111,62 +105,28 @@ impl World {
         let mut skips = Skips::default();
         let found = |pairs| Found {
             pairs,
-            verlet: None,
             skips: Skips::default(),
             sparse: None,
         };
         Ok(match plan {
             Plan::Unchanged => found(record.pairs.clone()),
             Plan::Apart => found(Vec::new()),
-            Plan::Refilter => {
-                skips.verlet_lists += 1;
-                let list = record.verlet.as_ref().map_or(&[][..], |list| &list.pairs);
-                let within = list
-                    .iter()
-                    .copied()
-                    .filter(|&pair| self.decide(record.bodies, pair));
-                let pairs = within.collect();
-                Found {
-                    skips,
-                    ..found(pairs)
-                }
-            }
             Plan::Grid => self.by_grid(record, space, watch)?,
             Plan::All => {
-                let pairs = self.by_tree(record, self.threshold, true, space, &mut skips, watch)?;
+                let pairs = self.by_tree(record, true, space, &mut skips, watch)?;
                 Found {
                     skips,
                     ..found(pairs)
                 }
             }
-            Plan::Tree { wide } => {
+            Plan::Tree => {
                 let [a, b] = record.bodies;
-                let margin = FRAMES * (self.motion_of(a) + self.motion_of(b));
-                let wider = Threshold::new((self.threshold.get() + margin) * (1.0 + 1e-9));
-                match wider {
-                    Ok(wider) if wide => {
-                        let all = self.by_tree(record, wider, false, space, &mut skips, watch)?;
-                        let within = all
-                            .iter()
-                            .copied()
-                            .filter(|&pair| self.decide(record.bodies, pair));
-                        let pairs = within.collect();
-                        Found {
-                            pairs,
-                            verlet: Some(Box::new(VerletList::new(all, margin))),
-                            skips,
-                            sparse: None,
-                        }
-                    }
-                    _ => {
-                        let pairs = self.by_tree(record, self.threshold, false, space, &mut skips, watch)?;
-                        let vertices = self.state(a).vertices().len();
-                        Found {
-                            skips,
-                            sparse: (a == b && pairs.len() > vertices).then_some(false),
-                            ..found(pairs)
-                        }
-                    }
+                let pairs = self.by_tree(record, false, space, &mut skips, watch)?;
+                let vertices = self.state(a).vertices().len();
+                Found {
+                    skips,
+                    sparse: (a == b && pairs.len() > vertices).then_some(false),
+                    ..found(pairs)
                 }
             }
         })
@@ -201,7 +161,6 @@ impl World {
         filter.count(&mut skips);
         Ok(Found {
             pairs: kept,
-            verlet: None,
             skips,
             sparse: Some(sparse),
         })
@@ -211,7 +170,6 @@ impl World {
     fn by_tree(
         &self,
         record: &Record,
-        threshold: Threshold,
         all: bool,
         space: &mut Workspace,
         skips: &mut Skips,
@@ -222,7 +180,7 @@ impl World {
         let (kind_a, kind_b) = self.kind.features();
         let filter = PairFilter::new(self.kind, one, two, a == b);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-        let Some(mut query) = self.pair_query(record.bodies, threshold, &filter, &keep) else {
+        let Some(mut query) = self.pair_query(record.bodies, self.threshold, &filter, &keep) else {
             return Ok(Vec::new());
         };
         if all {
@@ -231,8 +189,7 @@ impl World {
             return Ok(pairs);
         }
         let moved = [one.moved(self.frame, kind_a), two.moved(self.frame, kind_b)];
-        let is_partial =
-            record.status == Status::Behind && threshold == self.threshold && moved != [Dirty::All; 2];
+        let is_partial = record.status == Status::Behind && moved != [Dirty::All; 2];
         if is_partial {
             query.moved = moved;
         }

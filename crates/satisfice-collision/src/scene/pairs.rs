@@ -4,7 +4,6 @@
 //! number of its record, plus one for the second body.
 
 use super::slack::Slack;
-use super::verlet::VerletList;
 use crate::broad::Pair;
 
 /// The end of a list.
@@ -47,7 +46,6 @@ pub(super) struct Record {
     pub(super) sparse: i16,
     /// The contacts, sorted.
     pub(super) pairs: Vec<Pair>,
-    pub(super) verlet: Option<Box<VerletList>>,
     /// For the next frame under a budget.
     pub(super) slack: Option<Box<Slack>>,
 }
@@ -126,7 +124,6 @@ impl Pairs {
             apart: false,
             sparse: 0,
             pairs: Vec::new(),
-            verlet: None,
             slack: None,
         };
         let id = match self.free.pop() {
@@ -159,7 +156,7 @@ impl Pairs {
         let record = &mut self.records[id as usize];
         let (bodies, next, before) = (record.bodies, record.next, record.before);
         record.bodies = [NONE; 2];
-        (record.verlet, record.slack) = (None, None);
+        record.slack = None;
         let pairs = std::mem::take(&mut record.pairs);
         self.own -= usize::from(bodies[0] == bodies[1]);
         self.apart -= usize::from(record.apart);
@@ -218,11 +215,8 @@ fn sides(bodies: [u32; 2]) -> usize {
 }
 
 impl Record {
-    /// The bodies have come closer by at most `motion`.
-    pub(super) fn has_moved(&mut self, motion: f64) {
-        if let Some(list) = &mut self.verlet {
-            list.spend(motion);
-        }
+    /// One of the bodies has moved.
+    pub(super) fn has_moved(&mut self) {
         if self.status == Status::Current {
             self.status = Status::Behind;
         }

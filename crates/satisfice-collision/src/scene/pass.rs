@@ -237,7 +237,7 @@ impl World {
             let pairs = self.sorted(link);
             let known = &mut self.pairs[record];
             let before = std::mem::replace(&mut known.pairs, pairs);
-            (known.slack, known.verlet) = (None, None);
+            known.slack = None;
             known.is_dirty = !link.is_done;
             known.status = if link.is_done {
                 Status::Current

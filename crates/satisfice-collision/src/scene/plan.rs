@@ -10,10 +10,8 @@ pub(super) enum Plan {
     Unchanged,
     /// The boxes are apart: there are no pairs.
     Apart,
-    /// A list with a margin still holds: its pairs are decided.
-    Refilter,
-    /// Trees are descended; if `wide`, with a margin, which gives a list for the next frames.
-    Tree { wide: bool },
+    /// Trees are descended.
+    Tree,
     /// A new grid; vertices only.
     Grid,
     /// Every pair is decided.
@@ -31,30 +29,18 @@ pub(super) struct Situation {
     pub(super) is_apart: bool,
     /// Whether both features are vertices.
     pub(super) is_points: bool,
-    /// Whether there is a list with a margin that still holds.
-    pub(super) list_holds: bool,
-    /// The number of features on each side.
-    pub(super) counts: [usize; 2],
     /// Whether both trees exist or are shared, so that building them pays at once.
     pub(super) trees_pay: bool,
     /// The greatest share of vertices of a body that moved one by one.
     pub(super) moved_share: f64,
     /// Frames in a row in which a new grid found fewer pairs than there are vertices.
     pub(super) sparse: i16,
-    /// A bound on how much closer the bodies come in a frame, in thresholds.
-    pub(super) motion: f64,
 }
 
-/// Up to so many pairs of features, deciding all of them is cheaper than any structure.
-const FEW: usize = 256;
 /// From this share of moved vertices on, a new grid beats a tree that has to be refitted for it.
 const MOST_MOVED: f64 = 0.3;
 /// After so many frames in which a new grid found few pairs, a tree is built.
 pub(super) const SPARSE: i16 = 3;
-/// A list is made with a margin of so many frames' motion...
-pub(super) const FRAMES: f64 = 6.0;
-/// ...if that is at most so many thresholds.
-const WIDEST: f64 = 0.5;
 
 impl Situation {
     pub(super) fn plan(&self) -> Plan {
@@ -64,18 +50,11 @@ impl Situation {
         if self.is_apart {
             return Plan::Apart;
         }
-        if self.list_holds {
-            return Plan::Refilter;
-        }
-        let few = self.counts[0].saturating_mul(self.counts[1]) <= FEW;
-        let wide = self.status == Status::Behind && self.motion > 0.0 && FRAMES * self.motion <= WIDEST;
-        let tree = Plan::Tree { wide };
         match self.method {
             Method::BruteForce => Plan::All,
             Method::Grid if self.is_points => Plan::Grid,
-            Method::Auto if few => Plan::All,
             Method::Auto if self.is_points && self.prefers_grid() => Plan::Grid,
-            Method::Grid | Method::Tree | Method::Auto => tree,
+            Method::Grid | Method::Tree | Method::Auto => Plan::Tree,
         }
     }
 

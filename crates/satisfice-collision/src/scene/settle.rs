@@ -5,7 +5,6 @@ use super::World;
 use super::body::{BodyId, Motion};
 use super::body_tree::Change;
 use super::pairs::{NONE, Status};
-use super::verlet::VerletList;
 use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
 use crate::{Aabb, CompactPlacement, Error, Placement};
@@ -74,26 +73,20 @@ impl World {
         Ok(())
     }
 
-    /// Changes the threshold for the next frame. Cost of that frame: if the threshold shrinks, one decision a contact; if it
-    /// grows, that of a new world.
+    /// Changes the threshold for the next frame, which searches all pairs of bodies again.
     pub fn set_threshold(&mut self, threshold: Threshold) {
         if threshold == self.threshold {
             return;
         }
         self.changing();
-        let margin = (self.threshold.get() - threshold.get()) * (1.0 - 1e-9);
-        let grows = margin < 0.0;
+        let grows = threshold.get() > self.threshold.get();
         self.threshold = threshold;
         let records: Vec<u32> = self.pairs.iter().map(|(record, _)| record).collect();
         for record in records {
-            if grows {
-                let known = &mut self.pairs[record];
-                (known.verlet, known.slack) = (None, None);
-                if known.status != Status::New {
-                    known.status = Status::Stale;
-                }
-            } else {
-                self.narrow_down(record, margin);
+            let known = &mut self.pairs[record];
+            known.slack = None;
+            if known.status != Status::New {
+                known.status = Status::Stale;
             }
             self.mark_dirty(record);
         }
@@ -104,20 +97,6 @@ impl World {
                     .zip(&self.states)
                     .filter_map(|(slot, state)| state.as_ref().map(|_| slot)),
             );
-        }
-    }
-
-    /// The threshold has shrunk by `margin`: the contacts of before are a list with that margin.
-    fn narrow_down(&mut self, record: u32, margin: f64) {
-        let known = &mut self.pairs[record];
-        known.slack = None;
-        if known.status == Status::Current {
-            known.status = Status::Stale;
-            if known.verlet.is_none() {
-                known.verlet = Some(Box::new(VerletList::new(known.pairs.clone(), margin)));
-            }
-        } else if known.status != Status::New {
-            known.status = Status::Stale;
         }
     }
 
@@ -170,9 +149,9 @@ impl World {
             }
         }
         let many = self.pending.len() as f64 > ALL_RECORDS * self.len() as f64;
-        // the motion of each body by slot, if many move
-        let mut motions = vec![f64::NAN; if many { self.states.len() } else { 0 }];
-        let mut changes = self.move_bodies(&mut motions);
+        // by slot, if many move
+        let mut has_moved = vec![false; if many { self.states.len() } else { 0 }];
+        let mut changes = self.move_bodies(&mut has_moved);
         self.add_unpaired(&mut changes);
         if self.tree.is_empty() || self.tree.has_left_frame() {
             changes = self.build_tree();
@@ -180,16 +159,16 @@ impl World {
             self.tree.follow(&mut changes);
         }
         if many {
-            self.go_through_records(&changes, &motions);
+            self.go_through_records(&changes, &has_moved);
         } else {
             self.end_pairs(&changes);
         }
         self.begin_pairs(&changes);
     }
 
-    /// Moves the bodies, and lists those that leave their boxes in the tree, with new boxes. Notes the motion of each, or marks
-    /// its records if `motions` is empty.
-    fn move_bodies(&mut self, motions: &mut [f64]) -> Vec<Change> {
+    /// Moves the bodies, and lists those that leave their boxes in the tree, with new boxes. Notes which bodies move, or
+    /// marks their records if `has_moved` is empty.
+    fn move_bodies(&mut self, has_moved: &mut [bool]) -> Vec<Change> {
         let (frame, half) = (self.frame, self.half_threshold());
         let mut changes = Vec::new();
         let mut pending = std::mem::take(&mut self.pending);
@@ -217,9 +196,9 @@ impl World {
             if is_rigid && self.predicts {
                 self.came_from.push((slot, (&placement).into()));
             }
-            match motions.get_mut(slot as usize) {
-                Some(noted) => *noted = motion,
-                None => self.mark_records(slot, motion),
+            match has_moved.get_mut(slot as usize) {
+                Some(has_moved) => *has_moved = true,
+                None => self.mark_records(slot),
             }
         }
         self.pending = pending;
@@ -268,7 +247,7 @@ impl World {
     }
 
     /// Marks the records of all bodies that have moved, and removes those whose boxes are apart now.
-    fn go_through_records(&mut self, changes: &[Change], motions: &[f64]) {
+    fn go_through_records(&mut self, changes: &[Change], has_moved: &[bool]) {
         let mut has_changed = vec![false; self.states.len()];
         for change in changes {
             has_changed[change.body as usize] = true;
@@ -279,9 +258,8 @@ impl World {
             }
             let record = &mut self.pairs[id];
             let [a, b] = record.bodies.map(|slot| slot as usize);
-            let (one, two) = (motions[a], motions[b]);
-            if !(one.is_nan() && two.is_nan()) {
-                record.has_moved(one.max(0.0) + two.max(0.0));
+            if has_moved[a] || has_moved[b] {
+                record.has_moved();
                 if !std::mem::replace(&mut record.is_dirty, true) {
                     self.dirty.push(id);
                 }
@@ -293,18 +271,13 @@ impl World {
     }
 
     /// A body has moved: its records are no longer current.
-    fn mark_records(&mut self, slot: u32, motion: f64) {
+    fn mark_records(&mut self, slot: u32) {
         let mut member = self.pairs.first(slot);
         while member != NONE {
             let record = member / 2;
             member = self.pairs.next(member);
             let known = &mut self.pairs[record];
-            let ways = if known.bodies[0] == known.bodies[1] {
-                2.0
-            } else {
-                1.0
-            };
-            known.has_moved(ways * motion);
+            known.has_moved();
             if !std::mem::replace(&mut known.is_dirty, true) {
                 self.dirty.push(record);
             }

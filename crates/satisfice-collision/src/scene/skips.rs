@@ -11,8 +11,6 @@ pub struct Skips {
     pub boxes_apart: u64,
     /// Pairs of bodies whose boxes meet, but neither of which has moved since their contacts were found.
     pub unmoved_bodies: u64,
-    /// Pairs of bodies answered from a list that was made in an earlier frame with a margin.
-    pub verlet_lists: u64,
     /// Vertices outside the overlap of two bodies.
     pub outside_overlap: u64,
     /// Vertices inside the overlap without a cell of the other body nearby.
@@ -30,13 +28,12 @@ pub struct Skips {
 impl Skips {
     /// Reasons and counts, in order.
     #[must_use]
-    pub fn by_reason(&self) -> [(&'static str, u64); 11] {
+    pub fn by_reason(&self) -> [(&'static str, u64); 10] {
         [
             ("body pairs filtered", self.filtered_bodies),
             ("self-pairs of rigid bodies", self.rigid_self),
             ("body pairs whose inflated boxes are apart", self.boxes_apart),
             ("body pairs that did not move", self.unmoved_bodies),
-            ("body pairs answered from a list with a margin", self.verlet_lists),
             ("vertices outside the overlap", self.outside_overlap),
             ("vertices without a partner nearby", self.without_partner),
             ("pairs that did not move", self.unmoved_pairs),
@@ -53,7 +50,6 @@ impl Skips {
             rigid_self,
             boxes_apart,
             unmoved_bodies,
-            verlet_lists,
             outside_overlap,
             without_partner,
             unmoved_pairs,
@@ -65,7 +61,6 @@ impl Skips {
         self.rigid_self += rigid_self;
         self.boxes_apart += boxes_apart;
         self.unmoved_bodies += unmoved_bodies;
-        self.verlet_lists += verlet_lists;
         self.outside_overlap += outside_overlap;
         self.without_partner += without_partner;
         self.unmoved_pairs += unmoved_pairs;

@@ -128,10 +128,6 @@ fn what_need_not_be_done_is_skipped_and_counted() {
     });
     let sum = |of: fn(&super::Skips) -> u64| all.iter().map(of).sum::<u64>();
     assert!(
-        sum(|s| s.verlet_lists) >= 2,
-        "a creeping body is answered from a list"
-    );
-    assert!(
         sum(|s| s.unmoved_pairs) > 0,
         "a cloth that moves in one corner keeps the other pairs"
     );

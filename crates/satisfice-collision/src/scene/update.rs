@@ -190,7 +190,7 @@ impl World {
         let known = &self.pairs[record];
         let (bodies, situation) = (known.bodies, self.situation(known));
         let plan = situation.plan();
-        if matches!(plan, Plan::Tree { .. } | Plan::All) {
+        if matches!(plan, Plan::Tree | Plan::All) {
             self.ensure_trees(bodies)?;
         }
         self.pairs.set_apart(record, plan == Plan::Apart);
@@ -205,16 +205,11 @@ impl World {
         let before = std::mem::replace(&mut known.pairs, found.pairs);
         known.slack = None;
         if cut {
-            (known.status, known.verlet) = (Status::Partial, None);
+            known.status = Status::Partial;
         } else {
             known.status = Status::Current;
             known.is_dirty = false;
             known.note_sparse(found.sparse);
-            match found.verlet {
-                Some(list) => known.verlet = Some(list),
-                None if known.verlet.as_ref().is_some_and(|list| !list.holds()) => known.verlet = None,
-                None => {}
-            }
         }
         if !(before.is_empty() && known.pairs.is_empty()) {
             self.log.note(bodies, record, before);
