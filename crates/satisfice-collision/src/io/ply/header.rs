@@ -64,6 +64,16 @@ impl Number {
         })
     }
 
+    /// How many bytes one takes in a binary file.
+    pub(super) fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
     pub(super) fn is_whole(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
     }

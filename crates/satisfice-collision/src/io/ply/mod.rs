@@ -3,9 +3,11 @@
 //! The reader is our own: the kept one takes several times as long, knows neither `nan` nor `.5` in text, and overwrites
 //! an element that appears twice.
 
+mod at_once;
 mod header;
 mod numbers;
 
+use at_once::{PointShape, TriangleShape};
 use header::{Definition, Encoding, Header, Kind, Number};
 use numbers::{Ascii, Binary, Numbers};
 
@@ -42,6 +44,13 @@ struct ElementPlan<'a> {
     definition: &'a Definition,
     role: Role,
     steps: Vec<PropertyStep>,
+    shape: Option<UsualShape>,
+}
+
+/// What many files have in common: their members are read many at a time.
+enum UsualShape {
+    Points(PointShape),
+    Triangles(TriangleShape),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -116,10 +125,18 @@ fn plan(definition: &Definition) -> Result<ElementPlan<'_>, Error> {
         }
         _ => Role::Other,
     };
+    let shape = match (role, &steps[..]) {
+        (Role::Vertex, steps) => PointShape::of(steps).map(UsualShape::Points),
+        (Role::Face, &[PropertyStep::Corners { count, item }]) => {
+            TriangleShape::of(count, item).map(UsualShape::Triangles)
+        }
+        _ => None,
+    };
     Ok(ElementPlan {
         definition,
         role,
         steps,
+        shape,
     })
 }
 
@@ -201,15 +218,34 @@ impl<N: Numbers> MeshContents<N> {
             Role::Edge => self.faces.lines.reserve(reserved),
             Role::Other => {}
         }
-        for member in 0..count {
+        let mut member = 0;
+        loop {
+            member += self.at_once(plan, count - member);
+            if member == count {
+                return Ok(());
+            }
             if !self.numbers.begin() {
                 let reason = format!("it ends after {member} of {count} members of the element {name:?}");
                 return Err(Error::malformed(NAME, reason));
             }
             self.member(plan)
                 .map_err(|error| self.numbers.locate(in_member(error, name, member)))?;
+            member += 1;
         }
-        Ok(())
+    }
+
+    /// Reads members of a usual shape, at most so many; how many these are.
+    fn at_once(&mut self, plan: &ElementPlan<'_>, most: u64) -> u64 {
+        match plan.shape {
+            Some(UsualShape::Points(ref shape)) => self.numbers.points(shape, most, &mut self.vertices),
+            Some(UsualShape::Triangles(ref shape)) => {
+                let triangles = &mut self.faces.triangles;
+                let read = self.numbers.triangles(shape, most, self.vertex_count, triangles);
+                self.polygons += read as usize;
+                read
+            }
+            None => 0,
+        }
     }
 
     fn member(&mut self, plan: &ElementPlan<'_>) -> Result<(), Error> {

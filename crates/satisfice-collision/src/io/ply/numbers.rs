@@ -1,6 +1,7 @@
 //! The numbers of a PLY file, one after another: as words of a line or as bytes of either order.
 
 use super::NAME;
+use super::at_once::{PointShape, TriangleShape};
 use super::header::Number;
 use crate::error::Error;
 use crate::io::text::{Lines, Words, quoted, real, whole};
@@ -13,6 +14,20 @@ pub(super) trait Numbers {
     fn real(&mut self, kind: Number) -> Result<f64, Error>;
     /// A number of a whole type.
     fn whole(&mut self, kind: Number) -> Result<i64, Error>;
+    /// Reads at most so many whole points of this shape; how many.
+    fn points(&mut self, _shape: &PointShape, _most: u64, _points: &mut Vec<[f64; 3]>) -> u64 {
+        0
+    }
+    /// Reads at most so many whole triangles of this shape between so many vertices; how many.
+    fn triangles(
+        &mut self,
+        _shape: &TriangleShape,
+        _most: u64,
+        _vertices: usize,
+        _triangles: &mut Vec<[u32; 3]>,
+    ) -> u64 {
+        0
+    }
     /// Ends a member.
     fn end(&mut self) -> Result<(), Error>;
     /// Refuses what is left after the last member.
@@ -152,6 +167,24 @@ impl<const BIG_ENDIAN: bool> Numbers for Binary<'_, BIG_ENDIAN> {
             Number::U32 => u32::from_le_bytes(self.take()?).into(),
             Number::F32 | Number::F64 => self.real(kind)? as i64,
         })
+    }
+
+    fn points(&mut self, shape: &PointShape, most: u64, points: &mut Vec<[f64; 3]>) -> u64 {
+        let (bytes, count) = shape.read::<BIG_ENDIAN>(self.rest, most, points);
+        self.rest = &self.rest[bytes..];
+        count
+    }
+
+    fn triangles(
+        &mut self,
+        shape: &TriangleShape,
+        most: u64,
+        vertices: usize,
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> u64 {
+        let (bytes, count) = shape.read::<BIG_ENDIAN>(self.rest, most, vertices, triangles);
+        self.rest = &self.rest[bytes..];
+        count
     }
 
     fn end(&mut self) -> Result<(), Error> {

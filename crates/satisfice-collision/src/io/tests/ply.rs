@@ -322,3 +322,107 @@ fn ply_lists_and_types_that_are_passed_over_are_checked() {
         );
     }
 }
+
+/// A binary file in a shape that is read many members at a time, or, with a list and a number more, one by one.
+fn shaped(
+    usual: bool,
+    big: bool,
+    real: &str,
+    list: &str,
+    vertices: &[[f64; 3]],
+    polygons: &[Vec<u32>],
+) -> Vec<u8> {
+    let encoding = if big {
+        "binary_big_endian"
+    } else {
+        "binary_little_endian"
+    };
+    let [count, item] = [0, 1].map(|k| list.split(' ').nth(k).unwrap());
+    let mut file = format!(
+        "ply\nformat {encoding} 1.0\nelement vertex {}\nproperty short flag\nproperty {real} z\nproperty {real} x\n{}property {real} y\n\
+         element face {}\nproperty list {count} {item} vertex_index\n{}end_header\n",
+        vertices.len(),
+        if usual { "" } else { "property list uchar uchar none\n" },
+        polygons.len(),
+        if usual { "" } else { "property uchar shade\n" },
+    )
+    .into_bytes();
+    let mut put = |little: &[u8]| match big {
+        true => file.extend(little.iter().rev()),
+        false => file.extend(little),
+    };
+    for &[x, y, z] in vertices {
+        put(&7_i16.to_le_bytes());
+        for (c, ends) in [(z, false), (x, true), (y, false)] {
+            match real {
+                "float" => put(&(c as f32).to_le_bytes()),
+                _ => put(&c.to_le_bytes()),
+            }
+            if ends && !usual {
+                put(&[0]);
+            }
+        }
+    }
+    for polygon in polygons {
+        match count {
+            "uchar" => put(&[polygon.len() as u8]),
+            _ => put(&(polygon.len() as u32).to_le_bytes()),
+        }
+        polygon.iter().for_each(|v| put(&v.to_le_bytes()));
+        if !usual {
+            put(&[9]);
+        }
+    }
+    file
+}
+
+#[test]
+fn ply_members_read_many_at_a_time_are_those_read_one_by_one() {
+    let vertices: Vec<[f64; 3]> = (0..9)
+        .map(|k| [f64::from(k) * 0.1, -1.5, 2.0 - f64::from(k)])
+        .collect();
+    let spoilt = |k: usize, axis: usize, to: f64| {
+        let mut vertices = vertices.clone();
+        vertices[k][axis] = to;
+        vertices
+    };
+    let triangles: Vec<Vec<u32>> = (0..7).map(|k| vec![k, k + 1, k + 2]).collect();
+    let with = |k: usize, polygon: &[u32]| {
+        let mut polygons = triangles.clone();
+        polygons[k] = polygon.to_vec();
+        polygons
+    };
+    let mut cases = vec![(vertices.clone(), triangles.clone())];
+    for k in [0, 3, 6] {
+        for polygon in [
+            &[][..],
+            &[4],
+            &[0, 8],
+            &[0, 1, 2, 3],
+            &[8, 8, 8],
+            &[0, 9, 1],
+            &[0, 1, u32::MAX],
+            &[1 << 31, 0, 1],
+        ] {
+            cases.push((vertices.clone(), with(k, polygon)));
+        }
+        for to in [f64::NAN, f64::INFINITY] {
+            cases.push((spoilt(k, k % 3, to), triangles.clone()));
+        }
+    }
+    for (vertices, polygons) in &cases {
+        for big in [false, true] {
+            for real in ["float", "double"] {
+                for list in ["uchar int", "uchar uint", "int int", "uint uint"] {
+                    let [usual, other] = [true, false].map(|usual| {
+                        let file = shaped(usual, big, real, list, vertices, polygons);
+                        let whole = parse(PLY, &file).map_err(|error| error.to_string());
+                        (whole, parse(PLY, &file[..file.len() - 1]).is_err())
+                    });
+                    assert_eq!(usual, other, "{real} {list} {vertices:?} {polygons:?}");
+                    assert!(usual.1);
+                }
+            }
+        }
+    }
+}
