@@ -77,7 +77,7 @@ engine_settings! {
     /// share until something hits; any other source that finds nothing takes at most 4 % of the evaluations. All of them learn the
     /// hits of the others. No parameter depends on the problem.
     pub struct Portfolio {
-        /// Candidates proposed at once. By default as many as evaluations [can go on at once](crate::Budget::with_parallel), 4 in the
+        /// Candidates proposed at once. By default as many as go on at once by the word of the budget, 4 in the
         /// first batch, and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
         pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.

@@ -385,7 +385,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
                 Source::Guest if self.guests.explores(index) => self.patches.count_explorer(hit),
                 Source::Step | Source::Trial | Source::Cross | Source::Neighbour => {
-                    self.patches.count_exploiter(hit)
+                    self.patches.count_exploiter(hit);
                 }
                 Source::Guest if self.guests.exploits(index) => self.patches.count_exploiter(hit),
                 Source::Guest | Source::NearMiss => {}
