@@ -1,0 +1,13 @@
+//! The library as its users call it. One program, because each program that is built compiles every engine again.
+
+mod axes;
+mod best;
+mod equations;
+mod lanes;
+mod panics;
+mod portfolio;
+mod problem_suite;
+mod rounds;
+mod start_points;
+mod tickets;
+mod unsized_problem;
