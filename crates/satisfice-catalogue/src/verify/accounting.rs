@@ -73,7 +73,7 @@ fn limits(report: &RunReport, wrong: &mut Vec<Mismatch>) {
             wrong.push(Mismatch::new(
                 "evaluations",
                 spent,
-                format!("with bounds the whole budget of {limit}, since it was spent"),
+                format!("the whole budget of {limit}, with bounds, since it was spent"),
             ));
         }
     }

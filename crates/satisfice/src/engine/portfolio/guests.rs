@@ -355,12 +355,13 @@ impl<S: Real> Guests<S> {
         Ok(())
     }
 
-    /// Whether restored parts of a batch are inside it, and are theirs.
-    pub(super) fn fit(&self, tags: &[Tag]) -> bool {
+    /// Whether restored parts of a batch are inside it, and it and the source chosen last name engines that there are.
+    pub(super) fn fit(&self, tags: &[Tag], chosen: Option<Tag>) -> bool {
         let inside = |own: &Range<usize>| own.start <= own.end && own.end <= tags.len();
         self.guests.iter().all(|guest| inside(&guest.own))
             && tags
                 .iter()
+                .chain(&chosen)
                 .all(|&(source, index)| source != Source::Guest || index < self.guests.len())
     }
 }

@@ -444,11 +444,9 @@ impl<S: Real> Engine<S> for Sources<S> {
             self.descents.push(descent);
         }
         self.guests.restore(self.position.len(), from)?;
-        let fits = |&(source, index): &Tag| match source {
-            Source::Descent => index < descents,
-            _ => true,
-        };
-        if !self.tags.iter().all(fits) || !self.guests.fit(&self.tags) {
+        let descents_fit = |&(source, index): &Tag| source != Source::Descent || index < descents;
+        let chosen = self.chosen.map(|(tag, _)| tag);
+        if !self.tags.iter().all(descents_fit) || !self.guests.fit(&self.tags, chosen) {
             return Err(Error::State("its batches do not fit its sources".to_owned()));
         }
         if !self.near_misses.fit(self.position.len()) {
