@@ -2,6 +2,7 @@
 
 use rand_distr::{Distribution, Gamma};
 
+use super::source::Role;
 use crate::seed::SearchRng;
 
 /// Hits after which a past hit counts for 1/e, at the rate of the arm: yields change as a search goes on.
@@ -79,19 +80,21 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    pub(super) fn count_explorer(&mut self, hit: bool) {
-        self.places += f64::from(u8::from(hit));
+    pub(super) fn count(&mut self, role: Role, hit: bool) {
+        match role {
+            Role::Explores => self.places += f64::from(u8::from(hit)),
+            Role::Exploits => {
+                self.hits += f64::from(u8::from(hit));
+                self.evaluations += 1.0;
+            }
+            Role::Apart => {}
+        }
     }
 
-    pub(super) fn count_exploiter(&mut self, hit: bool) {
-        self.hits += f64::from(u8::from(hit));
-        self.evaluations += 1.0;
-    }
-
-    /// The yield of a source that looks for new places and hits at this rate, with what is found from its hits; of that only a share
-    /// counts, because what others find now from earlier hits is for certain.
-    pub(super) fn worth(&self, rate: f64) -> f64 {
-        if self.places == 0.0 {
+    /// What a source that hits at this rate is worth: where it looks for new places, with what is found from its hits; of that only a
+    /// share counts, because what others find now from earlier hits is for certain.
+    pub(super) fn worth(&self, role: Role, rate: f64) -> f64 {
+        if role != Role::Explores || self.places == 0.0 {
             return rate;
         }
         let (hits, evaluations) = (self.hits / self.places, self.evaluations / self.places);
@@ -168,15 +171,17 @@ mod tests {
     #[test]
     fn a_new_place_is_worth_what_follows() {
         let mut patches = Patches::default();
-        approx::assert_relative_eq!(patches.worth(0.01), 0.01);
-        patches.count_explorer(true);
+        let worth = |patches: &Patches, rate| patches.worth(Role::Explores, rate);
+        approx::assert_relative_eq!(worth(&patches, 0.01), 0.01);
+        patches.count(Role::Explores, true);
         for i in 0..100 {
-            patches.count_exploiter(i % 10 == 0);
+            patches.count(Role::Exploits, i % 10 == 0);
         }
+        approx::assert_relative_eq!(patches.worth(Role::Exploits, 0.01), 0.01);
         // 11 hits in 1 / 0.01 + 100 evaluations.
-        approx::assert_relative_eq!(patches.worth(0.01), 0.2 * 11.0 / 200.0, max_relative = 1e-12);
+        approx::assert_relative_eq!(worth(&patches, 0.01), 0.2 * 11.0 / 200.0, max_relative = 1e-12);
         // What finds hits sooner than others go on from them needs no share.
-        approx::assert_relative_eq!(patches.worth(0.5), 0.5);
+        approx::assert_relative_eq!(worth(&patches, 0.5), 0.5);
     }
 
     #[test]

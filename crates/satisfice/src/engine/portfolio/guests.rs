@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::credit::Credit;
-use super::source::{Source, Tag};
+use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
@@ -205,14 +205,12 @@ impl<S: Real> Guests<S> {
         !self.guests[index].own.is_empty()
     }
 
-    /// Whether it looks for hits in new places.
-    pub(super) fn explores(&self, index: usize) -> bool {
-        matches!(self.guests[index].kind, Kind::Cma)
-    }
-
-    /// Whether it goes on from hits.
-    pub(super) fn exploits(&self, index: usize) -> bool {
-        matches!(self.guests[index].kind, Kind::Flood)
+    pub(super) fn role(&self, index: usize) -> Role {
+        match self.guests[index].kind {
+            Kind::Cma => Role::Explores,
+            Kind::Flood => Role::Exploits,
+            Kind::Regions | Kind::Model => Role::Apart,
+        }
     }
 
     /// Its place among the names of all sources.

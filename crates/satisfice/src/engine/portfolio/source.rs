@@ -28,6 +28,28 @@ pub(super) enum Source {
     Guest,
 }
 
+/// What a source does for the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// It looks for hits in new places.
+    Explores,
+    /// It goes on from hits.
+    Exploits,
+    /// Neither: what it finds says nothing about places.
+    Apart,
+}
+
+impl Source {
+    /// The role of a source that is no [whole engine](Source::Guest).
+    pub(super) fn role(self) -> Role {
+        match self {
+            Self::Uniform | Self::Swarm | Self::Climber | Self::Member | Self::Descent => Role::Explores,
+            Self::Step | Self::Trial | Self::Cross | Self::Neighbour => Role::Exploits,
+            Self::NearMiss | Self::Guest => Role::Apart,
+        }
+    }
+}
+
 /// The names of all sources, in their order; whole engines last, in theirs.
 const NAMES: [&str; 14] = [
     "uniform",

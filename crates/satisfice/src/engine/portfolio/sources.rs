@@ -11,7 +11,7 @@ use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
 use super::scan::Scan;
-use super::source::{ARMS, CROSS, DESCENT, MEMBER, NEIGHBOUR, STEP, Source, TRIAL, Tag, Tally, arm_of};
+use super::source::{ARMS, CROSS, DESCENT, MEMBER, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -133,35 +133,30 @@ impl<S: Real> Sources<S> {
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
-        let explorer = |yields: f64| self.patches.worth(yields);
-        let mut best = (explorer(self.arms[0].draw(price, 0.3, rng)), (Source::Uniform, 0));
+        let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
-            if yields > best.0 {
-                best = (yields, tag);
+            let worth = self.patches.worth(self.role(tag), yields);
+            if worth > best.0 {
+                best = (worth, tag);
             }
         };
-        offer(
-            explorer(self.arms[DESCENT].draw(price, 4.0, rng)),
-            (Source::Descent, 0),
-        );
-        let worth = |arm: &Credit| arm.is_worth_trying(&self.whole);
-        if uses(Omitted::Swarms) && worth(&self.arms[1]) {
-            offer(explorer(self.arms[1].draw(price, 0.5, rng)), (Source::Swarm, 0));
+        offer(self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
+        offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
+        let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole);
+        if uses(Omitted::Swarms) && is_worth(1) {
+            offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
         }
-        if uses(Omitted::Climbers) && worth(&self.arms[2]) {
-            offer(explorer(self.arms[2].draw(price, 0.5, rng)), (Source::Climber, 0));
+        if uses(Omitted::Climbers) && is_worth(2) {
+            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
         }
-        if uses(Omitted::Populations) && self.populations.are_usable() && worth(&self.arms[MEMBER]) {
-            offer(
-                explorer(self.arms[MEMBER].draw(price, 1.5, rng)),
-                (Source::Member, 0),
-            );
+        if uses(Omitted::Populations) && self.populations.are_usable() && is_worth(MEMBER) {
+            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
         }
         let hits = self.hit_count();
-        if uses(Omitted::Learning) && hits >= 3 && worth(&self.arms[TRIAL]) {
+        if uses(Omitted::Learning) && hits >= 3 && is_worth(TRIAL) {
             offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));
         }
-        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && worth(&self.arms[CROSS]) {
+        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && is_worth(CROSS) {
             offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
         }
         if uses(Omitted::Steps)
@@ -178,15 +173,16 @@ impl<S: Real> Sources<S> {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
         for (index, arm, weight) in self.guests.arms(&self.whole) {
-            let yields = arm.draw(price, weight, rng);
-            let yields = if self.guests.explores(index) {
-                explorer(yields)
-            } else {
-                yields
-            };
-            offer(yields, (Source::Guest, index));
+            offer(arm.draw(price, weight, rng), (Source::Guest, index));
         }
         best.1
+    }
+
+    fn role(&self, (source, index): Tag) -> Role {
+        match source {
+            Source::Guest => self.guests.role(index),
+            _ => source.role(),
+        }
     }
 }
 
@@ -379,17 +375,7 @@ impl<S: Real> Engine<S> for Sources<S> {
             };
             self.tally.count(place, *outcome);
             self.whole.count(hit);
-            match source {
-                Source::Uniform | Source::Swarm | Source::Climber | Source::Member | Source::Descent => {
-                    self.patches.count_explorer(hit);
-                }
-                Source::Guest if self.guests.explores(index) => self.patches.count_explorer(hit),
-                Source::Step | Source::Trial | Source::Cross | Source::Neighbour => {
-                    self.patches.count_exploiter(hit);
-                }
-                Source::Guest if self.guests.exploits(index) => self.patches.count_exploiter(hit),
-                Source::Guest | Source::NearMiss => {}
-            }
+            self.patches.count(self.role((source, index)), hit);
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
             }
