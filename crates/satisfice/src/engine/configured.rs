@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::config::row;
-use super::decorate::{FloodFill, Pruned};
-use super::registry::{default_of, find};
-use super::{Engine, EngineConfig};
+use super::registry::find;
+use super::{Engine, EngineConfig, compiled};
 use crate::catalogue::Parameter;
 use crate::error::Error;
 use crate::scalar::Real;
@@ -141,7 +140,7 @@ impl<S: Real> ConfiguredEngine<S> {
     /// [`Error::Unknown`] with the nearest name.
     pub fn named(name: &str) -> Result<Self, Error> {
         let spec = find(name)?;
-        default_of(spec).ok_or_else(|| Error::unknown("engine", name, [spec.name]))
+        compiled::default_of(spec).ok_or_else(|| Error::unknown("engine", name, [spec.name]))
     }
 
     /// An engine of your own. `make` builds it, once for each lane of a search; reports show `name`.
@@ -297,10 +296,10 @@ impl<S: Real> ConfiguredEngine<S> {
     pub(crate) fn build_unchecked(&self) -> Box<dyn Engine<S>> {
         let mut engine = self.recipe.build();
         if self.flood_fill {
-            engine = Box::new(FloodFill::around(engine));
+            engine = compiled::flood_fill(engine);
         }
         if self.pruned {
-            engine = Box::new(Pruned::around(engine));
+            engine = compiled::pruned(engine);
         }
         engine
     }

@@ -9,12 +9,14 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Reader, State};
 
+mod compiled;
 #[doc(hidden)]
 pub mod config;
 mod configured;
 mod decorate;
 mod exact;
 mod local;
+mod low_discrepancy;
 mod model;
 mod portfolio;
 mod registry;

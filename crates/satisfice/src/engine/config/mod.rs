@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::Engine;
+use super::{Engine, compiled};
 use crate::catalogue::Parameter;
 use crate::error::Error;
 use crate::scalar::Real;
@@ -40,8 +40,16 @@ pub trait EngineConfig: Settings + Clone + Debug + Default + Send + Sync + 'stat
     /// expensive F. Tests and benches with thousands of evaluations leave it out.
     const EXPENSIVE_PROPOSALS: bool = false;
 
+    /// The engine for coordinates of type `f64`. Every setting is within its range.
+    fn build_f64(&self) -> Box<dyn Engine<f64>>;
+
+    /// The same for coordinates of type `f32`.
+    fn build_f32(&self) -> Box<dyn Engine<f32>>;
+
     /// The engine. Every setting is within its range.
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>>;
+    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+        compiled::for_scalar::<S, _, _, _, _, _, _>((), |()| self.build_f64(), |()| self.build_f32())
+    }
 
     /// Whether a schedule follows the budget with these settings. A short run is then not a prefix of a long one, unless both
     /// have the same [horizon](crate::Budget::with_horizon).

@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 use super::region_tree::{Node, Split, Splitter};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
@@ -69,8 +70,12 @@ impl EngineConfig for BranchAndBound {
         "exact: best-first over regions by the problem's lower bounds; enumeration where there are none";
     const CITATION: &'static str = "Land, Doig 1960, doi 10.2307/1910129";
 
+    both_scalars!();
+}
+
+impl BranchAndBound {
     #[expect(clippy::cast_precision_loss, reason = "at most 2^20")]
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(RegionSearch {
             leaf: self.leaf as f64,
             batch: self.batch,

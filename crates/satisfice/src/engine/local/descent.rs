@@ -2,6 +2,7 @@
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
@@ -44,7 +45,11 @@ impl EngineConfig for Descent {
     const CITATION: &'static str =
         "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Descent {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(RestartedDescent::new(self.step, self.shortest))
     }
 }

@@ -4,6 +4,7 @@ use super::descent::RestartedDescent;
 use super::flood::Flood;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -42,7 +43,11 @@ impl EngineConfig for DescentFlood {
     const CITATION: &'static str =
         "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl DescentFlood {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(FloodingDescent {
             descent: RestartedDescent::new(self.step, self.shortest),
             flood: Flood::new(self.flood_step),

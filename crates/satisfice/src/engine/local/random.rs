@@ -2,6 +2,7 @@
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -29,7 +30,11 @@ impl EngineConfig for Random {
     const SUMMARY: &'static str = "uniform random sampling, the baseline";
     const CITATION: &'static str = "none needed";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Random {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(UniformSampler { batch: self.batch })
     }
 }

@@ -6,6 +6,7 @@ use super::one_plus_one::Mutation;
 use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
@@ -49,7 +50,11 @@ impl EngineConfig for RestartedCmaEs {
     const SUMMARY: &'static str = "restarted (1+1)-CMA-ES for continuous axes, and recombination of hits";
     const CITATION: &'static str = "this project; parts after Igel, Suttorp, Hansen 2006, doi 10.1145/1143997.1144082, and Luby, Sinclair, Zuckerman 1993, doi 10.1016/0020-0190(93)90029-9";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl RestartedCmaEs {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let steps = (self.smallest_step, self.step);
         Box::new(Searches::new(steps, self.patience, self.searches))
     }

@@ -2,6 +2,7 @@
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -30,7 +31,11 @@ impl EngineConfig for Walk {
         "random walk from the latest hit, steps of log-uniform length, a tenth uniform";
     const CITATION: &'static str = "none";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Walk {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(LatestHitWalk {
             uniform: self.uniform,
             shortest: self.shortest,

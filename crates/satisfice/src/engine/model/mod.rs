@@ -8,7 +8,6 @@ mod kernel;
 mod lanes;
 mod likelihood;
 mod local;
-mod low_discrepancy;
 mod points;
 mod pool;
 mod process;

@@ -1,7 +1,6 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
 use super::local::{Given, Model};
-use super::low_discrepancy;
 use super::pool::Pool;
 use super::process::Process;
 use super::record::{Kind, Record};
@@ -11,7 +10,8 @@ use super::target::Target;
 use super::units::Units;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
+use crate::engine::compiled::both_scalars;
+use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin, low_discrepancy};
 use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
@@ -53,7 +53,11 @@ impl EngineConfig for Surrogate {
     const CITATION: &'static str = "after Bryan et al. 2005, NIPS 18, and Gotovos et al. 2013, IJCAI 23; Matérn kernels: Rasmussen, Williams 2006, ISBN 026218253X";
     const EXPENSIVE_PROPOSALS: bool = true;
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Surrogate {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(ModelledSearch {
             settings: self.clone(),
             units: Units::default(),
@@ -100,7 +104,8 @@ impl<S: Real> ModelledSearch<S> {
         }
         let mut x = Vec::new();
         while self.started < (2 * axes + 2).min(4 * axes) {
-            low_discrepancy::point(self.started, &self.shift, &mut x);
+            x.clear();
+            x.extend(low_discrepancy::point(self.started as u64, &self.shift));
             self.started += 1;
             self.units.round(&mut x);
             if self.is_new(context, &x) {

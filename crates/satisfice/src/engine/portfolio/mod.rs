@@ -17,6 +17,7 @@ mod visited;
 use sources::Sources;
 
 use super::{Engine, EngineConfig};
+use crate::engine::compiled::both_scalars;
 use crate::scalar::Real;
 use crate::{engine_choice, engine_settings};
 
@@ -106,7 +107,11 @@ impl EngineConfig for Portfolio {
         true
     }
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Portfolio {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(Sources::new(self))
     }
 }

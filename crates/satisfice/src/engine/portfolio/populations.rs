@@ -6,6 +6,7 @@
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::local::luby::luby;
+use crate::engine::low_discrepancy;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
@@ -147,15 +148,11 @@ impl<S: Real> Populations<S> {
     }
 }
 
-/// The `k`-th point of the additive recurrence with the powers of the generalised golden ratio g, g^(D+1) = g + 1, the least
-/// discrepant of its kind that is known (Roberts 2018, The unreasonable effectiveness of quasirandom sequences).
+/// Moves the position to point `k` of a sequence that covers the space evenly.
 fn spread<S: Real>(offset: &[f64], k: u64, space: &Space<S>, position: &mut [S]) {
-    let power = 1.0 / (offset.len() as f64 + 1.0);
-    let ratio = (0..40).fold(2.0_f64, |g, _| (1.0 + g).powf(power));
-    let mut step = 1.0;
-    for ((x, axis), start) in position.iter_mut().zip(space.axes()).zip(offset) {
-        step /= ratio;
-        *x = axis.at((start + k as f64 * step).fract());
+    let units = low_discrepancy::point(k, offset);
+    for ((x, axis), unit) in position.iter_mut().zip(space.axes()).zip(units) {
+        *x = axis.at(unit);
     }
 }
 

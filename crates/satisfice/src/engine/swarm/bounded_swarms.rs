@@ -6,6 +6,7 @@ use super::pso::constriction;
 use super::velocity::Coefficients;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::exact::region_tree::{Split, Splitter};
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
@@ -61,8 +62,12 @@ impl EngineConfig for BoundedSwarms {
     const CITATION: &'static str =
         "after Li et al. 2010, as mentioned by Chen et al. 2012, doi 10.3923/itj.2012.536.539";
 
+    both_scalars!();
+}
+
+impl BoundedSwarms {
     #[expect(clippy::cast_precision_loss, reason = "at most 2^20")]
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(LeafSwarms {
             leaf: S::of(self.leaf as f64),
             splitter: Splitter {

@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::quantum::QuantumSwarm;
 use super::schedule::Schedule;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -57,7 +58,11 @@ impl EngineConfig for LatestHitQpso {
         "the paper's swarm: quantum-behaved, attracted by the latest hit, hits deleted";
     const CITATION: &'static str = "Chen, Ye, An, Wang 2012, doi 10.3923/itj.2012.536.539";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl LatestHitQpso {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

@@ -6,6 +6,7 @@ use super::pso::constriction;
 use super::velocity::Coefficients;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Ask, Engine, EngineConfig, Origin, WarmStart};
 use crate::engine_settings;
 use crate::error::Error;
@@ -55,7 +56,11 @@ impl EngineConfig for NichingPsoDbscan {
         "the paper's rival, reconstructed: a particle swarm with niches found by clustering, hits deleted";
     const CITATION: &'static str = "after Wang et al. 2006, the rival of Chen et al. 2012, doi 10.3923/itj.2012.536.539; DBSCAN: Ester et al. 1996, KDD-96";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl NichingPsoDbscan {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::schedule::Schedule;
 use super::velocity::{Coefficients, VelocitySwarm};
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -40,7 +41,11 @@ impl EngineConfig for Pso {
     const SUMMARY: &'static str = "particle swarm with constriction, attracted by the best";
     const CITATION: &'static str = "Clerc, Kennedy 2002, doi 10.1109/4235.985692";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Pso {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::schedule::Schedule;
 use super::velocity::{Coefficients, VelocitySwarm};
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -42,7 +43,11 @@ impl EngineConfig for Pso1995 {
     const SUMMARY: &'static str = "the first particle swarm, without inertia weight";
     const CITATION: &'static str = "Kennedy, Eberhart 1995, doi 10.1109/ICNN.1995.488968";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Pso1995 {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

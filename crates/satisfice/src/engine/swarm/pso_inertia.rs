@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::schedule::Schedule;
 use super::velocity::{Coefficients, VelocitySwarm};
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -47,7 +48,15 @@ impl EngineConfig for PsoInertia {
     const SUMMARY: &'static str = "particle swarm with an inertia weight that falls";
     const CITATION: &'static str = "Shi, Eberhart 1998, doi 10.1109/ICEC.1998.699146";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+
+    fn is_scheduled(&self) -> bool {
+        self.w != self.w_end
+    }
+}
+
+impl PsoInertia {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,
@@ -61,10 +70,6 @@ impl EngineConfig for PsoInertia {
             v_max: S::of(self.v_max),
         };
         Box::new(VelocitySwarm::new(rules, coefficients))
-    }
-
-    fn is_scheduled(&self) -> bool {
-        self.w != self.w_end
     }
 }
 

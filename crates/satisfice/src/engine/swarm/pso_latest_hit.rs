@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::pso::constriction;
 use super::velocity::VelocitySwarm;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -40,7 +41,11 @@ impl EngineConfig for PsoLatestHit {
     const CITATION: &'static str =
         "Clerc, Kennedy 2002, doi 10.1109/4235.985692; Chen et al. 2012, doi 10.3923/itj.2012.536.539";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl PsoLatestHit {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::quantum::QuantumSwarm;
 use super::schedule::Schedule;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -41,7 +42,15 @@ impl EngineConfig for Qpso {
     const SUMMARY: &'static str = "quantum-behaved swarm, attracted by the best, nothing deleted";
     const CITATION: &'static str = "Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+
+    fn is_scheduled(&self) -> bool {
+        self.alpha_end.is_some_and(|end| end != self.alpha)
+    }
+}
+
+impl Qpso {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,
@@ -50,10 +59,6 @@ impl EngineConfig for Qpso {
         };
         let alpha = Schedule::linear(self.alpha, self.alpha_end.unwrap_or(self.alpha));
         Box::new(QuantumSwarm::new(rules, alpha))
-    }
-
-    fn is_scheduled(&self) -> bool {
-        self.alpha_end.is_some_and(|end| end != self.alpha)
     }
 }
 

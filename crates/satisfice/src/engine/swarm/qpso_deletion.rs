@@ -3,6 +3,7 @@
 use super::particles::{Attractor, SwarmRules};
 use super::quantum::QuantumSwarm;
 use super::schedule::Schedule;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Engine, EngineConfig};
 use crate::engine_settings;
 use crate::scalar::Real;
@@ -37,7 +38,11 @@ impl EngineConfig for QpsoDeletion {
     const SUMMARY: &'static str = "quantum-behaved swarm, attracted by the best, hits deleted";
     const CITATION: &'static str = "Sun, Feng, Xu 2004, doi 10.1109/CEC.2004.1330875";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl QpsoDeletion {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

@@ -5,6 +5,7 @@ use super::particles::{Attractor, Swarm, SwarmRules};
 use super::velocity::drop_subnormals;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::compiled::both_scalars;
 use crate::engine::{Ask, Engine, EngineConfig, Origin, WarmStart};
 use crate::engine_settings;
 use crate::error::Error;
@@ -48,7 +49,11 @@ impl EngineConfig for Spso2011 {
     const SUMMARY: &'static str = "Standard PSO 2011: rotation-invariant, random topology";
     const CITATION: &'static str = "Zambrano-Bigiarini, Clerc, Rojas 2013, doi 10.1109/CEC.2013.6557848";
 
-    fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
+    both_scalars!();
+}
+
+impl Spso2011 {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         let rules = SwarmRules {
             particles: self.particles,
             batch: self.batch,

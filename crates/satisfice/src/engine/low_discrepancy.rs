@@ -1,18 +1,17 @@
-//! First points that cover the space evenly.
+//! Points that cover the unit cube evenly, however many are drawn.
 
-/// Point `index` of the additive recurrence `x_j = frac(shift_j + index * phi^-j)`, `phi` being the root of
+/// Coordinates of point `index` of the additive recurrence `x_j = frac(shift_j + index * phi^-j)`, `phi` being the root of
 /// `phi^(d+1) = phi + 1` above 1.
 ///
 /// Generalised golden ratios: Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences.
-#[expect(clippy::cast_precision_loss, reason = "indices are small")]
-pub(super) fn point(index: usize, shift: &[f64], out: &mut Vec<f64>) {
+#[expect(clippy::cast_precision_loss, reason = "indices are below 2^53")]
+pub(super) fn point(index: u64, shift: &[f64]) -> impl Iterator<Item = f64> {
     let phi = generalised_golden_ratio(shift.len());
     let mut step = 1.0;
-    out.clear();
-    out.extend(shift.iter().map(|shift| {
+    shift.iter().map(move |shift| {
         step /= phi;
         (shift + index as f64 * step).fract()
-    }));
+    })
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a number of axes")]
@@ -31,9 +30,8 @@ mod tests {
     #[test]
     fn every_part_of_a_square_has_its_share() {
         let mut counts = [0; 16];
-        let mut x = Vec::new();
         for index in 0..160 {
-            point(index, &[0.3, 0.8], &mut x);
+            let x: Vec<f64> = point(index, &[0.3, 0.8]).collect();
             counts[(x[0] * 4.0) as usize * 4 + (x[1] * 4.0) as usize] += 1;
         }
         assert!(counts.iter().all(|count| (8..=12).contains(count)), "{counts:?}");
