@@ -1,5 +1,7 @@
 //! JSON objects whose first key is the checksum of the others: damage is found before anything is read.
 
+use satisfice::checksum::Checksum;
+
 const KEY: &str = "{\"checksum\":\"";
 
 /// What a sealed object is not.
@@ -35,11 +37,8 @@ pub fn open(sealed: &[u8]) -> Result<String, Broken> {
     }
 }
 
-/// FNV-1a (Fowler, Noll, Vo 1991): every change of one byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+    Checksum::of(bytes).value()
 }
 
 #[cfg(test)]

@@ -9,6 +9,8 @@ pub mod budget;
 mod candidates;
 pub mod capability;
 pub mod catalogue;
+#[doc(hidden)]
+pub mod checksum;
 mod clock;
 pub mod context;
 pub mod engine;

@@ -264,6 +264,7 @@ mod sealed {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
 
     use super::{Checkpoint, Contents, Identity};
+    use crate::checksum::Checksum;
 
     #[derive(Serialize)]
     struct Written<'a, T: Serialize> {
@@ -278,22 +279,20 @@ mod sealed {
         contents: Contents<T>,
     }
 
-    /// FNV-1a (Fowler, Noll, Vo 1991) of the bytes of a compact encoding: detects damage, not malice.
-    struct Checksum(u64);
-
+    /// The checksum of the bytes of a compact encoding.
     impl Flavor for Checksum {
         type Output = u64;
         fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+            self.push(byte);
             Ok(())
         }
         fn finalize(self) -> postcard::Result<u64> {
-            Ok(self.0)
+            Ok(self.value())
         }
     }
 
     fn checksum<T: Serialize>(contents: &Contents<T>) -> postcard::Result<u64> {
-        postcard::serialize_with_flavor(contents, Checksum(0xcbf2_9ce4_8422_2325))
+        postcard::serialize_with_flavor(contents, Checksum::default())
     }
 
     impl<T: Serialize> Serialize for Checkpoint<T> {
