@@ -1,5 +1,6 @@
 //! A problem with its parameters set, behind one virtual call per run.
 
+use satisfice::SatisficingProblem;
 use satisfice::catalogue::{Catalogued, Params};
 use satisfice_collision::VertexPairs;
 use serde::Serialize;
@@ -36,6 +37,12 @@ pub trait Instance: Send + Sync {
     /// report. `reference` is [`Instance::reference_hits`].
     fn verify(&self, report: &RunReport, reference: Option<u64>) -> Vec<Mismatch>;
 }
+
+/// A problem of which a run knows the solutions only: searches are compiled once for each type of solutions, not for each problem.
+type AnyOf<P> = dyn SatisficingProblem<
+        Scalar = <P as SatisficingProblem>::Scalar,
+        Solution = <P as SatisficingProblem>::Solution,
+    >;
 
 /// The instance of a problem type.
 struct Built<P> {
@@ -74,7 +81,7 @@ where
 
 impl<P> Instance for Built<P>
 where
-    P: Catalogued + Send,
+    P: Catalogued + Send + 'static,
     P::Solution: Serialize + DeserializeOwned,
 {
     fn name(&self) -> &'static str {
@@ -92,7 +99,7 @@ where
             ..spec.clone()
         };
         if exact::find(&spec.engine).is_none() {
-            return run(&self.problem, spec, control);
+            return run::<AnyOf<P>>(&self.problem, spec, control);
         }
         let pairs = self.pairs.ok_or_else(|| Error::Exact {
             method: spec.engine.clone(),
@@ -111,7 +118,7 @@ where
 
     fn verify(&self, report: &RunReport, reference: Option<u64>) -> Vec<Mismatch> {
         let mut mismatches = verify::accounting(report);
-        mismatches.extend(verify::solutions(&self.problem, report));
+        mismatches.extend(verify::solutions::<AnyOf<P>>(&self.problem, report));
         mismatches.extend(verify::reference(report, reference));
         mismatches
     }

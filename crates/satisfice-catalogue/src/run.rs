@@ -23,7 +23,7 @@ use crate::spec::RunSpec;
 /// checkpoints.
 pub fn run<P>(problem: &P, spec: RunSpec, mut control: RunControl<'_>) -> Result<RunReport, Error>
 where
-    P: SatisficingProblem,
+    P: SatisficingProblem + ?Sized,
     P::Solution: Serialize + DeserializeOwned,
 {
     let spec = spec.complete()?;
@@ -43,7 +43,7 @@ fn run_slices<P>(
     control: &mut RunControl<'_>,
 ) -> Result<Vec<Report<P::Solution>>, Error>
 where
-    P: SatisficingProblem,
+    P: SatisficingProblem + ?Sized,
     P::Solution: Serialize + DeserializeOwned,
 {
     let engine = spec.configured_engine()?;

@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-9;
 #[must_use]
 pub fn solutions<P>(problem: &P, report: &RunReport) -> Vec<Mismatch>
 where
-    P: SatisficingProblem,
+    P: SatisficingProblem + ?Sized,
     P::Solution: DeserializeOwned,
 {
     let mut mismatches = Vec::new();
@@ -44,7 +44,7 @@ where
 /// The solution and its fitness, or what is expected instead.
 fn evaluate<P>(problem: &P, solution: &Value) -> Result<(P::Solution, f64), String>
 where
-    P: SatisficingProblem,
+    P: SatisficingProblem + ?Sized,
     P::Solution: DeserializeOwned,
 {
     let solution: P::Solution =
@@ -137,7 +137,7 @@ pub fn solutions_by(
 }
 
 /// Whether a solution is within the bounds, where the problem can encode it.
-fn is_inside<P: SatisficingProblem>(problem: &P, solution: &P::Solution) -> bool {
+fn is_inside<P: SatisficingProblem + ?Sized>(problem: &P, solution: &P::Solution) -> bool {
     let axes = problem.space().axes();
     let mut values = vec![P::Scalar::default(); axes.len()];
     !problem
