@@ -93,15 +93,25 @@ fn budget() -> Budget {
     Budget::evaluations(EVALUATIONS)
 }
 
+/// The first part of a long run, for which no engine builds a model of F: hundreds of runs take seconds.
+fn part_of_a_long_run() -> Budget {
+    budget().with_horizon(100 * EVALUATIONS)
+}
+
 /// Reports of an uninterrupted search, its checkpoints between slices, and calls of the fitness at the end of each.
-fn uninterrupted(entry: &EngineSpec, name: &str, probes: f64) -> (Vec<String>, Vec<Saved>, Vec<u64>) {
+fn uninterrupted(
+    entry: &EngineSpec,
+    name: &str,
+    probes: f64,
+    budget: &Budget,
+) -> (Vec<String>, Vec<Saved>, Vec<u64>) {
     let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
     let problem = problem(name, &calls, 0, &cancel);
     let mut search = search(entry, probes);
     let (mut reports, mut saved, mut ends) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..SLICES {
         saved.push(search.checkpoint());
-        reports.push(timeless(&search.run(&problem, &budget()).unwrap()));
+        reports.push(timeless(&search.run(&problem, budget).unwrap()));
         ends.push(calls.load(Ordering::Relaxed));
     }
     (reports, saved, ends)
@@ -116,7 +126,7 @@ fn quick() -> impl Iterator<Item = &'static EngineSpec> {
 fn at_every_slice_boundary() {
     for entry in quick() {
         for name in ["lattice", "square", "mixed"] {
-            let (expected, saved, _) = uninterrupted(entry, name, 0.1);
+            let (expected, saved, _) = uninterrupted(entry, name, 0.1, &budget());
             for (slice, saved) in saved.iter().enumerate() {
                 let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
                 let problem = problem(name, &calls, 0, &cancel);
@@ -151,13 +161,13 @@ fn interrupted_at(
             search
                 .run_with(
                     &problem,
-                    &budget().and_until(&cancel),
+                    &part_of_a_long_run().and_until(&cancel),
                     RunOptions::new()
                         .checkpoints(Duration::MAX, &mut |saved: &Saved| kept = Some(saved.clone())),
                 )
                 .unwrap()
         } else {
-            search.run(&problem, &budget()).unwrap()
+            search.run(&problem, &part_of_a_long_run()).unwrap()
         };
         if report.stop_reason == StopReason::Cancelled {
             cut_short = true;
@@ -183,7 +193,7 @@ fn interrupted_at(
 
 fn after_an_interrupt_anywhere(name: &str, probes: f64) {
     for entry in quick() {
-        let (expected, _, ends) = uninterrupted(entry, name, probes);
+        let (expected, _, ends) = uninterrupted(entry, name, probes, &part_of_a_long_run());
         let (first, second) = (ends[0], ends[1]);
         let anywhere = [1, 2, 3, 17, 29, 30, 31, 63, 64, 65, 128, first - 1, first];
         let later = [1, 2, 5, 33, 64, 65, 100, second - first].map(|calls| first + calls);
@@ -221,7 +231,7 @@ fn from_every_checkpoint_of_a_run() {
         "portfolio",
     ] {
         let entry = engine::find(name).unwrap();
-        let (expected, _, _) = uninterrupted(entry, "mixed", 0.1);
+        let (expected, _, _) = uninterrupted(entry, "mixed", 0.1, &budget());
         let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
         let problem = problem("mixed", &calls, 0, &cancel);
         let mut saved = Vec::new();
@@ -254,7 +264,7 @@ fn while_a_batch_is_out() {
     for entry in quick() {
         let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
         let problem = problem("square", &calls, 0, &cancel);
-        let (expected, ..) = uninterrupted(entry, "square", 0.1);
+        let (expected, ..) = uninterrupted(entry, "square", 0.1, &budget());
         for resumed_after in [0, 1, 4] {
             let mut search = search(entry, 0.1);
             for expected in &expected[..2] {

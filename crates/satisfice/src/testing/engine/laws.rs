@@ -80,7 +80,8 @@ impl<S: Real> EngineSuite<'_, S> {
         for mut case in spaces()? {
             // Slow enough to be worth several threads.
             case.work = 1000;
-            let budget = Budget::evaluations(self.run / 2);
+            // As far as an engine plans for its budget, this one is no small one.
+            let budget = Budget::evaluations(self.run / 2).with_horizon(self.run);
             let one = self.run(&case, &budget)?;
             for threads in [2, 3, 8] {
                 let many = self.search()?.threads(threads).run(&case, &budget)?;
