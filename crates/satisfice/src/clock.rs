@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 use std::time::Instant;
 
-use crate::budget::Cancel;
+use crate::cancel::Cancel;
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 use still::Instant;
 

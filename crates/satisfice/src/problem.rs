@@ -1,7 +1,7 @@
 //! Problems: what a candidate means, how good it is, and when it is good enough.
 
 use crate::capability::{Bounds, Encoding, Neighbourhood};
-use crate::catalogue::Description;
+use crate::description::Description;
 use crate::error::Error;
 use crate::identity::{AxisSeparation, Identity, Located, Separation};
 use crate::scalar::Real;

@@ -5,12 +5,11 @@
 use crate::error::Error;
 use crate::problem::SatisficingProblem;
 
-mod description;
 mod parameter;
 mod params;
 mod value;
 
-pub use description::Description;
+pub use crate::description::Description;
 pub use parameter::{ParamKind, Parameter};
 pub use params::Params;
 pub use value::ParamValue;

@@ -1,5 +1,6 @@
 //! A slice whose evaluations happen elsewhere and are answered in any order.
 
+mod contents;
 mod eager;
 mod lane;
 mod log;
@@ -11,7 +12,6 @@ use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use super::Search;
-use super::checkpoint::Checkpoint;
 use crate::archive::Archive;
 use crate::budget::Budget;
 use crate::error::Error;
@@ -22,8 +22,8 @@ use eager::Eager;
 use log::ValueBits;
 use ordered::Ordered;
 
+pub(super) use contents::SavedTickets;
 pub use log::{TicketEvent, TicketLog};
-pub(super) use saved::SavedTickets;
 pub use ticket::{Asked, Order, Ticket, TicketCounts, Told};
 
 /// A slice whose evaluations happen elsewhere: on other machines, in a simulator, in another language. It gives out solutions

@@ -3,33 +3,21 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::contents::SavedTickets;
 use super::lane::{EagerLane, Open};
 use super::ordered::{Ordered, Out};
-use super::{Checkpoint, Eager, Inner, Order, TicketCounts, TicketLog, Tickets, ValueBits, position_of};
+use super::{Eager, Inner, Order, Tickets, ValueBits, position_of};
 use crate::batch::Batch;
 use crate::engine::ConfiguredEngine;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
 use crate::scalar::Real;
+use crate::search::Search;
+use crate::search::checkpoint::{Checkpoint, Fingerprint};
 use crate::search::lane::Lane;
 use crate::search::slice::Slice;
-use crate::search::{Fingerprint, Search};
 use crate::state::{Reader, Saved, State};
-
-/// The tickets of a slice.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(in crate::search) struct SavedTickets<T> {
-    order: Order,
-    next: u64,
-    open: Vec<(u64, T)>,
-    forgotten: Vec<u64>,
-    counts: TicketCounts,
-    waits: bool,
-    log: TicketLog<T>,
-    informed: Vec<(T, ValueBits)>,
-    state: State,
-}
 
 impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// The search, the slice and its tickets as they are now. Cost: a copy of the archive and of the engines' state.
