@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use anyhow::bail;
-use satisfice::Completeness;
 use satisfice_catalogue::RunReport;
 use satisfice_catalogue::quantity::shown;
 use satisfice_page::SearchPage;
+
+use crate::summary;
 
 /// A page lists at most so many hits, evenly chosen; it says so.
 const LISTED: usize = 100_000;
@@ -39,14 +40,18 @@ pub(crate) fn html(report: &RunReport) -> anyhow::Result<String> {
     if let Some(threshold) = report.threshold {
         page.fact("F below", threshold.to_string());
     }
-    page.fact("Completeness", completeness(report));
+    page.fact("Completeness", summary::completeness(report));
     page.fact("Evaluations", shown::count(report.counts.evaluations));
     page.fact("Time", shown::seconds(report.elapsed_seconds));
     page.fact("Stopped by", format!("{:?}", report.stop_reason).to_lowercase());
     if let Some(best) = &report.best {
         page.fact(
             "Least F",
-            format!("{} at evaluation {}", best.fitness, shown::count(best.evaluation)),
+            format!(
+                "{} at evaluation {}",
+                summary::digits(best.fitness),
+                shown::count(best.evaluation)
+            ),
         );
     }
     for (name, settings) in [
@@ -74,19 +79,4 @@ pub(crate) fn html(report: &RunReport) -> anyhow::Result<String> {
         page.hit(&hit.solution, hit.fitness, hit.evaluation, hit.seconds);
     }
     Ok(page.html()?)
-}
-
-fn completeness(report: &RunReport) -> String {
-    match (report.completeness, report.unseen_estimate) {
-        (Completeness::Proved, _) => "proved: these are all".to_owned(),
-        (Completeness::Unknown, Some(unseen)) => {
-            let interval = match report.unseen_interval {
-                Some((low, Some(high))) => format!(", {low:.0} to {high:.0}"),
-                Some((low, None)) => format!(", {low:.0} to no known bound"),
-                None => String::new(),
-            };
-            format!("unknown: about {unseen:.0} more hits{interval}")
-        }
-        (Completeness::Unknown, None) => "unknown: there may be more".to_owned(),
-    }
 }

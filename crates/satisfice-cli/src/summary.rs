@@ -56,16 +56,7 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> 
         (None, _) => " (the number of all hits is not known)".to_owned(),
     };
     line("hits", format!("{}{recall}", report.hits));
-    line(
-        "completeness",
-        match report.completeness {
-            Completeness::Proved => "proved: these are all".to_owned(),
-            Completeness::Unknown => match (report.unseen_estimate, report.unseen_interval) {
-                (Some(estimate), Some(interval)) => format!("unknown: {}", unseen(estimate, interval)),
-                _ => "unknown: there may be more".to_owned(),
-            },
-        },
-    );
+    line("completeness", completeness(report));
     let counts = &report.counts;
     line(
         "evaluations",
@@ -131,6 +122,21 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> 
     text
 }
 
+/// What is known of the hits that the report does not list.
+pub(crate) fn completeness(report: &RunReport) -> String {
+    match (
+        report.completeness,
+        report.unseen_estimate,
+        report.unseen_interval,
+    ) {
+        (Completeness::Proved, ..) => "proved: these are all".to_owned(),
+        (Completeness::Unknown, Some(estimate), Some(interval)) => {
+            format!("unknown: {}", unseen(estimate, interval))
+        }
+        (Completeness::Unknown, ..) => "unknown: there may be more".to_owned(),
+    }
+}
+
 /// How many hits are not seen. An estimate that no probe supports is not shown: then the interval is all there is.
 fn unseen(estimate: f64, (low, high): (f64, Option<f64>)) -> String {
     let supported = estimate >= 0.5 || high.is_some_and(|high| high < 1.0);
@@ -166,7 +172,7 @@ pub(crate) fn exit_code(report: &RunReport) -> ExitCode {
 }
 
 /// Six digits of a number, small ones by their exponent.
-fn digits(x: f64) -> String {
+pub(crate) fn digits(x: f64) -> String {
     let x = x + 0.0; // no minus before a zero
     if x != 0.0 && (x.abs() < 1e-3 || x.abs() >= 1e15) {
         format!("{x:.5e}")

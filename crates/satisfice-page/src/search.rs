@@ -257,7 +257,10 @@ fn markup(title: &str) -> Markup {
                     canvas #parallel.plot role="img" aria-label="Every hit as a line across all axes" {}
                     p.hint #omitted {}
                 }
-                section { h2 { "Against evaluations" } canvas #evaluations.plot role="img" aria-label="Hits against evaluations" {} }
+                section {
+                    div.row { h2 { "Against evaluations" } label { input #log type="checkbox" checked; " logarithmic" } }
+                    canvas #evaluations.plot role="img" aria-label="Hits against evaluations" {}
+                }
                 section { h2 { "Against time" } canvas #times.plot role="img" aria-label="Hits against time" {} }
             }
             section #sources hidden {

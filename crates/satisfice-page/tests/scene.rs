@@ -106,6 +106,11 @@ fn frames_time_and_picking_do_what_they_say() {
     // Hits come in the order found: fewer marks at half of the time, none before the first.
     tab.run("$('time').value = 500; $('time').oninput()");
     assert_eq!(tab.run("page.found()"), json!(50));
+    assert_eq!(
+        tab.run("page.pick(60), page.setTime(page.time), page.picked"),
+        json!(-1),
+        "a contact that is not found yet is not picked"
+    );
     let half = tab.run("look()");
     assert!(
         number(&half["mark"]) < 0.8 * number(&first["mark"]),
@@ -205,7 +210,8 @@ fn the_largest_scenes_move_or_say_what_is_left_out() {
     let took = number(&tab.run("page.move(), Math.min(page.took(), page.took(), page.took())"));
     let status = tab.run("$('status').textContent");
     let status = status.as_str().unwrap();
-    eprintln!("{took:.1} ms a picture while it moves: {status}");
+    let first = number(&tab.run("performance.getEntriesByName('first picture')[0].startTime"));
+    eprintln!("first picture after {first:.0} ms, {took:.1} ms a picture while it moves: {status}");
     let says = status.contains(" of 1,000,000 triangles") || status.contains(" of 100,001 contacts");
     assert!(took < 50.0 || says, "{took} ms: {status}");
     // Asked to, it draws everything.
@@ -240,6 +246,46 @@ fn without_webgl_there_is_a_message_and_the_table() {
         .filter(|c| c.contains("exceptionThrown"))
         .collect();
     assert_eq!(thrown, Vec::<String>::new());
+}
+
+#[test]
+fn pairs_that_are_still_to_come_are_not_missing() {
+    let Some(mut browser) = Browser::start(&[]) else {
+        return;
+    };
+    let (low, triangles) = sheet(1, 0.0);
+    let mut page = ScenePage::new("A step");
+    let bodies = ["\u{202e}sdrawkcab", "upper"].map(|name| page.body(name, &low, &triangles, &[]));
+    let pair = bodies.map(|body| Feature {
+        body,
+        kind: FeatureKind::Vertex,
+        number: 0,
+    });
+    for frame in 0..=2 {
+        page.frame(format!("{frame} of 2"));
+        for _ in 0..frame {
+            page.contact(Contact::new(pair, [low[0]; 2]).impact(0.5));
+        }
+        page.counts(Some(frame), Some(2));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut tab = browser.open(&written(&page, folder.path(), "step.html"));
+    let shown = "[$('facts').textContent, $('status').textContent]";
+    assert_eq!(
+        tab.run(shown),
+        json!(["Hits by then0 of 2", "4 triangles, 0 contacts"])
+    );
+    tab.run("page.setFrame(1), page.draw()");
+    assert_eq!(
+        tab.run(shown),
+        json!(["Hits by then1 of 2", "4 triangles, 1 contact"])
+    );
+    // A name from right to left ends where it ends.
+    assert_eq!(
+        tab.run("document.querySelector('#bodies bdi').nextSibling.textContent"),
+        json!(": 2 triangles")
+    );
+    assert_eq!(tab.complaints(), Vec::<String>::new());
 }
 
 #[test]

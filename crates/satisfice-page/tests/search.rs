@@ -61,6 +61,15 @@ fn hits_are_brushed_sorted_and_copied() {
         json!([1501, 151])
     );
 
+    // The axis of evaluations is logarithmic or not.
+    let curve = "$('evaluations').toDataURL()";
+    let logarithmic = tab.run(curve);
+    tab.run("$('log').click()");
+    assert_ne!(tab.run(curve), logarithmic);
+    assert_eq!(tab.run("page.byEvaluations.x.range[0]"), json!(0));
+    tab.run("$('log').click()");
+    assert_eq!(tab.run(curve), logarithmic);
+
     // A drag across the plane selects what is within.
     let before = tab.run("$('scatter').toDataURL()");
     tab.run(

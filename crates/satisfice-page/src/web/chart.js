@@ -65,7 +65,8 @@ class Chart {
     for (const v of ticks(x.range, x.log, Math.max(2, Math.floor((w - this.left) / 80)))) {
       const at = Math.round(this.px(v)) + 0.5;
       this.line([[at, this.top], [at, this.bottom]]);
-      to.fillText(tick(v), at, this.bottom + 5);
+      // The last number stays within the canvas.
+      to.fillText(tick(v), Math.min(at, w - to.measureText(tick(v)).width / 2), this.bottom + 5);
     }
     to.fillText(x.label, (this.left + this.right) / 2, this.bottom + 22, this.right - this.left);
     to.save();

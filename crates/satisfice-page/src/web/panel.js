@@ -7,8 +7,9 @@ class Panel extends Scene {
     const { now, scene } = this, found = this.found(), all = now.hits ?? now.found, lines = [];
     const done = found < now.found;
     const reference = now.reference === null ? "" : ` of ${count(now.reference)}`;
-    const recall = now.reference ? ` (${share((done ? found : all) / now.reference)})` : "";
-    lines.push([done ? "Hits by then" : "Hits", `${count(done ? found : all)}${reference}${recall}`]);
+    // In a motion the pairs that are still to come are not missing.
+    const recall = now.reference && !scene.contacts.impact ? ` (${share((done ? found : all) / now.reference)})` : "";
+    lines.push([done || scene.contacts.impact ? "Hits by then" : "Hits", `${count(done ? found : all)}${reference}${recall}`]);
     if (now.found < all) lines.push(["In this page", `${count(now.found)} of them, evenly chosen`]);
     if (scene.method) lines.push(["Found by", scene.method]);
     if (scene.threshold !== null) lines.push(["Closer than", digits(scene.threshold)]);
@@ -18,8 +19,8 @@ class Panel extends Scene {
     if (!$("times").hidden) {
       const { seconds, evaluation } = scene.contacts, last = now.first + found - 1;
       $("time").value = this.time === Infinity ? 1000 : 1000 * this.time / this.last;
-      $("timetext").textContent = `${duration(Math.min(this.time, this.last))}: ${count(found)} hits`
-        + (evaluation && found ? `, ${count(evaluation[last])} evaluations` : "");
+      $("timetext").textContent = `${duration(Math.min(this.time, this.last))}: ${many(found, "hit")}`
+        + (evaluation && found ? `, ${many(evaluation[last], "evaluation")}` : "");
       this.grow(seconds);
     }
     $("missing").hidden = now.missed === 0;
@@ -163,7 +164,10 @@ class Panel extends Scene {
       dot.style.background = `rgb(${PALE[number % PALE.length].map(c => 255 * c)})`;
       box.onchange = () => { body.shown = box.checked; this.later(); };
       const faces = body.triangles.length / 3;
-      label.append(box, dot, make("span", `${body.name}: ${faces ? `${count(faces)} triangles` : `${count(body.places[0].length / 3)} vertices`}`));
+      const name = make("span");
+      // A name that is written from right to left does not turn what follows.
+      name.append(make("bdi", body.name), `: ${faces ? many(faces, "triangle") : `${count(body.places[0].length / 3)} vertices`}`);
+      label.append(box, dot, name);
       line.append(label);
       return line;
     }));
@@ -245,6 +249,7 @@ start(header => {
   }
   // The rest waits until the first picture is seen.
   return new Promise(done => requestAnimationFrame(() => setTimeout(done))).then(() => {
+    performance.mark("first picture");
     scene.wire();
     scene.show();
     if (!scene.stage) return;

@@ -29,7 +29,10 @@ function duration(seconds) {
   return `${+(seconds / unit).toPrecision(4)} ${name}`;
 }
 
-const share = x => `${(100 * x).toFixed(1)} %`;
+const share = x => `${x === 1 ? 100 : (100 * x).toFixed(1)} %`;
+
+/** "1 contact", "2 contacts". */
+const many = (n, what) => `${count(n)} ${what}${n === 1 ? "" : "s"}`;
 
 /** Fills a list of names and values. */
 function facts(list, lines) {

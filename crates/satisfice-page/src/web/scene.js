@@ -242,9 +242,9 @@ class Scene {
   status() {
     const shown = this.found() + ($("missed").checked ? this.now.missed : 0), parts = [];
     const less = this.moving || this.hurried, drawn = less && this.coarse ? this.coarse : this.triangles;
-    parts.push(drawn < this.triangles ? `${count(drawn)} of ${count(this.triangles)} triangles` : `${count(drawn)} triangles`);
+    parts.push(drawn < this.triangles ? `${count(drawn)} of ${count(this.triangles)} triangles` : many(drawn, "triangle"));
     const few = less && shown > this.most ? Math.ceil(shown / Math.ceil(shown / this.most)) : shown;
-    parts.push(few < shown ? `${count(few)} of ${count(shown)} contacts` : `${count(shown)} contacts`);
+    parts.push(few < shown ? `${count(few)} of ${count(shown)} contacts` : many(shown, "contact"));
     if (drawn < this.triangles || few < shown) parts.push(this.hurried ? "so that it moves" : "while it moves");
     $("status").textContent = parts.join(", ");
   }
@@ -376,6 +376,8 @@ class Scene {
   /** `time` in seconds. */
   setTime(time) {
     this.time = time >= this.last ? Infinity : Math.max(0, time);
+    const { first, found } = this.now;
+    if (this.picked >= first + this.found() && this.picked < first + found) this.picked = -1;
     this.row = 0;
     this.show();
     this.move();

@@ -194,7 +194,8 @@ class SearchPage {
 
   growth() {
     const [evaluations, seconds, hits] = this.data.trace, { reference } = this.data;
-    for (const [chart, xs, label, log] of [[this.byEvaluations, evaluations, "evaluations", true], [this.byTime, seconds.map(t => 1e3 * t), "time (ms)", false]]) {
+    for (const [chart, xs, label, log] of [[this.byEvaluations, evaluations, "evaluations"], [this.byTime, seconds.map(t => 1e3 * t), "time (ms)"]]) {
+      const counted = chart === this.byEvaluations, log = counted && $("log").checked;
       const high = Math.max(reference ?? 0, hits[hits.length - 1] ?? 1, 1), x = extent([xs], log);
       chart.begin({ label, range: log ? x : [0, x[1]], log }, { label: "hits", range: [0, 1.04 * high] });
       if (reference !== null) chart.inside(to => {
@@ -204,9 +205,9 @@ class SearchPage {
         to.fillText(`all ${count(reference)}`, chart.left + 6, chart.py(reference) + 4);
       });
       chart.steps([0, ...xs], [0, ...hits], style("--accent"), 2);
-      const range = this.brushes.get(log ? "evaluation" : "seconds");
+      const range = this.brushes.get(counted ? "evaluation" : "seconds");
       if (range) chart.inside(to => {
-        const [from, until] = range.map(v => chart.px(Math.max(log ? v : 1e3 * v, chart.x.range[0])));
+        const [from, until] = range.map(v => chart.px(Math.max(counted ? v : 1e3 * v, chart.x.range[0])));
         [to.fillStyle, to.globalAlpha] = [style("--accent"), 0.15];
         to.fillRect(from, chart.top, until - from, chart.bottom - chart.top);
       });
@@ -284,6 +285,7 @@ class SearchPage {
     $("yaxis").append(...options(own[1] ?? "F"));
     $("faxis").append(...options("F"));
     for (const which of ["xaxis", "yaxis"]) $(which).onchange = () => this.scatter();
+    $("log").onchange = () => { this.growth(); this.data.by?.draw(); };
     [this.plane, this.byEvaluations, this.byTime] = ["scatter", "evaluations", "times"].map(id => new Chart($(id)));
     $("filter").onsubmit = event => {
       event.preventDefault();
@@ -346,7 +348,7 @@ class SearchPage {
         const x = chart.atX(event.offsetX), [evaluations, seconds, hits] = this.data.trace, xs = name === "seconds" ? seconds : evaluations;
         let k = -1;
         while (k + 1 < xs.length && xs[k + 1] <= x * unit) k++;
-        tip(event, k < 0 ? [] : [`${count(hits[k])} hits`, `${count(evaluations[k])} evaluations`, duration(seconds[k])]);
+        tip(event, k < 0 ? [] : [many(hits[k], "hit"), many(evaluations[k], "evaluation"), duration(seconds[k])]);
       },
       drag: ([x0], [x1]) => this.brush(name, [unit * chart.atX(x0), unit * chart.atX(x1)]),
       click: () => this.brush(name, null),

@@ -40,7 +40,7 @@ class Sources {
   }
 
   draw() {
-    const { shares, found, evaluations } = this, x = { label: "evaluations", range: extent([[1], evaluations], true), log: true };
+    const { shares, found, evaluations } = this, x = { label: "evaluations", range: extent([[1], evaluations], true), log: $("log").checked };
     shares.begin(x, { label: "share of the candidates", range: [0, 1] });
     shares.inside(to => evaluations.forEach((end, row) => {
       const [left, right] = [row ? evaluations[row - 1] : 1, end].map(v => shares.px(Math.max(v, 1)));
