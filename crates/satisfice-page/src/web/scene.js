@@ -199,8 +199,9 @@ class Scene {
       if (!body.triangles.length && !body.lines.length) stage.body(body.buffer, null, gl.POINTS, [...dark, 1], false);
     });
     const { first, found, missed } = this.now;
-    const tones = this.tones(), how = { radius: this.radius(), line: 0.8, tones, most: less ? this.most : Infinity };
-    if ($("missed").checked) stage.pairs(this.buffers, first + found, missed, { ...how, behind: 0.1 });
+    const tones = this.tones(), [behind, missedBehind] = this.early ? [0, 0] : [0.22, 0.1];
+    const how = { radius: this.radius(), line: 0.8, tones, behind, most: less ? this.most : Infinity };
+    if ($("missed").checked) stage.pairs(this.buffers, first + found, missed, { ...how, behind: missedBehind });
     stage.pairs(this.buffers, first, this.found(), how);
     this.drawPicked(tones);
     this.status();
@@ -273,11 +274,13 @@ class Scene {
     return performance.now() - start;
   }
 
-  /** A first picture, before anything is known of how long one takes: of a large scene a sample. */
+  /** A first picture, before anything is known of how long one takes: of a large scene a sample, and no contacts behind bodies. */
   first() {
+    this.early = true;
     [this.hurried, this.slowLines, this.part, this.most] = [true, true, Math.min(1, 20000 / this.triangles), 2000];
     this.draw();
     [this.hurried, this.slowLines, this.part, this.most] = [false, false, 1, Infinity];
+    this.early = false;
   }
 
   /** Decides from a sample what is left out: while something moves, or always where one picture would take a second. */

@@ -167,7 +167,7 @@ class Stage {
   }
 
   /** Pairs `first..first + n`, about `most` of them if there are more, those behind a body fainter. `tones`: near, middle, far, missed, picked. */
-  pairs({ ends, values }, first, n, { radius, line, tones, most = Infinity, behind = 0.22 }) {
+  pairs({ ends, values }, first, n, { radius, line, tones, most = Infinity, behind }) {
     if (n <= 0) return;
     const gl = this.gl, { program, at } = this.pairProgram;
     gl.useProgram(program);
