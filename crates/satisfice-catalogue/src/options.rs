@@ -75,6 +75,9 @@ pub static OPTIONS: &[RunOption] = &[
         "Run this number of engines side by side, each with its share of the budget, which share their hits: for a fitness so \
          cheap that one engine cannot keep several threads busy. The number of islands changes the result; the number of \
          threads does not [default: 1]"),
+    option!("parallel", "N", false, parallel => budget.parallel,
+        "Let the engine propose at least this number of points at a time, so that as many threads or workers have something to \
+         evaluate. It changes the result, like a seed; the number of threads does not [default: 1]"),
 ];
 
 /// The option with this name.

@@ -104,6 +104,17 @@ pub fn islands(text: &str) -> Result<usize, String> {
     }
 }
 
+/// How many evaluations go on at once.
+///
+/// # Errors
+/// Any other text.
+pub fn parallel(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(parallel) if parallel > 0 => Ok(parallel),
+        _ => Err("must be a whole number of at least 1".to_owned()),
+    }
+}
+
 /// A number of edges, 0 included.
 ///
 /// # Errors

@@ -64,6 +64,9 @@ pub struct Limits {
     /// The number of slices, each warm from the previous one. The run ends earlier when the space is covered, enough hits
     /// are found, or it is cancelled.
     pub slices: u64,
+    /// How many evaluations can go on at once ([`Budget::with_parallel`]); one by default. It changes the result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parallel: Option<usize>,
 }
 
 impl Default for Limits {
@@ -73,6 +76,7 @@ impl Default for Limits {
             evaluations: None,
             hits: None,
             slices: 1,
+            parallel: None,
         }
     }
 }
@@ -178,11 +182,13 @@ impl RunSpec {
     }
 
     /// The budget of one slice, which `cancel` ends as well.
-    pub(crate) fn slice_budget(&self, cancel: &Cancel) -> Budget {
+    #[must_use]
+    pub fn slice_budget(&self, cancel: &Cancel) -> Budget {
         Budget {
             time: self.budget.time,
             evaluations: self.budget.evaluations,
             hits: self.budget.hits,
+            parallel: self.budget.parallel,
             ..Budget::until(cancel)
         }
     }

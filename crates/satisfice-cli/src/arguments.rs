@@ -175,7 +175,7 @@ pub(crate) struct ProgramArguments {
     #[arg(long)]
     pub(crate) shell: bool,
 
-    /// Enter values in the order of the points: the same report for any number of workers. Workers may have to wait.
+    /// Enter values in the order of the points: the same report for any number of workers. Workers may have to wait; --parallel gives them more.
     #[arg(long)]
     pub(crate) ordered: bool,
 }
@@ -321,7 +321,7 @@ A suite is a file such as this; all values of a list are run:
   [[part]]
   engines = [\"random\", { name = \"latest-hit-qpso\", particles = [10, 30] }]
   problems = [{ name = \"rastrigin\", dimension = [2, 3] }, \"queens\"]
-  evaluations = 100_000            # and / or time = \"100ms\", hits, slices, probes, islands
+  evaluations = 100_000            # and / or time = \"100ms\", hits, slices, probes, islands, parallel
   at-evaluations = [1000, 10_000]  # and / or at-times = [\"10ms\"]: where hits are counted
   against = \"random\"             # the engine that the others are compared with, seed by seed
 

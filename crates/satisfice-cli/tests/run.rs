@@ -157,6 +157,19 @@ fn islands_find_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn parallel_changes_the_result_and_threads_do_not() {
+    let run = |more: &str| {
+        let arguments = "run himmelblau --evaluations 2000 --seed 1 --json -";
+        without_times(report(&format!("{arguments} {more}")))
+    };
+    let (alone, eight) = (run(""), run("--parallel 8"));
+    assert_eq!(alone["budget"].get("parallel"), None);
+    assert_eq!(eight["budget"]["parallel"], 8);
+    assert_ne!(alone["solutions"], eight["solutions"]);
+    assert_eq!(eight, run("--parallel 8 --threads 2"));
+}
+
+#[test]
 fn a_report_has_the_keys_of_the_contract() {
     let report = report("run arm --evaluations 20000 --seed 1 --json - --slices 2");
     let keys: Vec<&String> = report.as_object().unwrap().keys().collect();

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 use satisfice::engine::ConfiguredEngine;
-use satisfice::{Budget, Cancel};
 use satisfice_catalogue::RunSpec;
 
 use crate::refused;
@@ -23,6 +22,7 @@ pub(crate) struct Run {
     probes: Option<f64>,
     islands: usize,
     threads: usize,
+    parallel: Option<usize>,
 }
 
 impl Run {
@@ -42,20 +42,11 @@ impl Run {
         };
         spec.budget.evaluations = self.evaluations;
         spec.budget.hits = self.hits;
+        spec.budget.parallel = self.parallel;
         spec.probes = self.probes;
         spec.islands = self.islands;
         spec.threads = self.threads;
         spec.complete().map_err(refused)
-    }
-}
-
-/// The budget of a specification, which `cancel` ends as well.
-pub(crate) fn budget(spec: &RunSpec, cancel: &Cancel) -> Budget {
-    Budget {
-        time: spec.budget.time,
-        evaluations: spec.budget.evaluations,
-        hits: spec.budget.hits,
-        ..Budget::until(cancel)
     }
 }
 

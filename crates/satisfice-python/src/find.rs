@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use satisfice::{Cancel, Search, Stepper};
 
-use crate::arguments::{Run, budget, engine};
+use crate::arguments::{Run, engine};
 use crate::caller::Caller;
 use crate::question::{Function, Question};
 use crate::refused;
@@ -37,7 +37,7 @@ pub(crate) fn find<'py>(
     let stepper = match saved {
         None => {
             search = question.search(&spec)?;
-            search.start(&problem, &budget(&spec, &cancel))
+            search.start(&problem, &spec.slice_budget(&cancel))
         }
         Some(bytes) => {
             let saved = Saved::read_for(bytes, &spec, false)?;

@@ -11,7 +11,7 @@ use satisfice::{Cancel, IslandRound, StopReason};
 use satisfice_catalogue::RunSpec;
 use serde::{Deserialize, Serialize};
 
-use crate::arguments::{Run, budget, engine};
+use crate::arguments::{Run, engine};
 use crate::caller::Caller;
 use crate::find::drive;
 use crate::question::{Function, Question};
@@ -72,7 +72,7 @@ impl Rounds {
         question.enter(&mut spec)?;
         let (rounds, failed) = match saved {
             None => {
-                let (search, budget) = (question.search(&spec)?, budget(&spec, &Cancel::new()));
+                let (search, budget) = (question.search(&spec)?, spec.slice_budget(&Cancel::new()));
                 let rounds = py.detach(|| satisfice::Rounds::begin(search, problem, &budget));
                 (rounds.map_err(refused)?, 0)
             }

@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 use satisfice::{Cancel, Order, Ticket, Tickets, TracePoint};
 use satisfice_catalogue::RunSpec;
 
-use crate::arguments::{Run, budget, engine};
+use crate::arguments::{Run, engine};
 use crate::question::{Function, Question};
 use crate::refused;
 use crate::report::Report;
@@ -54,7 +54,7 @@ impl Search {
         let search = question.search(&spec)?;
         question.enter(&mut spec)?;
         let order = if ordered { Order::Ordered } else { Order::Eager };
-        let budget = budget(&spec, &Cancel::new());
+        let budget = spec.slice_budget(&Cancel::new());
         let tickets = py
             .detach(|| Tickets::begin(search, problem, &budget, order))
             .map_err(refused)?;

@@ -1,10 +1,14 @@
 """What several tests use."""
 
 import json
+import signal
 import subprocess
 import sys
 
 import pytest
+
+# A shell lets what it starts in the background ignore Ctrl-C: tests that interrupt themselves would wait for ever.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 TIMES = {"elapsed_seconds", "overshoot_seconds", "seconds"}
 

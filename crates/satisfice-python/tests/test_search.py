@@ -111,6 +111,26 @@ def test_workers_of_any_kind(workers):
     assert same(report, alone())
 
 
+def test_parallel_is_part_of_the_search_and_the_number_of_workers_is_not():
+    report = alone(parallel=4)
+    assert report.to_dict()["budget"]["parallel"] == 4
+    assert not np.array_equal(report.x, alone().x)
+    assert same(report, alone(parallel=4, workers=2, ordered=True))
+    assert same(report, alone(parallel=4, workers=map, ordered=True))
+    search = satisfice.Search(SQUARE, **RING, parallel=4, ordered=True)
+    batch = search.ask(4)
+    assert len(batch) == 4
+    search.tell(batch.tickets, [evaluations.ring(x) for x in batch.x])
+    assert len(search.ask(4)) == 4
+    # Workers that need not be ordered say how many they are.
+    eager = satisfice.find(evaluations.ring, SQUARE, **RING, workers=2)
+    assert eager.to_dict()["budget"]["parallel"] == 2
+    with pytest.raises(ValueError, match="parallel"):
+        alone(parallel=0)
+    with pytest.raises(ValueError, match="1 to 65536"):
+        alone(parallel=100_000)
+
+
 def test_eager_workers_do_not_wait():
     report = satisfice.find(evaluations.slow, SQUARE, **{**RING, "evaluations": 100}, workers=2)
     assert report.evaluations == 100 and report.hits > 0

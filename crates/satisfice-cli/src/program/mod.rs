@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow, bail};
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
-use satisfice::{Budget, Cancel, Located, RunReport, Search, Ticket, Tickets};
+use satisfice::{Cancel, Located, RunReport, Search, Ticket, Tickets};
 use satisfice_catalogue::{RunSpec, json};
 
 use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
@@ -73,12 +73,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let cancel = interrupt::listen()?;
     let mut json_file = output::open(arguments.json.as_ref())?;
 
-    let budget = Budget {
-        time: spec.budget.time,
-        evaluations: spec.budget.evaluations,
-        hits: spec.budget.hits,
-        ..Budget::until(&cancel)
-    };
+    let budget = spec.slice_budget(&cancel);
     let order = if given.ordered {
         Tickets::ordered
     } else {

@@ -26,6 +26,7 @@ def run_arguments(
     probes: float | None,
     islands: int,
     threads: int,
+    parallel: int | None,
 ) -> dict[str, Any]:
     """Engine, seed and budget, as the native part takes them."""
     if time is None and evaluations is None:
@@ -41,6 +42,7 @@ def run_arguments(
         "probes": None if probes is None else _real("probes", probes),
         "islands": _whole("islands", islands),
         "threads": _whole("threads", threads, least=0),
+        "parallel": None if parallel is None else _whole("parallel", parallel),
     }
 
 

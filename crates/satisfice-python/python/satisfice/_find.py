@@ -47,6 +47,7 @@ def find(
     probes: float | None = None,
     islands: int = 1,
     threads: int = 1,
+    parallel: int | None = None,
     integrality: Any = None,
     categories: Mapping[int, Sequence[Any]] | None = None,
     x0: Any = None,
@@ -99,6 +100,11 @@ def find(
         The number of engines side by side that share their hits: after 256 evaluations of each, then 512, then every 1,024.
     threads : int, default 1
         For a problem of the catalogue: the threads that evaluate, 0 for one per core. It does not change the report.
+    parallel : int, optional
+        How many evaluations can go on at once, from 1 to 65,536: the engine proposes at least so many points at a time. One that
+        proposes fewer learns from each value before the next point. It is part of the search, like a seed: the report depends on
+        it, and not on how many workers there really are. By default 1; with `workers` given as a number and not
+        `ordered`, that number.
     integrality : bool or sequence of bool, optional
         Which axes are integers (as in `scipy.optimize.differential_evolution`).
     categories : mapping of int to sequence, optional
@@ -116,7 +122,8 @@ def find(
         under a budget of evaluations the report is that of the same islands on this process. Exceptions keep what was found
         until the last exchange of the islands. With one island, the same as `workers`.
     ordered : bool, default False
-        With several workers: whether the report does not depend on the order of their values. See `Search`.
+        With several workers: whether the report does not depend on the order of their values, nor on how many there are. Give
+        `parallel` as well, or they wait for each other. See `Search`.
     callback : callable, optional
         Called with a `Progress` at most about a hundred times a second; the search ends when it returns true.
     catch : exception type or tuple of them, default ()
@@ -167,7 +174,9 @@ def find(
             raise ValueError("workers evaluate, and an executor runs islands: give one of them")
         if islands == 1:
             workers, executor = executor, None
-    run = run_arguments(engine, options, seed, time, evaluations, hits, slices, probes, islands, threads)
+    if parallel is None and isinstance(workers, int) and not _is_one(workers) and not ordered:
+        parallel = workers
+    run = run_arguments(engine, options, seed, time, evaluations, hits, slices, probes, islands, threads, parallel)
     if isinstance(f, _satisfice.Problem):
         given = {
             "bounds": bounds is not None,

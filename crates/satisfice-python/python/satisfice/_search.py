@@ -51,15 +51,15 @@ class Search:
 
     Parameters
     ----------
-    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, integrality, categories, x0
+    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, parallel, integrality, categories, x0
         As for `find`.
     time : float, optional
         Wall time in seconds from now on.
     ordered : bool, default False
         Whether values reach the engine in the order in which points were asked. Then the report under a budget of
         evaluations is that of `find` with the same seed, whatever the order of the values; but while values of a batch of
-        the engine are awaited, nothing more can be asked. Otherwise there is always more to ask, and the report depends on
-        the order of the values.
+        the engine are awaited, nothing more can be asked: `parallel` says how large these are at least. Otherwise there is
+        always more to ask, and the report depends on the order of the values.
 
     Examples
     --------
@@ -85,6 +85,7 @@ class Search:
         seed: int | None = None,
         probes: float | None = None,
         islands: int = 1,
+        parallel: int | None = None,
         integrality: Any = None,
         categories: Any = None,
         x0: Any = None,
@@ -93,7 +94,7 @@ class Search:
     ) -> None:
         self._search = _satisfice.Search(
             question(name, bounds, delta, separation, integrality, categories, x0),
-            run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1),
+            run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1, parallel),
             bool(ordered),
         )
         self._deadline = math.inf if time is None else clock.monotonic() + float(time)
