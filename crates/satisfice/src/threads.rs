@@ -1,22 +1,23 @@
 //! The threads that share work: the calling one and its helpers.
 
 #[cfg(feature = "rayon")]
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use crate::error::Error;
 
 /// Threads to evaluate on.
 ///
-/// As many as there are cores are started at once. More, which a fitness that waits for something else can use, are started when a
-/// batch has work for them.
+/// As many as there are cores stay for the whole search. More can only be used by work that waits for something else: they are
+/// started for a batch of expensive work, and end with it. A pool of a thousand threads on two cores takes half a minute of looking
+/// for work in each other's queues; a thread that is started takes some 30 us.
 #[derive(Debug, Default)]
 pub(crate) struct Threads {
     /// The most to use, the caller included.
     #[cfg(feature = "rayon")]
     most: usize,
-    /// One less than the number of threads: the caller works, too.
+    /// One less than the number of cores: the caller works, too.
     #[cfg(feature = "rayon")]
-    helpers: Mutex<Option<Arc<rayon::ThreadPool>>>,
+    helpers: Option<rayon::ThreadPool>,
 }
 
 #[cfg(feature = "rayon")]
@@ -29,10 +30,16 @@ impl Threads {
     #[cfg(feature = "rayon")]
     pub(crate) fn new(threads: usize) -> Result<Self, Error> {
         let most = Self::most(threads);
-        Ok(Self {
-            most,
-            helpers: Mutex::new(Self::start(most.min(cores()))?),
-        })
+        let kept = most.min(cores());
+        let mut helpers = None;
+        if kept > 1 {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(kept - 1).build();
+            helpers = Some(pool.map_err(|e| Error::Threads {
+                threads: kept,
+                reason: e.to_string(),
+            })?);
+        }
+        Ok(Self { most, helpers })
     }
 
     /// How many threads that is.
@@ -54,34 +61,18 @@ impl Threads {
     pub(crate) fn new(_threads: usize) -> Result<Self, Error> {
         Ok(Self {})
     }
+}
 
-    /// Helpers for so many threads.
-    #[cfg(feature = "rayon")]
-    fn start(threads: usize) -> Result<Option<Arc<rayon::ThreadPool>>, Error> {
-        if threads <= 1 {
-            return Ok(None);
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build();
-        let pool = pool.map_err(|e| Error::Threads {
-            threads,
-            reason: e.to_string(),
-        })?;
-        Ok(Some(Arc::new(pool)))
-    }
-
-    /// The helpers for so many items. Where no more threads can be started, those that are there do the work.
-    #[cfg(feature = "rayon")]
-    fn helpers_for(&self, items: usize) -> Option<Arc<rayon::ThreadPool>> {
-        let mut helpers = self.helpers.lock().unwrap_or_else(PoisonError::into_inner);
-        let there = 1 + helpers.as_ref().map_or(0, |pool| pool.current_num_threads());
-        let wanted = self.most.min(items);
-        if wanted > there
-            && let Ok(more) = Self::start(wanted)
-        {
-            *helpers = more;
-        }
-        helpers.clone()
-    }
+/// Whether items are worth a thread of their own beyond the cores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    not(feature = "rayon"),
+    expect(dead_code, reason = "only threads tell them apart")
+)]
+pub(crate) enum Items {
+    Short,
+    /// A millisecond at least, some thirty times what a thread costs.
+    Long,
 }
 
 impl Threads {
@@ -94,7 +85,7 @@ impl Threads {
     /// Wakes sleeping helpers ahead of the next batch, while the engine computes it.
     pub(crate) fn wake(&self) {
         #[cfg(feature = "rayon")]
-        if let Some(helpers) = self.helpers_for(0) {
+        if let Some(helpers) = &self.helpers {
             for _ in 0..helpers.current_num_threads() {
                 helpers.spawn(|| {});
             }
@@ -102,35 +93,83 @@ impl Threads {
     }
 
     /// Applies `work` to each item on all threads; a free thread takes the next item.
-    pub(crate) fn for_each<I>(
+    pub(crate) fn for_each<I: Send>(
         &self,
         items: impl ExactSizeIterator<Item = I> + Send,
+        length: Items,
         work: impl Fn(I) + Sync,
     ) {
         #[cfg(feature = "rayon")]
-        if let Some(helpers) = self.helpers_for(items.len()) {
-            share(&helpers, items, work);
-            return;
+        {
+            let kept = 1 + self
+                .helpers
+                .as_ref()
+                .map_or(0, rayon::ThreadPool::current_num_threads);
+            let more = match length {
+                Items::Short => 0,
+                Items::Long => self.most.min(items.len()).saturating_sub(kept),
+            };
+            if kept + more > 1 {
+                share(self.helpers.as_ref(), more, items, work);
+                return;
+            }
         }
+        let _ = length;
         items.for_each(work);
     }
 }
 
 /// The caller works, too, so that no thread has to be woken twice for each batch.
 #[cfg(feature = "rayon")]
-fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, work: impl Fn(I) + Sync) {
+fn share<I: Send>(
+    helpers: Option<&rayon::ThreadPool>,
+    more: usize,
+    items: impl ExactSizeIterator<Item = I> + Send,
+    work: impl Fn(I) + Sync,
+) {
+    let items = Mutex::new(items);
+    let items = || items.lock().unwrap_or_else(PoisonError::into_inner);
+    let drain = || {
+        loop {
+            let item = items().next();
+            let Some(item) = item else { return };
+            work(item);
+        }
+    };
+    std::thread::scope(|threads| {
+        let mut started = Vec::new();
+        let mut start_more = || {
+            while started.len() < more && items().len() > 0 {
+                // Where no more threads can be started, those that are there do the work.
+                let Ok(thread) = std::thread::Builder::new().spawn_scoped(threads, drain) else {
+                    break;
+                };
+                started.push(thread);
+            }
+        };
+        match helpers {
+            Some(helpers) => share_with(helpers, &mut start_more, drain),
+            None => {
+                start_more();
+                drain();
+            }
+        }
+        for thread in started {
+            if let Err(panic) = thread.join() {
+                std::panic::resume_unwind(panic);
+            }
+        }
+    });
+}
+
+/// Drains on the helpers and the calling thread, which calls `first` before it works.
+#[cfg(feature = "rayon")]
+fn share_with(helpers: &rayon::ThreadPool, first: impl FnOnce(), drain: impl Fn() + Sync) {
     use core::sync::atomic::{AtomicUsize, Ordering};
 
     /// How often the caller checks whether the helpers are done before it sleeps.
     const LOOKS: usize = 400;
 
-    let items = Mutex::new(items);
-    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let drain = || {
-        while let Some(item) = next() {
-            work(item);
-        }
-    };
     let count = helpers.current_num_threads();
     let busy = AtomicUsize::new(count);
     helpers.in_place_scope(|scope| {
@@ -140,6 +179,7 @@ fn share<I>(helpers: &rayon::ThreadPool, items: impl Iterator<Item = I> + Send, 
                 busy.fetch_sub(1, Ordering::Release);
             });
         }
+        first();
         drain();
         for _ in 0..LOOKS {
             if busy.load(Ordering::Acquire) == 0 {
@@ -178,10 +218,45 @@ mod tests {
             .unwrap();
         let mut search = Search::with(engine).threads(10_000);
         search.run(&problem, &Budget::evaluations(64)).unwrap();
-        // The first call is timed alone; then a pool for 31 and one for 32, beside the caller and helpers for the cores.
+        // The first call is timed alone; then threads for 31 and for 32, beside the caller and helpers for the cores.
         assert!(seen.lock().unwrap().len() <= 100, "{seen:?}");
         let cores = std::thread::available_parallelism().unwrap().get();
         assert!(at_once.lock().unwrap().1 > cores.min(20), "{at_once:?}");
+    }
+
+    /// A deadline of 50 ms took 17 s with 1,024 threads on two cores, which looked for work in each other's queues.
+    #[test]
+    fn a_cheap_fitness_starts_no_more_threads_than_there_are_cores() {
+        let seen = Mutex::new(std::collections::BTreeSet::new());
+        let problem = from_fn(Space::cube(1, 0.0, 1.0).unwrap(), -1.0, |x: &[f64]| {
+            seen.lock()
+                .unwrap()
+                .insert(format!("{:?}", std::thread::current().id()));
+            (0..1000).fold(x[0], |sum, i| sum + f64::from(i).sqrt())
+        });
+        let mut search = Search::new().threads(1024);
+        let report = search.run(&problem, &Budget::millis(50)).unwrap();
+        let cores = std::thread::available_parallelism().unwrap().get();
+        // A few more where the machine is so busy that a call seemed to be expensive.
+        assert!(seen.lock().unwrap().len() <= cores + 100);
+        assert!(report.counts.evaluations > 1024, "{:?}", report.counts);
+    }
+
+    #[test]
+    fn a_panic_beyond_the_cores_keeps_its_message() {
+        let problem = from_fn(Space::cube(1, 0.0, 1.0).unwrap(), -1.0, |x: &[f64]| {
+            std::thread::sleep(Duration::from_millis(2));
+            assert!(x[0] < 0.9, "too large");
+            x[0]
+        });
+        let engine = engine::find("random")
+            .unwrap()
+            .configure([("batch", "32")])
+            .unwrap();
+        let mut search = Search::with(engine).threads(32);
+        let run = std::panic::AssertUnwindSafe(|| search.run(&problem, &Budget::evaluations(200)));
+        let panic = std::panic::catch_unwind(run).unwrap_err();
+        assert_eq!(panic.downcast_ref::<&str>(), Some(&"too large"));
     }
 
     #[test]

@@ -8,11 +8,16 @@ use crate::candidates::Candidates;
 use crate::clock::Stopwatch;
 use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
+#[cfg(feature = "rayon")]
+use crate::threads::Items;
 use crate::threads::Threads;
 
 /// Batches with less work than this, in nanoseconds, stay on one thread: handing them over costs more than it saves.
 #[cfg(feature = "rayon")]
 const WORTH_SHARING: u64 = 30_000;
+/// Calls that take this long, in nanoseconds, are worth threads beyond the cores: the fitness may wait for something else.
+#[cfg(feature = "rayon")]
+const EXPENSIVE: u64 = 1_000_000;
 /// One call in so many is timed on several threads.
 #[cfg(feature = "rayon")]
 const TIMED: usize = 8;
@@ -134,7 +139,11 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let (solutions, fitness, done) = candidates.slots();
         let slots = solutions.iter().zip(fitness).zip(done).enumerate();
         let (timed, nanoseconds) = (AtomicU64::new(0), AtomicU64::new(0));
-        threads.for_each(slots, |(slot, ((solution, fitness), done))| {
+        let length = match self.fitness_cost {
+            Some(cost) if cost >= EXPENSIVE => Items::Long,
+            _ => Items::Short,
+        };
+        threads.for_each(slots, length, |(slot, ((solution, fitness), done))| {
             if *done || over() {
                 return;
             }

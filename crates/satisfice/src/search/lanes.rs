@@ -15,7 +15,7 @@ use crate::observer::Observer;
 use crate::problem::SatisficingProblem;
 use crate::report::Counts;
 use crate::scalar::Real;
-use crate::threads::Threads;
+use crate::threads::{Items, Threads};
 
 /// Evaluations of a lane before the first exchange; then twice as many, and so on.
 const FIRST_ROUND: u64 = 256;
@@ -109,7 +109,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
     ) where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
-        threads.for_each(lanes.iter_mut(), |lane| lane.advance(problem, previous, keep));
+        // A round is hundreds of evaluations.
+        threads.for_each(lanes.iter_mut(), Items::Long, |lane| {
+            lane.advance(problem, previous, keep);
+        });
     }
 
     /// Whether all lanes have reached the exchange.
