@@ -39,8 +39,8 @@ pub struct RunControl<'a> {
     pub watch: Option<&'a mut dyn FnMut(&Progress)>,
     /// A checkpoint of the same run to continue from.
     pub resume: Option<&'a [u8]>,
-    /// Takes checkpoints: one at the start of each slice, then one in about [`every`](Self::every), one when the run is
-    /// cancelled, and one at the end.
+    /// Takes checkpoints: one at the start, then one in about [`every`](Self::every), one at the start and end of each slice that
+    /// takes a second or `every`, one when the run is cancelled, and one at the end.
     pub save: Option<&'a mut Save<'a>>,
     /// The time between checkpoints.
     pub every: Duration,

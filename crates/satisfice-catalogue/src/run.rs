@@ -1,6 +1,8 @@
 //! One run: slices of a search on a problem that does not change, and their report.
 
 use core::ops::ControlFlow;
+use core::time::Duration;
+use std::time::Instant;
 
 use satisfice::{
     Checkpoint, Observer, Report, RunOptions, SatisficingProblem, Search, StopReason, TracePoint,
@@ -9,7 +11,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::checkpoint::{self, Saved, SavedRun};
-use crate::control::{Progress, RunControl};
+use crate::control::{Progress, RunControl, Save};
 use crate::error::Error;
 use crate::report::RunReport;
 use crate::spec::RunSpec;
@@ -66,6 +68,8 @@ where
     let budget = spec.slice_budget(&cancel);
     let mut failed = None;
     let (mut calls, mut shared) = (0, 0);
+    let mut pace = Pace::new(control.every);
+    let mut left_out = None;
     while unfinished || goes_on(&reports, spec) {
         let every = control.every;
         let mut save = control.save.take();
@@ -73,21 +77,19 @@ where
         let report = if save.is_none() && !unfinished {
             search.run_with(problem, &budget, RunOptions::new().observer(&mut watcher))
         } else {
-            let mut write = |state: &Checkpoint<P::Solution>| {
+            let mut keep = |state: &Checkpoint<P::Solution>| {
                 let Some(save) = save.as_deref_mut() else { return };
-                let saved = Saved {
-                    spec,
-                    reports: &reports,
-                    search: state,
-                };
-                match checkpoint::write(&saved) {
-                    Ok(bytes) => save(&bytes),
-                    Err(error) => failed = Some(error),
+                let is_last = reports.len() as u64 + 1 >= spec.budget.slices || cancel.is_cancelled();
+                if !is_last && !pace.is_due() {
+                    left_out = Some(state.clone());
+                    return;
                 }
+                left_out = None;
+                pace.time(|| failed = write(spec, &reports, state, save).err().or(failed.take()));
             };
             let options = RunOptions::new()
                 .observer(&mut watcher)
-                .checkpoints(every, &mut write);
+                .checkpoints(every, &mut keep);
             if unfinished {
                 search.run_resumed(problem, options.cancel(&cancel))
             } else {
@@ -101,10 +103,67 @@ where
         reports.push(report);
         unfinished = false;
     }
+    // A slice that nothing was saved of was the last one after all.
+    if let (Some(state), Some(save), [before @ .., _]) = (left_out, control.save.as_deref_mut(), &reports[..])
+    {
+        failed = write(spec, before, &state, save).err().or(failed);
+    }
     if let (Some(remark), Some(text)) = (&mut control.remark, idle_threads(spec, calls, shared)) {
         remark(&text);
     }
     failed.map_or(Ok(reports), |error| Err(error.into()))
+}
+
+fn write<T: Serialize>(
+    spec: &RunSpec,
+    reports: &[Report<T>],
+    search: &Checkpoint<T>,
+    save: &mut Save<'_>,
+) -> serde_json::Result<()> {
+    let saved = Saved {
+        spec,
+        reports,
+        search,
+    };
+    checkpoint::write(&saved).map(|bytes| save(&bytes))
+}
+
+/// When short slices are saved: each of them has a beginning and an end.
+struct Pace {
+    /// The least time between two checkpoints of different slices.
+    least: Duration,
+    /// When the next one is due, once there is one.
+    next: Option<Instant>,
+}
+
+impl Pace {
+    fn new(every: Duration) -> Self {
+        Self {
+            // Half of what the search keeps to within a slice.
+            least: every.min(Duration::from_secs(1)) / 2,
+            next: None,
+        }
+    }
+
+    fn is_due(&self) -> bool {
+        self.next.is_none_or(|next| now() >= next)
+    }
+
+    /// Saves; the next time comes after nine times as long.
+    fn time(&mut self, save: impl FnOnce()) {
+        let begun = now();
+        save();
+        let end = now();
+        self.next = end.checked_add(self.least.max(9 * (end - begun)));
+    }
+}
+
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the time of a checkpoint changes no result"
+)]
+fn now() -> Instant {
+    Instant::now()
 }
 
 /// The note for runs in which several threads had little to share.
@@ -155,5 +214,46 @@ impl<T> Observer<T> for Watcher<'_, '_> {
             });
         }
         ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue;
+
+    fn times_of_slices_aside(report: &RunReport) -> (u64, Vec<u64>, StopReason) {
+        let slices = report.slices.iter().map(|slice| slice.hits).collect();
+        (report.hits, slices, report.stop_reason)
+    }
+
+    /// Each slice was saved twice: 200 short ones took 5 s instead of .2 s.
+    #[test]
+    fn short_slices_are_not_all_saved_but_the_last_one_is() {
+        let problem = catalogue::find("queens").unwrap().build([("n", "6")]).unwrap();
+        for (hits, least_slices) in [(None, 200), (Some(2), 2)] {
+            let mut spec = RunSpec::new("random").evaluations(200).seed(3);
+            spec.budget.slices = 200;
+            spec.budget.hits = hits;
+            let (mut saves, mut last) = (0, Vec::new());
+            let mut save = |bytes: &[u8]| {
+                saves += 1;
+                last = bytes.to_vec();
+            };
+            let control = RunControl {
+                save: Some(&mut save),
+                every: Duration::from_secs(5),
+                ..RunControl::default()
+            };
+            let report = problem.run(&spec, control).unwrap();
+            assert!(report.slices.len() >= least_slices, "{}", report.slices.len());
+            assert!((2..100).contains(&saves), "{saves}");
+            let control = RunControl {
+                resume: Some(&last),
+                ..RunControl::default()
+            };
+            let resumed = problem.run(&spec, control).unwrap();
+            assert_eq!(times_of_slices_aside(&resumed), times_of_slices_aside(&report));
+        }
     }
 }
