@@ -18,6 +18,7 @@ pub mod checkpoint;
 mod control;
 mod error;
 pub mod exact;
+pub mod input;
 mod instance;
 pub mod json;
 pub mod listing;

@@ -37,7 +37,9 @@ pub fn open(sealed: &[u8]) -> Result<String, Broken> {
     }
 }
 
-fn checksum(bytes: &[u8]) -> u64 {
+/// The checksum of some bytes.
+#[must_use]
+pub fn checksum(bytes: &[u8]) -> u64 {
     Checksum::of(bytes).value()
 }
 

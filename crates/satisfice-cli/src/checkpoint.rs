@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use satisfice_catalogue::{RunSpec, checkpoint};
+use satisfice_catalogue::{RunSpec, checkpoint, input};
 
 use crate::message;
 use crate::output::Output;
@@ -11,7 +11,7 @@ use crate::output::Output;
 /// Reads a checkpoint and the specification of its run, which must be of `problem`.
 pub(crate) fn read(path: &Path, problem: &str) -> anyhow::Result<(Vec<u8>, RunSpec)> {
     let shown = path.display();
-    let bytes = std::fs::read(path)
+    let bytes = input::read(path)
         .with_context(|| format!("cannot read {shown}: name a file that `run --checkpoint` wrote"))?;
     let spec = checkpoint::spec(&bytes)
         .with_context(|| format!("{shown} is not a checkpoint that `run --checkpoint` wrote"))?;

@@ -1,11 +1,10 @@
 //! `satisfice verify`: whether a report is correct.
 
 use std::fmt::Write;
-use std::io::Read;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use satisfice_catalogue::{Catalogue, Mismatch, RunReport};
+use satisfice_catalogue::{Catalogue, Mismatch, RunReport, input};
 
 use crate::arguments::VerifyArguments;
 use crate::{collide, output};
@@ -16,10 +15,9 @@ const SHOWN: usize = 20;
 pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     let path = arguments.report.display();
     let text = if arguments.report.as_os_str() == "-" {
-        let mut text = Vec::new();
-        std::io::stdin().read_to_end(&mut text).map(|_| text)
+        input::read_stream(std::io::stdin())
     } else {
-        std::fs::read(&arguments.report)
+        input::read(&arguments.report)
     }
     .with_context(|| format!("cannot read {path}: name a report that `run --json` wrote"))?;
     let wrong = || format!("{path} is not a report that `run --json` or `collide --json` wrote");

@@ -178,12 +178,12 @@ fn mistakes_are_told_before_anything_runs() {
         (
             "random\", {",
             "randon\", {",
-            "part `counted`: unknown engine `randon`, did you mean `random`?",
+            "part 1 `counted`: unknown engine `randon`, did you mean `random`?",
         ),
         (
             "\"islands\"",
             "\"ilsands\"",
-            "part `timed`: unknown problem `ilsands`, did you mean `islands`?",
+            "part 2 `timed`: unknown problem `ilsands`, did you mean `islands`?",
         ),
         (
             "delta =",
@@ -194,7 +194,7 @@ fn mistakes_are_told_before_anything_runs() {
         (
             "engines = [\"random\"]",
             "engins = [\"random\"]",
-            "part 2: unknown key of a part `engins`, did you mean `engines`?",
+            "part 2 `timed`: unknown key of a part `engins`, did you mean `engines`?",
         ),
         (
             "title",
@@ -202,7 +202,11 @@ fn mistakes_are_told_before_anything_runs() {
             "unknown key of a suite `titel`, did you mean `title`?",
         ),
         ("\"0..3\"", "\"3..0\"", "seeds = 3..0 is not allowed: write A..B"),
-        ("evaluations = 4000", "", "part 1: no budget: give evaluations"),
+        (
+            "evaluations = 4000",
+            "",
+            "part 1 `counted`: no budget: give evaluations",
+        ),
         (
             "4000",
             "-4000",

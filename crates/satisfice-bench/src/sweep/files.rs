@@ -2,9 +2,14 @@
 
 use std::path::Path;
 
+use satisfice_catalogue::sealed;
+
 use crate::error::Error;
 
-/// A text as part of a file's name.
+/// The most that a text takes of a file's name, which file systems limit to 255 bytes.
+const LONGEST: usize = 100;
+
+/// A text as part of a file's name. The end of a long one is replaced by its checksum.
 pub(super) fn plain(text: &str) -> String {
     let keep = |c: char| {
         if c.is_ascii_alphanumeric() || ".-".contains(c) {
@@ -13,7 +18,12 @@ pub(super) fn plain(text: &str) -> String {
             '_'
         }
     };
-    text.chars().map(keep).collect()
+    let name: String = text.chars().map(keep).collect();
+    if name.len() <= LONGEST {
+        return name;
+    }
+    let checksum = format!("-{:016x}", sealed::checksum(text.as_bytes()));
+    format!("{}{checksum}", &name[..LONGEST - checksum.len()])
 }
 
 /// Writes a file and the folders it is in.
@@ -25,4 +35,16 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
             path: path.to_owned(),
             what: format!("cannot write it: {error}"),
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_short_and_unlike() {
+        assert_eq!(plain("sat file=a/b.cnf"), "sat_file_a_b.cnf");
+        let [a, b] = ["1", "2"].map(|end| plain(&("x".repeat(300) + end)));
+        assert!(a.len() == LONGEST && b.len() == LONGEST && a != b);
+    }
 }

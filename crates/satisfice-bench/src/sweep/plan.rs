@@ -112,7 +112,7 @@ impl Plan {
         }
         for at in 0..plan.suite.parts.len() {
             plan.add_part(at, catalogue).map_err(|error| Error::Suite {
-                place: format!("{}, part `{}`", plan.suite.name, plan.suite.parts[at].name),
+                place: format!("{}, {}", plan.suite.name, plan.suite.parts[at].place(at)),
                 what: error.to_string(),
             })?;
         }
@@ -282,7 +282,7 @@ pub(super) fn seconds(times: &[Duration]) -> Vec<f64> {
 /// Refuses a suite with too many runs before any list of them is made.
 fn check_size(suite: &Suite) -> Result<(), Error> {
     let mut all = 0_u64;
-    for part in &suite.parts {
+    for (at, part) in suite.parts.iter().enumerate() {
         let choices = |choices: &[Choice]| {
             choices.iter().fold(0_u64, |sum, choice| {
                 sum.saturating_add(grid::size(&choice.settings))
@@ -295,7 +295,7 @@ fn check_size(suite: &Suite) -> Result<(), Error> {
         all = all.saturating_add(cells.saturating_mul(seeds));
         if all > MOST_RUNS {
             return Err(Error::Suite {
-                place: format!("{}, part `{}`", suite.name, part.name),
+                place: format!("{}, {}", suite.name, part.place(at)),
                 what: format!(
                     "{} seeds of {} engines, problems and budgets are more than {} runs: give fewer",
                     shown::count(seeds),

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use indexmap::IndexMap;
 use satisfice_catalogue::options::{self, OPTIONS};
-use satisfice_catalogue::{RunSpec, quantity};
+use satisfice_catalogue::{RunSpec, input, quantity};
 use serde::Deserialize;
 use serde::de::{Error as _, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde_path_to_error::Segment;
@@ -84,6 +84,22 @@ pub struct Part {
     pub beside: IndexMap<String, String>,
 }
 
+impl Part {
+    /// How errors call it: its number, from 1, and the name that it was given.
+    pub(super) fn place(&self, at: usize) -> String {
+        place(at, (self.name != unnamed(at)).then_some(&self.name))
+    }
+}
+
+fn place(at: usize, name: Option<&String>) -> String {
+    name.map_or_else(|| unnamed(at), |name| format!("{} `{name}`", unnamed(at)))
+}
+
+/// The name of a part that has none.
+fn unnamed(at: usize) -> String {
+    format!("part {}", at + 1)
+}
+
 /// A name with parameters, each with the values to try.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
@@ -109,7 +125,7 @@ impl Suite {
     pub fn open(name_or_file: &str) -> Result<Self, Error> {
         let path = Path::new(name_or_file);
         if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {
-            let text = std::fs::read_to_string(path).map_err(|error| Error::File {
+            let text = input::read_to_string(path).map_err(|error| Error::File {
                 path: path.to_owned(),
                 what: format!("cannot read this suite: {error}"),
             })?;
@@ -127,20 +143,21 @@ impl Suite {
     /// [`Error::Suite`], which says where and what.
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let table: Table = text.parse().map_err(|error: toml::de::Error| {
-            let start = error.span().map_or(0, |span| span.start).min(text.len());
-            let line = text[..start].matches('\n').count() + 1;
+            let before = error.span().map_or(0, |span| span.start);
+            let line = 1 + text.bytes().take(before).filter(|&byte| byte == b'\n').count();
             wrong(format!("{name}, line {line}"), error.message())
         })?;
         let mut file: SuiteFile =
             serde_path_to_error::deserialize(table).map_err(|error| located(name, &error))?;
         let mut parts: Vec<Part> = Vec::new();
         for (index, part) in file.parts().into_iter().enumerate() {
+            let place = format!("{name}, {}", place(index, part.name.as_ref()));
             let part = part
                 .finish(index, file.seeds.as_ref())
-                .map_err(|what| wrong(format!("{name}, part {}", index + 1), what))?;
+                .map_err(|what| wrong(place.clone(), what))?;
             if parts.iter().any(|known| known.name == part.name) {
                 let what = format!("there are two parts named `{}`: name them apart", part.name);
-                return Err(wrong(format!("{name}, part {}", index + 1), what));
+                return Err(wrong(place, what));
             }
             parts.push(part);
         }
@@ -296,7 +313,7 @@ impl PartFile {
         }
         let seeds = self.seeds.as_ref().or(seeds);
         Ok(Part {
-            name: self.name.unwrap_or_else(|| format!("part {}", index + 1)),
+            name: self.name.unwrap_or_else(|| unnamed(index)),
             engines: self.engines,
             problems: self.problems,
             seeds: seeds

@@ -56,7 +56,8 @@ impl SpaceFile {
     /// Reads a file.
     pub(crate) fn read(path: &Path) -> anyhow::Result<Self> {
         let shown = path.display();
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {shown}"))?;
+        let text = satisfice_catalogue::input::read_to_string(path)
+            .with_context(|| format!("cannot read {shown}"))?;
         Self::parse(&text).with_context(|| format!("{shown} does not describe a space"))
     }
 

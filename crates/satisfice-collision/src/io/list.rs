@@ -64,9 +64,8 @@ fn toml(bytes: &[u8], folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
     let text = std::str::from_utf8(without_mark(NAME, bytes)?);
     let text = text.map_err(|error| Error::malformed(NAME, error))?;
     let list = ::toml::from_str(text).map_err(|error| {
-        let line = error
-            .span()
-            .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        let before = error.span().map_or(0, |span| span.start);
+        let line = 1 + text.bytes().take(before).filter(|&byte| byte == b'\n').count();
         Error::malformed(NAME, error.message()).at_line(line)
     })?;
     bodies(&list, folder)

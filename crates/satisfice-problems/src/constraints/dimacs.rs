@@ -1,5 +1,8 @@
 //! The DIMACS formats: clauses (`cnf`) and graphs (`edge`).
 
+use std::fs::File;
+use std::io::Read;
+
 use satisfice::Error;
 
 /// Larger formulas and graphs are refused: a point of them would not fit in memory.
@@ -7,9 +10,17 @@ const LARGEST: usize = 100_000;
 
 /// Reads `path`; errors name the parameter `file`.
 pub(super) fn read(path: &str) -> Result<String, Error> {
-    std::fs::read_to_string(path)
-        .map_err(|error| Error::parameter("file", path, format!("a readable file ({error})")))
+    let bad = |reason: String| Error::parameter("file", path, format!("a readable file ({reason})"));
+    let mut text = String::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_string(&mut text));
+    match read.map_err(|error| bad(error.to_string()))? as u64 {
+        LONGEST => Err(bad(format!("it has {LONGEST} bytes or more"))),
+        _ => Ok(text),
+    }
 }
+
+/// Longer files are refused: devices and pipes may have no end.
+const LONGEST: u64 = 1 << 30;
 
 struct Reader<'a> {
     path: &'a str,
