@@ -208,6 +208,15 @@ pub mod shown {
         }
     }
 
+    /// A number with all its digits, as short as it can be: `0.5`, `1e-160`.
+    #[must_use]
+    pub fn exact(value: f64) -> String {
+        if value != 0.0 && !(1e-5..1e16).contains(&value.abs()) {
+            return format!("{value:e}");
+        }
+        value.to_string()
+    }
+
     /// A time in a suitable unit, with three digits.
     #[must_use]
     pub fn seconds(seconds: f64) -> String {
@@ -232,6 +241,19 @@ pub mod shown {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exact_numbers_are_short() {
+        for (x, text) in [
+            (0.0, "0"),
+            (0.1, "0.1"),
+            (100.0, "100"),
+            (1e-160, "1e-160"),
+            (-1e308, "-1e308"),
+        ] {
+            assert_eq!((shown::exact(x).as_str(), text.parse()), (text, Ok(x)));
+        }
+    }
 
     #[test]
     fn times() {

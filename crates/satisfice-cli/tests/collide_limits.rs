@@ -45,6 +45,10 @@ fn beyond_max_pairs_all_are_counted_and_fewer_listed() {
                 (&100.into(), &count.into(), &"Unknown".into()),
                 "{scene}"
             );
+            // What was left out is counted in whole, or not said.
+            for (reason, skipped) in few["skipped"].as_object().unwrap() {
+                assert_eq!(skipped, &all["skipped"][reason], "{scene}: {reason}");
+            }
             let listed = few["pairs"].as_array().unwrap();
             assert!(
                 listed.len() == 100
@@ -277,6 +281,11 @@ fn the_closest_pairs_need_no_threshold() {
     assert_eq!((&report["hits"], &report["threshold"]), (&3.into(), &Value::Null));
     let distance = report["pairs"][0]["distance"].as_f64().unwrap();
     assert!((distance - 3.3).abs() < 0.01, "{distance}");
+    // Apart from being the closest, they say nothing of what touches.
+    assert_eq!(
+        (&report["answer"], &report["completeness"], &report["touching"]),
+        (&"Proved".into(), &"Unknown".into(), &json!([]))
+    );
     let limited = json_of(folder.path(), &format!("{call} --threshold 10"));
     assert_eq!(limited["pairs"], report["pairs"]);
     fs::write(folder.path().join("report.json"), report.to_string()).unwrap();
@@ -313,6 +322,8 @@ fn the_closest_pairs_need_no_threshold() {
         ),
         ("--threshold 3", "  completeness  proved: these are all\n"),
     ] {
+        let answer = &json_of(folder.path(), &format!("collide c.obj d.obj {call}"))["answer"];
+        assert_eq!(answer, "Proved", "{call}");
         let told = satisfice_in(folder.path(), &format!("collide c.obj d.obj {call}"));
         assert!(told.stdout.contains(says), "{call}: {}", told.stdout);
         let says_once = told.stdout.matches("proved").count() + told.stdout.matches("unknown").count();

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use satisfice_catalogue::quantity::shown::exact;
+
 use super::pairs::{Line, Pairs};
 use super::scene::World;
 
@@ -19,7 +21,7 @@ pub(super) fn write(pairs: &Pairs, world: &World, out: &mut dyn Write) -> io::Re
         let Line { a, b, distance, .. } = &line;
         write!(out, "{},{},{},{},", a.body, a.feature, b.body, b.feature)?;
         if let Some(distance) = distance {
-            write!(out, "{distance}")?;
+            write!(out, "{}", exact(*distance))?;
         }
         if pairs.witnesses.is_some() {
             witness(&line, out)?;
@@ -39,10 +41,10 @@ fn witness(line: &Line, out: &mut dyn Write) -> io::Result<()> {
         return write!(out, ",,,,,,,,,,,");
     };
     for c in witness.point_a.iter().chain(&witness.point_b) {
-        write!(out, ",{c}")?;
+        write!(out, ",{}", exact(*c))?;
     }
     match witness.normal {
-        Some([x, y, z]) => write!(out, ",{x},{y},{z}")?,
+        Some([x, y, z]) => write!(out, ",{},{},{}", exact(x), exact(y), exact(z))?,
         None => write!(out, ",,,")?,
     }
     write!(out, ",{},{}", witness.part_a, witness.part_b)

@@ -95,10 +95,7 @@ impl Exact<'_> {
         if self.threads == 1 {
             return self.find_in(world);
         }
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()?;
-        pool.install(|| self.find_in(world))
+        super::threads(self.threads)?.install(|| self.find_in(world))
     }
 
     #[expect(
@@ -265,6 +262,8 @@ impl Exact<'_> {
             if state == Completeness::Proved {
                 answer.stop = StopReason::Covered;
                 answer.count = Some(count);
+                // Those left out were counted only until the list was full.
+                answer.skips = Skips::default();
             }
         }
         Ok(answer)

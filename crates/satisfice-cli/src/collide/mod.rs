@@ -28,7 +28,8 @@ use satisfice_catalogue::json;
 use satisfice_collision::broad::Method;
 use satisfice_collision::scene::{Completeness, Skips};
 
-use crate::{interrupt, message, output, reference};
+use crate::output::{self, Steps};
+use crate::{interrupt, message, reference};
 use arguments::{CollideArguments, Find};
 use exact::{Exact, METHODS};
 use files::Files;
@@ -78,29 +79,28 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
         None => by_engine(arguments, &world, &cancel)?,
     };
     let files = &mut answer.files;
+    let mut steps = Steps::default();
     let report = Report::new(answer.head, answer.pairs, answer.overlaps, &answer.skips, &world);
     if let Some(file) = &mut files.picture {
         let missed = picture::missed(&answer.reference, &report.pairs.pairs);
-        file.write(&picture::draw(
-            &world,
-            arguments.up,
-            &report.pairs.pairs,
-            &missed,
-        )?)?;
+        let drawn = picture::draw(&world, arguments.up, &report.pairs.pairs, &missed);
+        steps.step(drawn.and_then(|drawn| file.write(&drawn)));
     }
     if let Some(file) = &mut files.page {
         let missed = picture::missed(&answer.reference, &report.pairs.pairs);
-        file.write(page::html(&report, arguments.up, &missed)?.as_bytes())?;
+        let page = page::html(&report, arguments.up, &missed);
+        steps.step(page.and_then(|page| file.write(page.as_bytes())));
     }
     if let Some(file) = &mut files.json {
-        file.write_by(&mut |out| json::write(&report, out))?;
+        steps.step(file.write_by(&mut |out| json::write(&report, out)));
     }
     if let Some(file) = &mut files.csv {
-        file.write_by(&mut |out| csv::write(&report.pairs, &world, out))?;
+        steps.step(file.write_by(&mut |out| csv::write(&report.pairs, &world, out)));
     }
     if files.summary {
-        output::print(summary::summary(&report).as_bytes())?;
+        steps.step(output::print(summary::summary(&report).as_bytes()));
     }
+    steps.outcome()?;
     if answer.is_full {
         bail!(
             "memory ended after {} pairs, which are written; --max-pairs N asks for fewer",
@@ -177,6 +177,7 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
         "the scene",
         reference::Patience::Unlimited,
         cancel,
+        || {},
         move || count(&counted, most, &kept),
     ));
     let (reference, skips) = reference
@@ -192,6 +193,13 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
         files,
         is_full: false,
     })
+}
+
+/// So many threads, 0 for as many as there are cores, and no more than that: they compute, and wait for nothing.
+fn threads(threads: usize) -> anyhow::Result<rayon::ThreadPool> {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = if threads == 0 { cores } else { threads.min(cores) };
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?)
 }
 
 /// Refuses options that do not go together, before anything is read.

@@ -11,6 +11,7 @@ use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::PROBLEM;
+use super::arguments::Find;
 use super::exact::{Exact, Found};
 use super::inputs::NamedBody;
 use super::overlaps::Overlap;
@@ -44,6 +45,8 @@ pub(super) struct Head {
     pub(super) recall: Option<f64>,
     /// Whether all pairs are listed, as was proved.
     pub(super) completeness: Completeness,
+    /// Whether what was asked for is proved: that these are all pairs, no other bodies touch, no other pair is closer, or one pair.
+    pub(super) answer: Completeness,
     /// The closest pair that an engine saw, within the threshold or not.
     pub(super) best: Option<Best>,
     /// Listed pairs without a distance, because the time ended.
@@ -71,6 +74,17 @@ impl Head {
         let late = how
             .time
             .map_or(Duration::ZERO, |time| found.elapsed.saturating_sub(time));
+        let was_stopped = matches!(found.stop, StopReason::Cancelled | StopReason::Time);
+        let is_answered = found.complete
+            || match world.request.find {
+                Find::All => false,
+                Find::First => listed > 0,
+                Find::Touching | Find::Closest(_) => !was_stopped,
+            };
+        let proved = |is_proved| match is_proved {
+            true => Completeness::Proved,
+            false => Completeness::Unknown,
+        };
         Self {
             problem: PROBLEM.to_owned(),
             problem_parameters: world.settings(),
@@ -90,10 +104,8 @@ impl Head {
             hits: listed,
             reference_hits: found.count,
             recall: found.count.and_then(|count| recall(listed, count)),
-            completeness: match found.complete {
-                true => Completeness::Proved,
-                false => Completeness::Unknown,
-            },
+            completeness: proved(found.complete),
+            answer: proved(is_answered),
             best: None,
             unmeasured: found.pairs.unmeasured() as u64,
             unseen_estimate: found.complete.then_some(0.0),
@@ -122,6 +134,7 @@ impl Head {
             reference_hits: report.reference_hits,
             recall: report.recall,
             completeness: report.completeness,
+            answer: report.completeness,
             best: report.best,
             unmeasured: 0,
             unseen_estimate: report.unseen_estimate,
@@ -161,7 +174,8 @@ pub(super) struct Report<'a> {
     pub(super) pairs: Pairs,
     /// Bodies that overlap as solids, if that was asked for.
     pub(super) overlaps: Option<Vec<Overlap>>,
-    /// Bodies of which a pair is listed or that overlap, `[a, b]` with `a <= b`.
+    /// Bodies that are closer than the threshold, since a pair of theirs is listed, or that overlap: `[a, b]` with `a <= b`. Without a
+    /// threshold, those that overlap.
     pub(super) touching: BTreeSet<[usize; 2]>,
     /// Why pairs of bodies or of features were left out, and how many.
     pub(super) skipped: BTreeMap<String, u64>,
@@ -177,7 +191,8 @@ impl<'a> Report<'a> {
         world: &'a World,
     ) -> Self {
         let reasons = skips.by_reason().into_iter();
-        let bodies = pairs.pairs.iter().map(|pair| {
+        let within = head.threshold.is_finite();
+        let bodies = pairs.pairs.iter().filter(|_| within).map(|pair| {
             let [a, b] = pair.bodies();
             [a.min(b), a.max(b)]
         });

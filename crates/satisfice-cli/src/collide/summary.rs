@@ -11,6 +11,7 @@ use super::arguments::Find;
 use super::inputs::NamedBody;
 use super::pairs::Side;
 use super::report::{Head, Report};
+use crate::message::plain;
 
 /// So many pairs are shown; the report has all of them.
 pub(super) const SHOWN_PAIRS: usize = 5;
@@ -30,7 +31,7 @@ impl Lines {
 
     pub(super) fn line(&mut self, name: &str, value: &str) {
         // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "  {name:<13} {value}");
+        let _ = writeln!(self.0, "  {name:<13} {}", plain(value));
     }
 }
 
@@ -38,7 +39,11 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     let head = &report.head;
     let kind = report.world.request.kind.name();
     let mut lines = Lines::new(match head.threshold.is_finite() {
-        true => format!("{kind} pairs closer than {} by {}", head.threshold, head.engine),
+        true => format!(
+            "{kind} pairs closer than {} by {}",
+            shown::exact(head.threshold),
+            head.engine
+        ),
         false => format!("the closest {kind} pairs by {}", head.engine),
     });
     lines.line("pairs", &count(report));
@@ -47,14 +52,14 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     if let Some((least, most)) = report.pairs.range() {
         let unmeasured = match head.unmeasured {
             0 => String::new(),
-            some => format!("; {} not measured, the time was over", shown::count(some)),
+            some => format!("; {} not measured, {}", shown::count(some), over(head)),
         };
         lines.line(
             "distances",
             &format!("{} to {}{unmeasured}", digits(least), digits(most)),
         );
     } else if head.unmeasured > 0 {
-        lines.line("distances", "not measured, the time was over");
+        lines.line("distances", &format!("not measured, {}", over(head)));
     }
     if let (0, Some(best)) = (head.hits, &head.best) {
         lines.line("closest seen", &format!("{} apart", digits(best.fitness)));
@@ -125,7 +130,7 @@ fn completeness(report: &Report<'_>) -> String {
     }
     let searched_all = head.stop_reason == StopReason::Covered && head.reference_hits.is_some();
     if searched_all {
-        return "all are counted, but not all are listed: --max-pairs N lists more".to_owned();
+        return "all are counted, but not all are listed".to_owned();
     }
     match (head.unseen_estimate, head.unseen_interval) {
         (Some(unseen), Some((low, high))) => {
@@ -149,6 +154,14 @@ pub(super) fn elapsed(head: &Head) -> String {
     format!("{}{late}, {why}", shown::seconds(head.elapsed_seconds))
 }
 
+/// Why no more was done.
+fn over(head: &Head) -> &'static str {
+    match head.stop_reason {
+        StopReason::Cancelled => "the search was interrupted",
+        _ => "the time was over",
+    }
+}
+
 fn was_stopped(head: &Head) -> bool {
     matches!(head.stop_reason, StopReason::Cancelled | StopReason::Time)
 }
@@ -156,7 +169,7 @@ fn was_stopped(head: &Head) -> bool {
 /// What is sure about a list that is asked not to have all pairs, unless it has all.
 fn asked(report: &Report<'_>) -> Option<&'static str> {
     let request = &report.world.request;
-    let was_stopped = was_stopped(&report.head);
+    let was_stopped = report.head.answer != Completeness::Proved;
     let has_all = report.head.completeness == Completeness::Proved;
     match request.find {
         Find::All => None,
@@ -170,7 +183,7 @@ fn asked(report: &Report<'_>) -> Option<&'static str> {
         Find::Touching => Some(
             "proved: no other bodies touch, which means: surfaces closer than the threshold; one pair of each two is listed; --solid also finds bodies inside others",
         ),
-        Find::First if report.head.hits == 0 => Some("unknown: no pair was found until then"),
+        Find::First if was_stopped => Some("unknown: no pair was found until then"),
         Find::First => Some("one pair, whichever is found first"),
         Find::Closest(_) if was_stopped => {
             Some("unknown: the closest of the pairs found; others may be closer")

@@ -68,13 +68,22 @@ fn counts(head: &Head, lists: &Lists) -> Vec<Mismatch> {
             "0, since completeness is proved",
         ));
     }
+    if is_proved && head.answer != Completeness::Proved {
+        let expected = "Proved, since completeness is";
+        wrong.push(Mismatch::new("answer", format!("{:?}", head.answer), expected));
+    }
     let overlapping = lists.overlaps.iter().map(|overlap| [overlap.a, overlap.b]);
-    let touching: BTreeSet<_> = lists.pairs.iter().map(bodies).chain(overlapping).collect();
+    let near = lists
+        .pairs
+        .iter()
+        .filter(|_| head.threshold.is_finite())
+        .map(bodies);
+    let touching: BTreeSet<_> = near.chain(overlapping).collect();
     if lists.touching != touching {
         wrong.push(Mismatch::new(
             "touching",
             "other bodies",
-            "those of the pairs and overlaps",
+            "those of the pairs, if there is a threshold, and of the overlaps",
         ));
     }
     wrong

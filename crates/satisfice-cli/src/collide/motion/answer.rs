@@ -60,9 +60,7 @@ pub(super) struct Impacts {
 impl Search<'_> {
     /// Searches on as many threads as are wanted.
     pub(super) fn run(&self, frames: &Frames) -> anyhow::Result<Impacts> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()?;
+        let pool = super::super::threads(self.threads)?;
         let start = now();
         let found = pool.install(|| match frames.request.first {
             true => self.first(frames, start),

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use satisfice_catalogue::quantity::shown::exact;
+
 use super::super::csv::quoted;
 use super::report::{ImpactLine, MotionReport};
 
@@ -20,7 +22,7 @@ pub(super) fn write(report: &MotionReport<'_>, out: &mut dyn Write) -> io::Resul
         let ImpactLine { kind, a, b, .. } = &line;
         write!(out, "{kind},{},{},{},{},", a.body, a.feature, b.body, b.feature)?;
         match line.time {
-            Some([low, high]) => write!(out, "{low},{high},")?,
+            Some([low, high]) => write!(out, "{},{},", exact(low), exact(high))?,
             None => write!(out, ",,")?,
         }
         if let Some(at_start) = line.at_start {
@@ -28,7 +30,7 @@ pub(super) fn write(report: &MotionReport<'_>, out: &mut dyn Write) -> io::Resul
         }
         for point in [line.point_a, line.point_b, line.normal] {
             match point {
-                Some([x, y, z]) => write!(out, ",{x},{y},{z}")?,
+                Some([x, y, z]) => write!(out, ",{},{},{}", exact(x), exact(y), exact(z))?,
                 None => write!(out, ",,,")?,
             }
         }

@@ -16,7 +16,8 @@ use satisfice_catalogue::json;
 use super::arguments::{CollideArguments, Find};
 use super::files::Files;
 use super::inputs::Inputs;
-use crate::{interrupt, message, output};
+use crate::output::{self, Steps};
+use crate::{interrupt, message};
 use answer::Search;
 use frames::{Frames, MotionRequest};
 use report::MotionReport;
@@ -64,18 +65,21 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
             search.most
         ));
     }
+    let mut steps = Steps::default();
     if let Some(file) = &mut files.json {
-        file.write_by(&mut |out| json::write(&report, out))?;
+        steps.step(file.write_by(&mut |out| json::write(&report, out)));
     }
     if let Some(file) = &mut files.page {
-        file.write(page::html(&report, arguments.up)?.as_bytes())?;
+        let page = page::html(&report, arguments.up);
+        steps.step(page.and_then(|page| file.write(page.as_bytes())));
     }
     if let Some(file) = &mut files.csv {
-        file.write_by(&mut |out| csv::write(&report, out))?;
+        steps.step(file.write_by(&mut |out| csv::write(&report, out)));
     }
     if files.summary {
-        output::print(summary::summary(&report).as_bytes())?;
+        steps.step(output::print(summary::summary(&report).as_bytes()));
     }
+    steps.outcome()?;
     Ok(ExitCode::from(u8::from(report.head.hits == 0)))
 }
 

@@ -61,6 +61,10 @@ impl<'a> MotionReport<'a> {
             .time
             .map_or(Duration::ZERO, |time| found.elapsed.saturating_sub(time));
         let proved = found.complete;
+        let state = |is_proved| match is_proved {
+            true => Completeness::Proved,
+            false => Completeness::Unknown,
+        };
         let head = Head {
             problem: PROBLEM.to_owned(),
             problem_parameters: frames.settings(),
@@ -80,10 +84,8 @@ impl<'a> MotionReport<'a> {
             hits: listed,
             reference_hits: found.count,
             recall: found.count.and_then(|count| recall(listed, count)),
-            completeness: match proved {
-                true => Completeness::Proved,
-                false => Completeness::Unknown,
-            },
+            completeness: state(proved),
+            answer: state(found.first.map_or(proved, |(_, proved)| proved)),
             best: None,
             unmeasured: untimed,
             unseen_estimate: proved.then_some(0.0),

@@ -13,7 +13,7 @@ pub(super) fn summary(report: &MotionReport<'_>) -> String {
     let kinds: Vec<&str> = report.frames.kinds.iter().map(|kind| kind.name()).collect();
     let what = match head.threshold {
         0.0 => "that touch".to_owned(),
-        delta => format!("that come closer than {delta}"),
+        delta => format!("that come closer than {}", shown::exact(delta)),
     };
     let mut lines = Lines::new(format!(
         "{} pairs {what} during the step",
