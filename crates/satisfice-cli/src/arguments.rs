@@ -109,7 +109,7 @@ pub(crate) struct RunArguments {
     pub(crate) slices: Options<false>,
 
     /// Keep a checkpoint of the run in this file: at the beginning, after a second, then every `--checkpoint-every`, at Ctrl-C
-    /// and at the end.
+    /// and at the end. If memory ends during a run, or the machine, only a checkpoint has its hits.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
 

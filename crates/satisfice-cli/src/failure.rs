@@ -7,6 +7,7 @@ use clap::CommandFactory;
 use clap::error::ErrorKind;
 
 use crate::arguments::Satisfice;
+use crate::message;
 
 /// Exit code of every error.
 pub(crate) const ERROR: u8 = 2;
@@ -75,6 +76,6 @@ fn one_line(error: &clap::Error) -> String {
 fn tell(message: &str) -> ExitCode {
     let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
     // Where stderr is closed, the message cannot be shown.
-    drop(writeln!(std::io::stderr(), "error: {line}"));
+    drop(writeln!(std::io::stderr(), "error: {}", message::plain(&line)));
     ExitCode::from(ERROR)
 }

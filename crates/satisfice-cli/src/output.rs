@@ -156,7 +156,8 @@ fn beside(path: &Path) -> io::Result<NamedTempFile> {
 /// Moves a file with these contents to its place.
 fn replace(mut file: NamedTempFile, path: &Path, write: Writer<'_>) -> io::Result<()> {
     let partial = file.path().to_owned();
-    let moved = buffered(&mut file, write)
+    // Not by the library's own writer, whose errors name the temporary file.
+    let moved = buffered(file.as_file_mut(), write)
         .and_then(|()| file.as_file().sync_data())
         .and_then(|()| file.persist(path).map(drop).map_err(|error| error.error));
     forget(&partial);
@@ -165,6 +166,22 @@ fn replace(mut file: NamedTempFile, path: &Path, write: Writer<'_>) -> io::Resul
 
 fn forget(path: &Path) {
     partial_files().retain(|known| known != path);
+}
+
+/// Steps that are all taken, whatever becomes of the others: a full disk for one file loses no other. The first failure is the outcome.
+#[derive(Debug, Default)]
+pub(crate) struct Steps(Option<anyhow::Error>);
+
+impl Steps {
+    pub(crate) fn step(&mut self, taken: anyhow::Result<()>) {
+        if let (None, Err(error)) = (&self.0, taken) {
+            self.0 = Some(error);
+        }
+    }
+
+    pub(crate) fn outcome(self) -> anyhow::Result<()> {
+        self.0.map_or(Ok(()), Err)
+    }
 }
 
 /// Where the bytes for `path` go: the end of a link, else the path itself.

@@ -9,6 +9,8 @@ use crate::message;
 
 /// How often the count looks for Ctrl-C.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
+/// A count that takes longer than this is waited for with the answer shown.
+const QUICK: Duration = Duration::from_millis(200);
 /// A count may always take this long.
 const ALWAYS: Duration = Duration::from_secs(2);
 
@@ -21,11 +23,12 @@ pub(crate) enum Patience {
     Unlimited,
 }
 
-/// Counts by `count`; `None` if that takes too long or the user cancels.
+/// Counts by `count`; `None` if that takes too long or the user cancels. Calls `meanwhile` if the count takes a while.
 pub(crate) fn wait_for(
     what: &str,
     patience: Patience,
     cancel: &Cancel,
+    mut meanwhile: impl FnMut(),
     count: impl FnOnce() -> Option<u64> + Send + 'static,
 ) -> Option<u64> {
     if cancel.is_cancelled() {
@@ -46,11 +49,16 @@ pub(crate) fn wait_for(
         Patience::Unlimited => Duration::MAX,
     };
     let (mut waited, mut told) = (Duration::ZERO, false);
+    let mut is_quick = true;
     loop {
         match receiver.recv_timeout(LOOK_EVERY) {
             Ok(count) => return count,
             Err(RecvTimeoutError::Timeout) if !cancel.is_cancelled() => waited += LOOK_EVERY,
             Err(_) => return None,
+        }
+        if is_quick && waited >= QUICK {
+            is_quick = false;
+            meanwhile();
         }
         if waited >= limit {
             message::say(format_args!(

@@ -10,7 +10,7 @@ use satisfice_draw::plot::{self, Format};
 
 use crate::arguments::{DEFAULT_ENGINE, RunArguments};
 use crate::checkpoint::{self, Keeper};
-use crate::output::{self, Output};
+use crate::output::{self, Output, Steps};
 use crate::plot::chart;
 use crate::progress::Bar;
 use crate::{interrupt, message, page, program, reference, summary};
@@ -73,29 +73,48 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     } else {
         reference::Patience::AsTheRun(Duration::try_from_secs_f64(report.elapsed_seconds).unwrap_or_default())
     };
-    report.set_reference(reference::wait_for(
-        problem.name(),
-        patience,
-        &cancel,
-        move || counted.reference_hits(),
-    ));
-
-    if let Some(file) = &mut json_file {
-        file.write(&json::to_vec(&report)?)?;
-    }
-    if let Some((format, figure)) = &mut figure {
-        figure.write(&plot::draw(&chart(&report), *format)?)?;
-    }
-    if let Some(file) = &mut page_file {
-        file.write(page::html(&report)?.as_bytes())?;
-    }
     let to_stdout = [&arguments.json, &arguments.page]
         .into_iter()
         .flatten()
         .any(|path| path == Path::new("-"));
-    let shown = summary::show(&report, to_stdout)?;
-    keeper.map_or(Ok(()), Keeper::finish)?;
-    Ok(shown)
+    let mut steps = Steps::default();
+    let mut shown_before = false;
+    let hits = reference::wait_for(
+        problem.name(),
+        patience,
+        &cancel,
+        || {
+            if !to_stdout {
+                steps.step(output::print(summary::before_the_count(&report).as_bytes()));
+                shown_before = true;
+            }
+        },
+        move || counted.reference_hits(),
+    );
+    report.set_reference(hits);
+
+    if let Some(file) = &mut json_file {
+        steps.step(
+            json::to_vec(&report)
+                .map_err(Into::into)
+                .and_then(|json| file.write(&json)),
+        );
+    }
+    if let Some((format, figure)) = &mut figure {
+        let drawn = plot::draw(&chart(&report), *format);
+        steps.step(drawn.map_err(Into::into).and_then(|drawn| figure.write(&drawn)));
+    }
+    if let Some(file) = &mut page_file {
+        steps.step(page::html(&report).and_then(|page| file.write(page.as_bytes())));
+    }
+    if shown_before {
+        steps.step(output::print(summary::count(&report).as_bytes()));
+    } else if !to_stdout {
+        steps.step(output::print(summary::summary(&report).as_bytes()));
+    }
+    steps.step(keeper.map_or(Ok(()), Keeper::finish));
+    steps.outcome()?;
+    Ok(summary::exit_code(&report))
 }
 
 /// What to run: the arguments, and for a resumed run what its checkpoint says where they say nothing.

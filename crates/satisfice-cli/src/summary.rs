@@ -19,6 +19,22 @@ pub(crate) fn summary(report: &RunReport) -> String {
     summary_with(report, |solution| shortened(&solution.solution.to_string()))
 }
 
+/// The summary while all hits are still being counted.
+pub(crate) fn before_the_count(report: &RunReport) -> String {
+    let show = |solution: &FoundSolution| shortened(&solution.solution.to_string());
+    text(report, " (all hits are being counted)", show)
+}
+
+/// The line that follows when all hits have been counted, or have not.
+pub(crate) fn count(report: &RunReport) -> String {
+    let counted = match (report.reference_hits, report.recall) {
+        (Some(all), Some(recall)) => format!("{all} (recall {:.1} %)", 100.0 * recall),
+        (Some(all), None) => all.to_string(),
+        (None, _) => "not known".to_owned(),
+    };
+    format!("  {:<13} {counted}\n", "all hits")
+}
+
 /// The summary, unless stdout has the report itself.
 pub(crate) fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
     if !to_stdout {
@@ -42,6 +58,11 @@ fn shortened(solution: &str) -> String {
 
 /// The summary of a report, with a function that formats its solutions.
 pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> String) -> String {
+    text(report, " (the number of all hits is not known)", show)
+}
+
+/// The summary, with what is said of the number of all hits where it is not known.
+fn text(report: &RunReport, unknown: &str, show: impl Fn(&FoundSolution) -> String) -> String {
     let mut text = format!(
         "{} by {}, seed {}\n",
         report.spec.problem, report.spec.engine, report.spec.seed
@@ -53,7 +74,7 @@ pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> 
     let recall = match (report.reference_hits, report.recall) {
         (Some(reference), Some(recall)) => format!(" of {reference} (recall {:.1} %)", 100.0 * recall),
         (Some(reference), None) => format!(" of {reference}"),
-        (None, _) => " (the number of all hits is not known)".to_owned(),
+        (None, _) => unknown.to_owned(),
     };
     line("hits", format!("{}{recall}", report.hits));
     line("completeness", completeness(report));

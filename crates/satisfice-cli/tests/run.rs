@@ -308,10 +308,17 @@ fn a_reader_that_leaves_is_no_error() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error() {
+    let done = satisfice("run teapots --evaluations 100 --json /dev/full");
+    assert_eq!(done.code, 2, "{done:?}");
     assert!(
-        error("run teapots --evaluations 100 --json /dev/full")
-            .contains("cannot write /dev/full: free some space")
+        done.stderr
+            .starts_with("error: cannot write /dev/full: free some space")
+            && done.stderr.lines().count() == 1,
+        "{}",
+        done.stderr
     );
+    // The summary is shown all the same.
+    assert!(done.stdout.contains("  hits          "), "{}", done.stdout);
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let output = command(env!("CARGO_MANIFEST_DIR").as_ref(), "list")
         .stdout(full)
@@ -358,6 +365,30 @@ fn an_interrupted_run_keeps_its_hits() {
         assert_eq!(satisfice_in(folder.path(), "verify report.json").code, 0);
         fs::remove_file(folder.path().join("report.json")).unwrap();
     }
+}
+
+/// All hits of this problem take minutes to count: the answer does not wait for them.
+#[cfg(unix)]
+#[test]
+fn the_answer_comes_before_the_count_of_all_hits() {
+    use std::io::{BufRead, BufReader, Read};
+    use std::path::Path;
+
+    let mut child = command(Path::new("."), "run langford --set n=32 --evaluations 50")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut out = BufReader::new(child.stdout.take().unwrap());
+    let mut summary = String::new();
+    while !summary.contains("  time  ") {
+        assert_ne!(out.read_line(&mut summary).unwrap(), 0, "{summary}");
+    }
+    assert!(summary.contains("(all hits are being counted)"), "{summary}");
+    assert!(child.try_wait().unwrap().is_none(), "the count has ended");
+    out.read_to_string(&mut summary).unwrap();
+    assert!(summary.ends_with("  all hits      not known\n"), "{summary}");
+    assert_eq!(child.wait().unwrap().code(), Some(1));
 }
 
 #[test]

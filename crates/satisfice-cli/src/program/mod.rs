@@ -21,7 +21,7 @@ use satisfice::{Cancel, Located, RunReport, Search, Ticket, Tickets};
 use satisfice_catalogue::{RunSpec, json};
 
 use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
-use crate::output;
+use crate::output::{self, Steps};
 use crate::summary::show;
 use crate::{interrupt, message};
 
@@ -88,10 +88,17 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value)?;
     report.slices.clear();
     report.failed = failed;
+    let mut steps = Steps::default();
     if let Some(file) = &mut json_file {
-        file.write(&json::to_vec(&report)?)?;
+        steps.step(
+            json::to_vec(&report)
+                .map_err(Into::into)
+                .and_then(|json| file.write(&json)),
+        );
     }
-    show(&report, arguments.json.as_deref() == Some(Path::new("-")))
+    let shown = show(&report, arguments.json.as_deref() == Some(Path::new("-")));
+    steps.outcome()?;
+    shown
 }
 
 /// Refuses options that belong to problems of the catalogue.
@@ -207,6 +214,8 @@ fn drive(
 ) -> anyhow::Result<(satisfice::Report<Located<f64>>, u64)> {
     let (mut failed, mut succeeded) = (0, 0_u64);
     loop {
+        // Asked first: then the tickets know as well that the time is over, and why they end.
+        let is_late = deadline.is_some_and(|deadline| process::now() >= deadline);
         let free = workers.saturating_sub(tickets.open());
         for job in tickets.ask(free) {
             let job = Job {
@@ -219,7 +228,6 @@ fn drive(
         if tickets.open() == 0 {
             break;
         }
-        let is_late = deadline.is_some_and(|deadline| process::now() >= deadline);
         if is_late || cancel.is_cancelled() {
             break;
         }

@@ -18,6 +18,9 @@ const HEADING: &str = "# Reliability\n\n\
     A damaged file has one to four flipped bits, other bytes, cuts, repetitions or hostile words. On each, the command has to end within 10 s, after an \
     interrupt at the latest, with exit code 0, 1 or 2, in 1.5 GB of address space, and with one error line if it refuses the file.\n\n";
 
+/// How the command was built.
+const BUILD: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
+
 /// Whether the full examination was asked for.
 pub(crate) fn is_full() -> bool {
     std::env::var("SATISFICE_EXAMINE").is_ok_and(|extent| extent == "full")
@@ -43,8 +46,8 @@ pub(crate) fn figure(what: &str, value: impl core::fmt::Display) {
         is_row.then(|| (what.to_owned(), rest.trim_end_matches(" |").to_owned()))
     });
     let mut rows: BTreeMap<String, String> = rows.collect();
-    rows.insert(what.to_owned(), format!("{value} | {}", day()));
-    let mut page = format!("{HEADING}| examined | result | day |\n|---|---|---|\n");
+    rows.insert(what.to_owned(), format!("{value} | {BUILD} | {}", day()));
+    let mut page = format!("{HEADING}| examined | result | build | day |\n|---|---|---|---|\n");
     for (what, rest) in rows {
         let _ = writeln!(page, "| {what} | {rest} |");
     }

@@ -59,6 +59,10 @@ fn a_full_disk_is_one_line() {
             1,
             "{name}: {said}"
         );
+        assert!(!said.contains("partial"), "{name} names a temporary file: {said}");
+        // What can be written is: the summary has the hits.
+        let summary = String::from_utf8_lossy(&done.stdout).into_owned();
+        assert!(summary.contains("  hits          "), "{name}: {summary}");
         let left: Vec<_> = fs::read_dir(folder.path())
             .unwrap()
             .map(|entry| entry.unwrap().file_name())
