@@ -124,7 +124,7 @@ impl Exact<'_> {
         }
         let overlaps = world.request.solid.then(|| {
             counting.say("looking into the bodies".to_owned());
-            overlaps::find(world, &|| limit.is_reached())
+            overlaps::find(&world.solids, &|| limit.is_reached())
         });
         if overlaps.is_some() && limit.is_reached() {
             answer.stop = limit.reason();

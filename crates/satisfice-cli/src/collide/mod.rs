@@ -2,6 +2,7 @@
 
 pub(crate) mod arguments;
 mod csv;
+mod digits;
 mod exact;
 mod files;
 pub(crate) mod inputs;

@@ -4,9 +4,8 @@ use anyhow::Context;
 use satisfice_collision::solid::{self, Relation, Solid};
 use serde::{Deserialize, Serialize};
 
+use super::digits::digits;
 use super::inputs::NamedBody;
-use super::scene::World;
-use super::summary::digits;
 
 /// Two bodies that overlap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,14 +50,13 @@ impl From<Relation> for Lies {
 pub(super) fn solids(bodies: &[NamedBody]) -> anyhow::Result<Vec<Solid>> {
     let of = |body: &NamedBody| {
         let solid = Solid::new(&body.mesh);
-        solid.with_context(|| format!("--solid takes closed meshes, but of {}", body.name))
+        solid.with_context(|| format!("--solid takes closed meshes, which {} is not", body.name))
     };
     bodies.iter().map(of).collect()
 }
 
 /// The bodies that overlap, as far as they were found until `stop`.
-pub(super) fn find(world: &World, stop: &(dyn Fn() -> bool + Sync)) -> Vec<Overlap> {
-    let solids = &world.solids;
+pub(super) fn find(solids: &[Solid], stop: &(dyn Fn() -> bool + Sync)) -> Vec<Overlap> {
     let pairs = (0..solids.len()).flat_map(|a| (a + 1..solids.len()).map(move |b| (a, b)));
     let pairs = pairs.take_while(|_| !stop());
     let found = pairs.filter_map(|(a, b)| {

@@ -8,6 +8,7 @@ use satisfice_catalogue::quantity::shown;
 use satisfice_collision::FeatureKind;
 
 use super::arguments::Find;
+use super::digits::digits;
 use super::inputs::NamedBody;
 use super::pairs::Side;
 use super::report::{Head, Report};
@@ -227,40 +228,4 @@ fn side(report: &Report<'_>, kind: FeatureKind, side: &Side) -> String {
         .map_or_else(String::new, |[v, w]| format!(" (vertices {v} and {w})"));
     let body = &report.world.bodies[side.body].name;
     format!("{} {}{ends} of {body}", kind.name(), side.feature)
-}
-
-/// A distance with six significant digits.
-pub(super) fn digits(x: f64) -> String {
-    match x.abs() {
-        0.0 => "0".to_owned(),
-        v if !(1e-3..1e6).contains(&v) => format!("{x:.5e}"),
-        v => {
-            let decimals = (5.0 - v.log10().floor()).max(0.0) as usize;
-            let text = format!("{x:.decimals$}");
-            match text.contains('.') {
-                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-                false => text,
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn distances_have_six_digits() {
-        for (x, text) in [
-            (0.0, "0"),
-            (0.25, "0.25"),
-            (1.0 / 3.0, "0.333333"),
-            (12_345.678_9, "12345.7"),
-            (100.0, "100"),
-            (1e-7, "1.00000e-7"),
-            (2.5e9, "2.50000e9"),
-        ] {
-            assert_eq!(digits(x), text);
-        }
-    }
 }

@@ -141,7 +141,7 @@ fn pairs(lists: &Lists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
 
 /// Bodies that overlap must be those that do, as far as they were looked at.
 fn overlaps(head: &Head, lists: &Lists, world: &World) -> Option<Mismatch> {
-    let is = overlaps::find(world, &|| false);
+    let is = overlaps::find(&world.solids, &|| false);
     let wrong = lists
         .overlaps
         .iter()

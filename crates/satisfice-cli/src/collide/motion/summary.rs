@@ -4,8 +4,9 @@ use satisfice::{Completeness, StopReason};
 use satisfice_catalogue::quantity::shown;
 use satisfice_collision::FeatureKind;
 
+use super::super::digits::digits;
 use super::super::pairs::Side;
-use super::super::summary::{Lines, SHOWN_PAIRS, body_names, digits, elapsed};
+use super::super::summary::{Lines, SHOWN_PAIRS, body_names, elapsed};
 use super::report::MotionReport;
 
 pub(super) fn summary(report: &MotionReport<'_>) -> String {
