@@ -45,7 +45,7 @@ engine_settings! {
     pub struct LatestHitQpso {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;
-        /// Contraction-expansion coefficient alpha. A particle stays bounded below 1.781, [`ALPHA_BOUNDED`](super::ALPHA_BOUNDED).
+        /// Contraction-expansion coefficient alpha. A particle stays bounded below 1.781.
         pub alpha: f64 = 1.0, 0.0..=10.0;
         /// Particles that move between two updates of the attractor: 1 is asynchronous, N once a sweep.
         pub batch: usize = 1, 1..=1_000_000;

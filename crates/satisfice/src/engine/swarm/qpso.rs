@@ -28,7 +28,7 @@ engine_settings! {
     pub struct Qpso {
         /// Swarm size N.
         pub particles: usize = 30, 1..=1_000_000;
-        /// Contraction-expansion coefficient alpha. A particle stays bounded below 1.781, [`ALPHA_BOUNDED`](super::ALPHA_BOUNDED).
+        /// Contraction-expansion coefficient alpha. A particle stays bounded below 1.781.
         pub alpha: f64 = 1.0, 0.0..=10.0;
         /// Alpha at the end of the budget, reached in a straight line; fixed at alpha by default.
         pub alpha_end: Option<f64> = None, 0.0..=10.0;
