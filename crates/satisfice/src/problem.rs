@@ -108,6 +108,9 @@ pub struct FnProblem<S, F> {
     name: String,
 }
 
+/// The closure of a problem that is [boxed](FnProblem::boxed).
+pub type BoxedFn<'a, S> = Box<dyn Fn(&[S]) -> S + Send + Sync + 'a>;
+
 /// A problem from a closure: all points of `space` with `fitness(values) < threshold`.
 ///
 /// On an all-integer space, different values are different answers. With a continuous axis, points within a separation
@@ -205,6 +208,33 @@ fn separation_on<S: Real>(axis: &Axis<S>, radius: S) -> AxisSeparation<S> {
 /// ```
 pub fn evaluated_elsewhere<S: Real>(space: Space<S>, threshold: S) -> FnProblem<S, fn(&[S]) -> S> {
     from_fn(space, threshold, |_| S::nan())
+}
+
+impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
+    /// The same problem with its closure behind a pointer. Every closure is a type of its own, and a search is compiled for each type of
+    /// problem, which takes a second or more; boxed problems are of one type. Each evaluation costs a call through the pointer.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, from_fn};
+    /// let space = Space::lattice(2, 50)?;
+    /// let problems = [from_fn(space.clone(), 3.0, |x: &[f64]| x[0] + x[1]).boxed(), from_fn(space, 3.0, |x: &[f64]| x[0] * x[1]).boxed()];
+    /// for problem in &problems {
+    ///     println!("{}", Search::new().run(problem, &Budget::evaluations(3000))?);
+    /// }
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    pub fn boxed<'a>(self) -> FnProblem<S, BoxedFn<'a, S>>
+    where
+        F: Send + 'a,
+    {
+        FnProblem {
+            space: self.space,
+            threshold: self.threshold,
+            separation: self.separation,
+            fitness: Box::new(self.fitness),
+            name: self.name,
+        }
+    }
 }
 
 impl<S: Real, F> FnProblem<S, F> {

@@ -211,7 +211,8 @@ mod tests {
             std::thread::sleep(Duration::from_millis(5));
             at_once.lock().unwrap().0 -= 1;
             x[0]
-        });
+        })
+        .boxed();
         let engine = engine::find("random")
             .unwrap()
             .configure([("batch", "32")])
@@ -233,7 +234,8 @@ mod tests {
                 .unwrap()
                 .insert(format!("{:?}", std::thread::current().id()));
             (0..1000).fold(x[0], |sum, i| sum + f64::from(i).sqrt())
-        });
+        })
+        .boxed();
         let mut search = Search::new().threads(1024);
         let report = search.run(&problem, &Budget::millis(50)).unwrap();
         let cores = std::thread::available_parallelism().unwrap().get();
@@ -248,7 +250,8 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
             assert!(x[0] < 0.9, "too large");
             x[0]
-        });
+        })
+        .boxed();
         let engine = engine::find("random")
             .unwrap()
             .configure([("batch", "32")])
@@ -266,7 +269,8 @@ mod tests {
             seen.lock().unwrap().push(std::thread::current().id());
             std::thread::sleep(Duration::from_millis(2));
             x[0]
-        });
+        })
+        .boxed();
         let mut search = Search::with(engine::Random::default()).threads(2);
         search.run(&problem, &Budget::evaluations(64)).unwrap();
         let seen = seen.lock().unwrap();

@@ -129,18 +129,24 @@ fn check_coverage<P: SatisficingProblem<Scalar = f64>>(name: &str, problem: &P) 
 fn the_interval_holds_and_is_narrow_on_needles() {
     check_coverage(
         "needles",
-        &from_fn(Space::lattice(2, 200).unwrap(), 0.02, needles),
+        &from_fn(Space::lattice(2, 200).unwrap(), 0.02, needles).boxed(),
     );
 }
 
 #[test]
 fn the_interval_holds_and_is_narrow_on_islands() {
-    check_coverage("islands", &from_fn(Space::lattice(3, 60).unwrap(), 0.5, islands));
+    check_coverage(
+        "islands",
+        &from_fn(Space::lattice(3, 60).unwrap(), 0.5, islands).boxed(),
+    );
 }
 
 #[test]
 fn the_interval_holds_and_is_narrow_on_a_ring() {
-    check_coverage("ring", &from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring));
+    check_coverage(
+        "ring",
+        &from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring).boxed(),
+    );
 }
 
 /// Unordered pairs: most solutions have two points, those of the diagonal one.
@@ -244,6 +250,7 @@ fn points_that_are_one_answer_only_roughly_are_no_lattice() {
     let problem = from_fn(Space::lattice(2, 60).unwrap(), 15.0, |x: &[f64]| {
         (x[0] - 30.0).hypot(x[1] - 30.0)
     })
+    .boxed()
     .separation(4.0);
     let unseen = run(&problem, "random", 2_000, 0.2, 1).unseen.unwrap();
     assert_eq!(unseen.method, Method::Recapture);
@@ -311,8 +318,8 @@ fn edges_of_the_lattice_estimate() {
 
 #[test]
 fn a_space_of_hits_alone_and_one_without() {
-    let all = from_fn(Space::lattice(2, 50).unwrap(), 1.0, |_: &[f64]| 0.0);
-    let none = from_fn(Space::lattice(2, 50).unwrap(), 1.0, |_: &[f64]| f64::NAN);
+    let all = from_fn(Space::lattice(2, 50).unwrap(), 1.0, |_: &[f64]| 0.0).boxed();
+    let none = from_fn(Space::lattice(2, 50).unwrap(), 1.0, |_: &[f64]| f64::NAN).boxed();
     for seed in 0..20 {
         let report = run(&all, "random", 1_000, 0.1, seed);
         let (lower, upper) = report.unseen.unwrap().interval;
@@ -328,7 +335,7 @@ fn a_space_of_hits_alone_and_one_without() {
 /// The engine's hits do not depend on the probes: they are those of a run without.
 #[test]
 fn probes_do_not_disturb_the_engine() {
-    let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
+    let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring).boxed();
     let mut compared = 0;
     for entry in engine::all() {
         if ConfiguredEngine::<f64>::named(entry.name).unwrap().is_scheduled() {
@@ -360,7 +367,7 @@ fn probes_do_not_disturb_the_engine() {
 
 #[test]
 fn every_hit_is_announced_and_counted_once() {
-    let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring);
+    let problem = from_fn(Space::lattice(2, 200).unwrap(), 4.5, ring).boxed();
     let mut search = Search::with(engine::DescentFlood::default()).probes(0.3);
     let mut announced = Vec::new();
     let mut observer = |hit: crate::Hit<'_, crate::Located<f64>>, count: usize| {
@@ -391,7 +398,7 @@ fn every_hit_is_announced_and_counted_once() {
 
 #[test]
 fn driven_by_hand_and_on_threads_it_is_the_same() {
-    let problem = from_fn(Space::lattice(3, 60).unwrap(), 0.5, islands);
+    let problem = from_fn(Space::lattice(3, 60).unwrap(), 0.5, islands).boxed();
     let whole = run(&problem, "latest-hit-qpso", 4_000, 0.1, 3);
     let budget = Budget::evaluations(4_000);
     let search = || Search::with(engine::LatestHitQpso::default()).seed(3).probes(0.1);
@@ -442,7 +449,7 @@ impl Engine<f64> for Rows {
 
 #[test]
 fn what_is_covered_is_proved_unless_a_probe_belies_it() {
-    let problem = from_fn(Space::lattice(2, 60).unwrap(), 10.0, |x: &[f64]| x[0] + x[1]);
+    let problem = from_fn(Space::lattice(2, 60).unwrap(), 10.0, |x: &[f64]| x[0] + x[1]).boxed();
     let covered = |skipped, share| {
         Search::with(ConfiguredEngine::custom("rows", move || Rows {
             next: 0,
@@ -469,7 +476,7 @@ fn what_is_covered_is_proved_unless_a_probe_belies_it() {
 
 #[test]
 fn a_share_that_is_none_is_refused() {
-    let problem = from_fn(Space::lattice(1, 9).unwrap(), 1.0, |x: &[f64]| x[0]);
+    let problem = from_fn(Space::lattice(1, 9).unwrap(), 1.0, |x: &[f64]| x[0]).boxed();
     for share in [-0.1, 0.51, f64::NAN, f64::INFINITY] {
         let result = Search::with(engine::Random::default())
             .probes(share)

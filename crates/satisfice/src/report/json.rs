@@ -155,7 +155,8 @@ mod tests {
     fn a_report_comes_back_from_json() {
         let problem = from_fn(Space::lattice(2, 60).unwrap(), 4.0, |x: &[f64]| {
             (x[0] - 30.0).hypot(x[1] - 20.0)
-        });
+        })
+        .boxed();
         let mut search = Search::named("qpso").unwrap().seed(5).islands(2).probes(0.1);
         let budget = Budget::evaluations(2_000).and_hits(10_000).with_horizon(9_000);
         search.run(&problem, &budget).unwrap();

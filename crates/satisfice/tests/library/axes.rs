@@ -42,7 +42,7 @@ fn fitness(x: &[f64]) -> f64 {
 fn every_engine_keeps_to_them() {
     for entry in engine::all() {
         let evaluations = if entry.name == "surrogate" { 60 } else { 1500 };
-        let problem = from_fn(mixed(), 2.0, fitness);
+        let problem = from_fn(mixed(), 2.0, fitness).boxed();
         let run = || {
             let mut search = Search::with(entry.configure([]).unwrap()).seed(3);
             search.run(&problem, &Budget::evaluations(evaluations)).unwrap()
@@ -73,7 +73,7 @@ fn every_engine_keeps_to_them() {
 fn start_points_and_warm_starts_go_through_them() {
     let start = [1e-4, 359.0, 3.0, 2.0, 2.0, 1.0, 0.0];
     for name in ["portfolio", "descent", "latest-hit-qpso"] {
-        let problem = from_fn(mixed(), 0.5, fitness);
+        let problem = from_fn(mixed(), 0.5, fitness).boxed();
         let mut search = Search::named(name).unwrap().start_from([start]);
         let first = search.run(&problem, &Budget::evaluations(50)).unwrap();
         let found = &first.hits().next().unwrap();
@@ -87,7 +87,7 @@ fn start_points_and_warm_starts_go_through_them() {
         let second = search.run(&problem, &Budget::evaluations(50)).unwrap();
         assert!(second.hit_count() > 0, "{name}");
     }
-    let problem = from_fn(mixed(), 0.5, fitness);
+    let problem = from_fn(mixed(), 0.5, fitness).boxed();
     for (j, bad) in [(0, 0.0), (3, 1.5), (4, 1.0), (5, 3.0), (6, 0.5)] {
         let mut start = start;
         start[j] = bad;
@@ -111,7 +111,8 @@ fn categories_and_orders_are_never_merged() {
     let problem = from_fn(space, 2.5, |x: &[f64]| {
         let far = if x[1] == 3.0 || x[1] == 0.0 { 0.0 } else { 1.0 };
         x[0] + far + x[2].min(10.0 - x[2]) + (x[3] - x[4]).abs()
-    });
+    })
+    .boxed();
     let mut expected = 0;
     for a in 0..5_i32 {
         for far in [0, 1, 1, 0, 1] {
@@ -138,7 +139,8 @@ fn a_circle_has_no_seam_and_a_logarithm_no_small_end() {
     .unwrap();
     let problem = from_fn(space, 0.5, |x: &[f64]| {
         x[0].min(360.0 - x[0]) / 20.0 + x[1].ln().abs()
-    });
+    })
+    .boxed();
     // Separated by 5 degrees and half an e-fold: at most 5 answers around 0 and 3 along the other axis.
     let problem = problem.separations(&[5.0, 0.5]).unwrap();
     for seed in 0..4 {
@@ -165,6 +167,7 @@ fn whole_and_real() -> Space<f64> {
 fn radii_of_axes_make_an_ellipsoid() {
     let same = |radii: [f64; 2], a: [f64; 2], b: [f64; 2]| {
         let problem = from_fn(whole_and_real(), 0.5, |_: &[f64]| 0.0)
+            .boxed()
             .separations(&radii)
             .unwrap();
         assert_eq!(testing::problem::check(&problem, 1), [], "{radii:?}");
@@ -186,7 +189,9 @@ fn radii_of_axes_make_an_ellipsoid() {
 #[test]
 fn a_separation_that_is_not_usable_is_refused() {
     for radii in [&[0.1][..], &[-1.0, 0.1], &[0.1, f64::NAN], &[f64::INFINITY, 0.1]] {
-        let refused = from_fn(whole_and_real(), 0.5, |_: &[f64]| 0.0).separations(radii);
+        let refused = from_fn(whole_and_real(), 0.5, |_: &[f64]| 0.0)
+            .boxed()
+            .separations(radii);
         assert!(
             refused.is_err_and(|error| error.to_string().contains("separations")),
             "{radii:?}"
@@ -199,6 +204,7 @@ fn a_separation_that_is_not_usable_is_refused() {
 fn a_radius_says_nothing_about_categories() {
     let space = Space::new([Axis::categorical(3), Axis::continuous(0.0, 1.0)]).unwrap();
     let problem = from_fn(space, 0.5, |_: &[f64]| 0.0)
+        .boxed()
         .separations(&[5.0, 0.5])
         .unwrap();
     assert!(!problem.decode(&[0.0, 0.5]).same(&problem.decode(&[1.0, 0.5])));

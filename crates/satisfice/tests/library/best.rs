@@ -120,7 +120,7 @@ fn after_a_checkpoint() {
 
 #[test]
 fn nothing_is_best_where_no_fitness_is_finite() {
-    let nowhere = from_fn(Space::cube(1, 0.0, 1.0).unwrap(), 1.0, |_: &[f64]| f64::NAN);
+    let nowhere = from_fn(Space::cube(1, 0.0, 1.0).unwrap(), 1.0, |_: &[f64]| f64::NAN).boxed();
     let report = Search::default()
         .run(&nowhere, &Budget::evaluations(200))
         .unwrap();
@@ -129,7 +129,7 @@ fn nothing_is_best_where_no_fitness_is_finite() {
 
 #[test]
 fn observers_see_the_fitness() {
-    let problem = from_fn(Space::lattice(1, 100).unwrap(), 5.0_f32, |x: &[f32]| x[0] + 0.1);
+    let problem = from_fn(Space::lattice(1, 100).unwrap(), 5.0_f32, |x: &[f32]| x[0] + 0.1).boxed();
     let mut seen = Vec::new();
     let mut watch = |hit: Hit<'_, Located<f32>>, _: usize| {
         seen.push((hit.solution.coordinates[0], hit.fitness));

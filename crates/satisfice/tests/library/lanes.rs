@@ -15,6 +15,7 @@ fn disc(radius: f64) -> impl SatisficingProblem<Scalar = f64, Solution = Located
     from_fn(Space::lattice(2, 1000).unwrap(), radius, |x: &[f64]| {
         (x[0] - 700.0).hypot(x[1] - 300.0)
     })
+    .boxed()
 }
 
 fn islands<P: SatisficingProblem>(count: usize) -> Search<P> {
@@ -140,7 +141,7 @@ fn limits_end_all_of_them() {
 
 #[test]
 fn a_space_that_one_of_them_has_covered_is_covered() {
-    let problem = from_fn(Space::lattice(2, 30).unwrap(), 5.0, |x: &[f64]| x[0] + x[1]);
+    let problem = from_fn(Space::lattice(2, 30).unwrap(), 5.0, |x: &[f64]| x[0] + x[1]).boxed();
     let report = islands(4).run(&problem, &Budget::evaluations(100_000)).unwrap();
     assert_eq!(report.stop_reason, StopReason::Covered);
     assert_eq!(report.completeness, Completeness::Proved);

@@ -19,6 +19,7 @@ fn mortal(calls: &AtomicU64, fatal: u64) -> impl SatisficingProblem<Scalar = f64
             core::hint::black_box(sum + f64::from(i) * 1e-300)
         })
     })
+    .boxed()
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn hits(
                 .unwrap()
                 .configure([("without", without)])
                 .unwrap();
-            let problem = from_fn(space.clone(), delta, fitness).separation(0.02);
+            let problem = from_fn(space.clone(), delta, fitness).boxed().separation(0.02);
             let mut search = Search::with(engine).seed(seed);
             search
                 .run(&problem, &Budget::evaluations(evaluations))
@@ -85,14 +85,14 @@ fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {
     ] {
         let report = Search::new()
             .seed(seed)
-            .run(&from_fn(space.clone(), 0.005, far), &budget)
+            .run(&from_fn(space.clone(), 0.005, far).boxed(), &budget)
             .unwrap();
         assert_eq!(report.completeness, Completeness::Proved, "{seed}: {report}");
         assert_eq!(report.hit_count(), all);
         assert!(report.counts.evaluations < 10_500, "{seed}: {report}");
     }
     let short = Search::new()
-        .run(&from_fn(space, 0.005, far), &Budget::evaluations(9_000))
+        .run(&from_fn(space, 0.005, far).boxed(), &Budget::evaluations(9_000))
         .unwrap();
     assert_ne!(short.completeness, Completeness::Proved);
 }

@@ -10,11 +10,12 @@ use satisfice::{Axis, Region, SatisficingProblem, Space, from_fn};
 
 #[test]
 fn closures_keep_the_laws_in_either_scalar_and_on_any_space() {
-    let lattice = from_fn(Space::lattice(3, 7).unwrap(), 2.0, |x: &[f64]| x[0] + x[1] - x[2]);
+    let lattice = from_fn(Space::lattice(3, 7).unwrap(), 2.0, |x: &[f64]| x[0] + x[1] - x[2]).boxed();
     assert_eq!(check(&lattice, 1), []);
     let square = from_fn(Space::cube(2, -1.0, 1.0).unwrap(), 0.1, |x: &[f32]| {
         x[0].hypot(x[1])
-    });
+    })
+    .boxed();
     assert_eq!(check(&square, 2), []);
     let mixed = Space::new([
         Axis::integer(-3, 3),
@@ -23,7 +24,8 @@ fn closures_keep_the_laws_in_either_scalar_and_on_any_space() {
     ]);
     let mixed = from_fn(mixed.unwrap(), 0.0, |x: &[f64]| {
         if x[0] == 0.0 { f64::NAN } else { x[1] / x[0] }
-    });
+    })
+    .boxed();
     assert_eq!(check(&mixed, 3), []);
 }
 

@@ -22,7 +22,8 @@ fn problem() -> (Arc<Problem>, Evaluated) {
     let problem = from_fn(space, 0.01, move |x: &[f64]| {
         log.lock().unwrap().push(x.to_vec());
         x[0].hypot(x[1])
-    });
+    })
+    .boxed();
     (Arc::new(problem), seen)
 }
 
@@ -80,7 +81,7 @@ fn they_come_first_for_every_engine() {
 fn a_local_search_begins_at_the_best_of_them() {
     for name in ["descent", "descent-flood"] {
         let space = Space::lattice(4, 100).unwrap();
-        let problem = from_fn(space, 0.5, |x: &[f64]| x.iter().map(|x| (x - 70.0).abs()).sum());
+        let problem = from_fn(space, 0.5, |x: &[f64]| x.iter().map(|x| (x - 70.0).abs()).sum()).boxed();
         let hits = |starts: &[[f64; 4]]| {
             let mut search = Search::named(name).unwrap().start_from(starts.to_vec());
             search

@@ -51,7 +51,7 @@ fn problem(name: &str) -> Box<Problem> {
             (square.sqrt() - radius).abs()
         }
     };
-    Box::new(from_fn(space.unwrap(), width, fitness).separation(0.02))
+    Box::new(from_fn(space.unwrap(), width, fitness).boxed().separation(0.02))
 }
 
 fn search(entry: &EngineSpec, islands: usize) -> Search<Problem> {

@@ -136,7 +136,8 @@ mod tests {
         // 1,245 lattice points of a disc in a million: uniform sampling alone sees some of them.
         let problem = from_fn(Space::lattice(2, 1000).unwrap(), 20.0, |x: &[f64]| {
             (x[0] - 700.0).hypot(x[1] - 300.0)
-        });
+        })
+        .boxed();
         let budget = Budget::evaluations(20_000);
         let hits = |exhaust| {
             let engine = find("random").unwrap().configure([("exhaust", exhaust)]).unwrap();
@@ -153,7 +154,7 @@ mod tests {
     #[test]
     fn discovery_keeps_every_other_evaluation() {
         // Everything is a hit: the neighbourhoods never end.
-        let problem = from_fn(Space::lattice(2, 1000).unwrap(), 2.0, |_: &[f64]| 1.0);
+        let problem = from_fn(Space::lattice(2, 1000).unwrap(), 2.0, |_: &[f64]| 1.0).boxed();
         let engine = ConfiguredEngine::named("random").unwrap().flood_fill();
         let report = Search::with(engine)
             .seed(1)

@@ -107,6 +107,7 @@ mod tests {
             visited.lock().unwrap().push(x[0]);
             0.0
         })
+        .boxed()
         .separation(0.0);
         let settings = Walk {
             uniform: 0.0,
@@ -114,6 +115,7 @@ mod tests {
         };
         let budget = Budget::evaluations(20_000);
         Search::with(settings).probes(0.0).run(&problem, &budget).unwrap();
+        drop(problem);
         let visited = visited.into_inner().unwrap();
         let logarithm = 1e-4_f64.ln();
         for t in [1e-3_f64, 1e-2, 1e-1] {

@@ -163,7 +163,7 @@ fn resumed_it_goes_on() {
 fn without_bounds_nothing_changes() {
     let violations = check::<f64>(&ConfiguredEngine::named("random").unwrap().pruned()).unwrap();
     assert!(violations.is_empty(), "{:?}", violations.first());
-    let problem = crate::from_fn(Space::lattice(2, 50).unwrap(), 60.0, |x: &[f64]| x[0] * x[1]);
+    let problem = crate::from_fn(Space::lattice(2, 50).unwrap(), 60.0, |x: &[f64]| x[0] * x[1]).boxed();
     let budget = Budget::evaluations(2000);
     let make = || find("latest-hit-qpso").unwrap().configure::<f64>([]).unwrap();
     let one = Search::with(make()).run(&problem, &budget).unwrap();

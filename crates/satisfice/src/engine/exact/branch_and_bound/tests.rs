@@ -329,7 +329,7 @@ fn bounds_use_up_the_budget() {
 
 #[test]
 fn the_last_point_of_the_space_and_of_the_budget() {
-    let problem = from_fn(Space::<f64>::lattice(2, 8).unwrap(), 1.0, |x: &[f64]| x[0] * x[1]);
+    let problem = from_fn(Space::<f64>::lattice(2, 8).unwrap(), 1.0, |x: &[f64]| x[0] * x[1]).boxed();
     let report = run(&problem, &[], 64);
     assert_eq!((report.counts.evaluations, report.counts.bound_calls), (64, 0));
     assert_eq!(
