@@ -212,7 +212,7 @@ pub fn evaluated_elsewhere<S: Real>(space: Space<S>, threshold: S) -> FnProblem<
 
 impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
     /// The same problem with its closure behind a pointer. Every closure is a type of its own, and a search is compiled for each type of
-    /// problem, which takes a second or more; boxed problems are of one type. Each evaluation costs a call through the pointer.
+    /// problem, which makes builds longer; boxed problems are of one type. Each evaluation costs a call through the pointer.
     ///
     /// ```
     /// use satisfice::{Budget, Search, Space, from_fn};

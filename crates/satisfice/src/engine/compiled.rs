@@ -23,38 +23,27 @@ macro_rules! both_scalars {
 
 pub(super) use both_scalars;
 
-/// The result of the function for the type `S`, of an input that has the type's own form: an engine, or nothing.
-pub(super) fn for_scalar<
-    S: Real,
-    Input: 'static,
-    I64: 'static,
-    I32: 'static,
-    O64: 'static,
-    O32: 'static,
-    Output: 'static,
->(
-    input: Input,
-    in_f64: impl FnOnce(I64) -> O64,
-    in_f32: impl FnOnce(I32) -> O32,
-) -> Output {
-    if TypeId::of::<S>() == TypeId::of::<f64>() {
-        same(in_f64(same(input)))
-    } else {
-        same(in_f32(same(input)))
-    }
+/// Whether coordinates of type `S` are of type `f64`; else they are of type `f32`.
+pub(super) fn is_f64<S: Real>() -> bool {
+    TypeId::of::<S>() == TypeId::of::<f64>()
 }
 
 /// The value, whose type is `T` under another name.
-fn same<A: 'static, T: 'static>(value: A) -> T {
+///
+/// # Panics
+/// If it is not: call it where [`is_f64`] has told the types apart.
+pub(super) fn same<A: 'static, T: 'static>(value: A) -> T {
     let value: Box<dyn Any> = Box::new(value);
-    *value
-        .downcast()
-        .expect("`Real` is sealed: `f64` and `f32` are all there is")
+    *value.downcast().expect("two names of one type")
 }
 
 /// The engine of a spec with the default of each parameter.
 pub(super) fn default_of<S: Real>(spec: &EngineSpec) -> Option<ConfiguredEngine<S>> {
-    for_scalar::<S, _, _, _, _, _, _>((), |()| default_of_f64(spec), |()| default_of_f32(spec))
+    if is_f64::<S>() {
+        same(default_of_f64(spec))
+    } else {
+        same(default_of_f32(spec))
+    }
 }
 
 fn default_of_f64(spec: &EngineSpec) -> Option<ConfiguredEngine<f64>> {
@@ -67,7 +56,11 @@ fn default_of_f32(spec: &EngineSpec) -> Option<ConfiguredEngine<f32>> {
 
 /// The engine with a flood fill around it.
 pub(super) fn flood_fill<S: Real>(engine: Box<dyn Engine<S>>) -> Box<dyn Engine<S>> {
-    for_scalar::<S, _, _, _, _, _, _>(engine, flood_fill_f64, flood_fill_f32)
+    if is_f64::<S>() {
+        same(flood_fill_f64(same(engine)))
+    } else {
+        same(flood_fill_f32(same(engine)))
+    }
 }
 
 fn flood_fill_f64(engine: Box<dyn Engine<f64>>) -> Box<dyn Engine<f64>> {
@@ -80,7 +73,11 @@ fn flood_fill_f32(engine: Box<dyn Engine<f32>>) -> Box<dyn Engine<f32>> {
 
 /// The engine, kept out of regions that bounds exclude.
 pub(super) fn pruned<S: Real>(engine: Box<dyn Engine<S>>) -> Box<dyn Engine<S>> {
-    for_scalar::<S, _, _, _, _, _, _>(engine, pruned_f64, pruned_f32)
+    if is_f64::<S>() {
+        same(pruned_f64(same(engine)))
+    } else {
+        same(pruned_f32(same(engine)))
+    }
 }
 
 fn pruned_f64(engine: Box<dyn Engine<f64>>) -> Box<dyn Engine<f64>> {

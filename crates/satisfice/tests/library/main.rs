@@ -1,4 +1,4 @@
-//! The library as its users call it. One program, because each program that is built compiles every engine again.
+//! The library as its users call it. One program, because each compiles the search again for every type of problem.
 
 mod axes;
 mod best;

@@ -48,7 +48,11 @@ pub trait EngineConfig: Settings + Clone + Debug + Default + Send + Sync + 'stat
 
     /// The engine. Every setting is within its range.
     fn build<S: Real>(&self) -> Box<dyn Engine<S>> {
-        compiled::for_scalar::<S, _, _, _, _, _, _>((), |()| self.build_f64(), |()| self.build_f32())
+        if compiled::is_f64::<S>() {
+            compiled::same(self.build_f64())
+        } else {
+            compiled::same(self.build_f32())
+        }
     }
 
     /// Whether a schedule follows the budget with these settings. A short run is then not a prefix of a long one, unless both
