@@ -101,6 +101,13 @@ impl Browser {
 
     /// Opens a file and waits until its page is ready.
     pub(crate) fn open(&mut self, file: &Path) -> Tab<'_> {
+        let mut tab = self.navigate(file);
+        tab.run("new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done)).then(() => window.ready).then(() => true)");
+        tab
+    }
+
+    /// Begins to open a file.
+    pub(crate) fn navigate(&mut self, file: &Path) -> Tab<'_> {
         let target =
             self.call("", "Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
         let attached = self.call(
@@ -118,13 +125,11 @@ impl Browser {
             "Page.navigate",
             &json!({ "url": format!("file://{}", file.display()) }),
         );
-        let mut tab = Tab {
+        Tab {
             browser: self,
             session,
             target: target.as_str().unwrap().to_owned(),
-        };
-        tab.run("new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done)).then(() => window.ready).then(() => true)");
-        tab
+        }
     }
 
     fn call(&mut self, session: &str, method: &str, parameters: &Value) -> Value {
