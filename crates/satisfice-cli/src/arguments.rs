@@ -9,6 +9,7 @@ use satisfice_catalogue::{RunOption, RunSpec};
 
 pub(crate) use crate::collide::arguments::CollideArguments;
 use crate::quantity;
+use crate::reference::Patience;
 
 /// The default engine.
 pub(crate) const DEFAULT_ENGINE: &str = "portfolio";
@@ -125,11 +126,6 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) json: Option<PathBuf>,
 
-    /// Count all hits of the problem for the recall, even if that takes longer than the run. Without it, the count may take as
-    /// long as the run, and at least 2 s.
-    #[arg(long)]
-    pub(crate) reference: bool,
-
     /// Draw hits against evaluations and time, as .svg or .png.
     #[arg(long, value_name = "FILE.svg|.png", value_hint = ValueHint::FilePath)]
     pub(crate) plot: Option<PathBuf>,
@@ -200,6 +196,11 @@ pub(crate) struct SearchArguments {
     /// Threads that evaluate; 0 uses all cores.
     #[arg(long, value_name = "T", default_value = "1", value_parser = quantity::threads, allow_hyphen_values = true)]
     threads: usize,
+
+    /// Count all hits for the recall, even if that takes longer than the search. Without it, the count may take as long as the
+    /// search, and at least 2 s.
+    #[arg(long)]
+    pub(crate) reference: bool,
 }
 
 impl SearchArguments {
@@ -232,11 +233,22 @@ impl SearchArguments {
     /// The options given that only an engine uses.
     pub(crate) fn for_an_engine(&self) -> Vec<String> {
         let set = (!self.engine_set.is_empty()).then(|| "--engine-set".to_owned());
+        let reference = self.reference.then(|| "--reference".to_owned());
         let names = self.options.0.iter().map(|(option, _)| option.name);
         let others = names.filter(|name| !["time", "hits"].contains(name));
         set.into_iter()
+            .chain(reference)
             .chain(others.map(|name| format!("--{name}")))
             .collect()
+    }
+
+    /// How long the count of all hits may take after a search of so many seconds.
+    pub(crate) fn patience(&self, seconds: f64) -> Patience {
+        if self.reference {
+            Patience::Unlimited
+        } else {
+            Patience::AsTheRun(Duration::try_from_secs_f64(seconds).unwrap_or_default())
+        }
     }
 
     /// The limits that an exact method uses as well: time and hits.

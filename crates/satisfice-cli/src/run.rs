@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
 
 use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunSpec, json};
 use satisfice_draw::plot::{self, Format};
@@ -68,11 +67,6 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     let mut report = problem.run(&spec, control)?;
     drop(bar);
     let counted = Arc::clone(&problem);
-    let patience = if arguments.reference {
-        reference::Patience::Unlimited
-    } else {
-        reference::Patience::AsTheRun(Duration::try_from_secs_f64(report.elapsed_seconds).unwrap_or_default())
-    };
     let to_stdout = [&arguments.json, &arguments.page]
         .into_iter()
         .flatten()
@@ -81,7 +75,7 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     let mut shown_before = false;
     let hits = reference::wait_for(
         problem.name(),
-        patience,
+        arguments.search.patience(report.elapsed_seconds),
         &cancel,
         || {
             if !to_stdout {

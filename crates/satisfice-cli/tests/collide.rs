@@ -126,7 +126,10 @@ fn engines_find_what_the_exact_method_finds() {
         ),
         (&exact["hits"], &"Unknown".into(), &6000.into())
     );
-    let few = report(&folder, &format!("{scene} --method random --hits 2 --time 1min"));
+    let few = report(
+        &folder,
+        &format!("{scene} --method random --hits 2 --time 1min --reference"),
+    );
     assert_eq!((&few["hits"], &few["stop_reason"]), (&2.into(), &"Hits".into()));
 }
 
@@ -445,6 +448,7 @@ fn mistakes_are_told_in_one_line() {
         "collide triangle.obj above.obj --threshold 1 --pairs edge-edges",
         "collide triangle.obj above.obj --threshold 1 --evaluations 9",
         "collide triangle.obj above.obj --threshold 1 --prune",
+        "collide triangle.obj above.obj --threshold 1 --reference",
         "collide triangle.obj above.obj --threshold 1 --method brute-force --hits 2",
         "collide triangle.obj above.obj --threshold 1 --method grid --pairs edge-edge",
         "collide triangle.obj above.obj --threshold 1 --method random --closest 3",

@@ -176,7 +176,7 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
     let most = usize::try_from(arguments.max_pairs).unwrap_or(usize::MAX);
     report.set_reference(reference::wait_for(
         "the scene",
-        reference::Patience::Unlimited,
+        arguments.search.patience(report.elapsed_seconds),
         cancel,
         || {},
         move || count(&counted, most, &kept),

@@ -109,7 +109,7 @@ fn check(arguments: &RunArguments) -> anyhow::Result<()> {
         ("--resume", arguments.resume.is_some()),
         ("--plot", arguments.plot.is_some()),
         ("--page", arguments.page.is_some()),
-        ("--reference", arguments.reference),
+        ("--reference", arguments.search.reference),
         ("--threads", arguments.search.threads() != 1),
     ] {
         if is_given {

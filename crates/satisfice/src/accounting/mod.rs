@@ -151,17 +151,27 @@ impl<T> Ledger<T> {
     /// Whether the slice has been ended from outside, by its alarm or its cancellation, or has ended before.
     #[inline]
     fn interrupted(&mut self) -> bool {
-        if self.alarm.as_ref().is_some_and(Alarm::has_rung) {
-            self.stop = Some(StopReason::Time);
-        } else if self
-            .budget
-            .cancel
-            .as_ref()
-            .is_some_and(crate::Cancel::is_cancelled)
-        {
-            self.stop = Some(StopReason::Cancelled);
+        if let Some(reason) = self.interruption() {
+            self.stop = Some(reason);
         }
         self.stop.is_some()
+    }
+
+    /// [`Ledger::interrupted`] without taking note of it.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.stop.is_some() || self.interruption().is_some()
+    }
+
+    /// What ends the slice from outside.
+    #[inline]
+    fn interruption(&self) -> Option<StopReason> {
+        if self.alarm.as_ref().is_some_and(Alarm::has_rung) {
+            return Some(StopReason::Time);
+        }
+        let cancel = self.budget.cancel.as_ref();
+        cancel
+            .is_some_and(crate::Cancel::is_cancelled)
+            .then_some(StopReason::Cancelled)
     }
 
     #[inline]

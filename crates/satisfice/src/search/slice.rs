@@ -109,8 +109,15 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     {
         let limit = self.ledger.remaining();
         self.candidates.probing = from == BatchSource::Probes;
-        self.candidates
-            .prepare(problem, &self.ledger.archive, &mut self.batch, limit, deletes);
+        let ledger = &self.ledger;
+        self.candidates.prepare(
+            problem,
+            &ledger.archive,
+            &mut self.batch,
+            limit,
+            deletes,
+            || ledger.is_interrupted(),
+        );
         self.stage = Stage::Settle(from);
     }
 
