@@ -26,14 +26,43 @@ pub(crate) struct Cells {
     last: [f32; 3],
 }
 
-/// Points a cell has on average where there are any; measured: between 4 and 12 there is little difference.
+/// Points a cell has on average where there are any.
 const OCCUPANCY: f32 = 6.0;
 /// The size of the sample that estimates how many points share a cell.
 const SAMPLE: usize = 512;
 
 impl Cells {
+    /// The grid for these points, none of whose cells is much narrower than `reach`.
+    pub(crate) fn fitting(parts: &[Part], reach: f32) -> Self {
+        let n = parts.iter().map(|part| part.points.len()).sum::<usize>();
+        let min: [f32; 3] =
+            std::array::from_fn(|k| parts.iter().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
+        let max: [f32; 3] = std::array::from_fn(|k| {
+            parts
+                .iter()
+                .map(|part| part.max[k])
+                .fold(f32::NEG_INFINITY, greater)
+        });
+        let volume: f32 = (0..3).map(|k| greater(max[k] - min[k], reach)).product();
+        let mut edge = greater((volume * OCCUPANCY / n as f32).cbrt(), reach);
+        // points on surfaces fill few cells
+        if n > 4 * SAMPLE {
+            for _ in 0..3 {
+                if edge <= reach {
+                    break;
+                }
+                let crowd = crowd(parts, n, &Self::new(min, max, edge, usize::MAX));
+                if crowd < 2.0 * OCCUPANCY {
+                    break;
+                }
+                edge = greater(edge * (OCCUPANCY / crowd).sqrt(), reach);
+            }
+        }
+        Self::new(min, max, edge, 2 * n + 64)
+    }
+
     /// The grid over `min..=max` with cells of edge `edge` or longer, as needed to have at most `limit` of them.
-    pub(crate) fn new(min: [f32; 3], max: [f32; 3], mut edge: f32, limit: usize) -> Self {
+    fn new(min: [f32; 3], max: [f32; 3], mut edge: f32, limit: usize) -> Self {
         loop {
             let count: [usize; 3] =
                 std::array::from_fn(|k| ((max[k] - min[k]) / edge + 0.5).clamp(0.0, 1e9) as usize + 1);
@@ -73,82 +102,25 @@ impl Cells {
     }
 }
 
-/// Chooses the width of cells. Keeps the result of a sample for the calls that follow, which often are frames of one motion.
-#[derive(Debug, Default)]
-pub(crate) struct Fit {
-    /// Of the sampled points: their number, the reach, and the factor by which the edge was shortened.
-    points: usize,
-    reach: f32,
-    shortened: f32,
-    /// Calls since the sample.
-    age: u32,
-    sample: Vec<usize>,
-}
-
-/// A sample is used for this many calls.
-const FRESH: u32 = 16;
-
-impl Fit {
-    /// The grid for these points, none of whose cells is much narrower than `reach`.
-    pub(crate) fn cells(&mut self, parts: &[Part], reach: f32) -> Cells {
-        let n = parts.iter().map(|part| part.points.len()).sum::<usize>();
-        let min: [f32; 3] =
-            std::array::from_fn(|k| parts.iter().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
-        let max: [f32; 3] = std::array::from_fn(|k| {
-            parts
-                .iter()
-                .map(|part| part.max[k])
-                .fold(f32::NEG_INFINITY, greater)
-        });
-        let volume: f32 = (0..3).map(|k| greater(max[k] - min[k], reach)).product();
-        let mut edge = greater((volume * OCCUPANCY / n as f32).cbrt(), reach);
-        if edge > reach && n > 4 * SAMPLE {
-            let is_alike = n.abs_diff(self.points) <= n / 16 && (reach - self.reach).abs() <= 0.1 * reach;
-            if is_alike && self.age < FRESH {
-                self.age += 1;
-            } else {
-                let crowd = |cells: &Cells| crowd(parts, n, cells, &mut self.sample);
-                self.shortened = shortened(crowd, min, max, edge, reach);
-                (self.points, self.reach, self.age) = (n, reach, 0);
-            }
-            edge = greater(edge * self.shortened, reach);
-        }
-        Cells::new(min, max, edge, 2 * n + 64)
-    }
-}
-
-/// The factor by which to shorten the edge: points on surfaces fill few cells, and a sample estimates how many share one.
-fn shortened(
-    mut crowd: impl FnMut(&Cells) -> f32,
-    min: [f32; 3],
-    max: [f32; 3],
-    longest: f32,
-    reach: f32,
-) -> f32 {
-    let mut edge = longest;
-    for _ in 0..3 {
-        let crowd = crowd(&Cells::new(min, max, edge, usize::MAX));
-        if crowd < 2.0 * OCCUPANCY || edge <= reach {
-            break;
-        }
-        edge = greater(edge * (OCCUPANCY / crowd).sqrt(), reach);
-    }
-    edge / longest
-}
-
 /// The mean over all points of the number of points in their cell, estimated from a sample.
-fn crowd(parts: &[Part], n: usize, cells: &Cells, sample: &mut Vec<usize>) -> f32 {
-    let stride = n.div_ceil(SAMPLE);
+fn crowd(parts: &[Part], n: usize, cells: &Cells) -> f32 {
+    let (mut sample, mut count) = ([0; SAMPLE], 0);
     // all parts as one sequence, so that the result does not depend on their number
-    let points = parts.iter().flat_map(|part| &part.points).step_by(stride);
-    sample.clear();
-    sample.extend(points.map(|point| cells.index(&point.q)));
+    let points = parts
+        .iter()
+        .flat_map(|part| &part.points)
+        .step_by(n.div_ceil(SAMPLE));
+    for (place, point) in sample.iter_mut().zip(points) {
+        *place = cells.index(&point.q);
+        count += 1;
+    }
+    let sample = &mut sample[..count];
     sample.sort_unstable();
     let pairs: usize = sample
         .chunk_by(|a, b| a == b)
         .map(|same| same.len() * (same.len() - 1))
         .sum();
-    1.0 + pairs as f32 / sample.len() as f32 * (n as f32 / sample.len() as f32)
+    1.0 + pairs as f32 / count as f32 * (n as f32 / count as f32)
 }
 
 /// Points in the order of their cells, and where each cell starts.

@@ -1,7 +1,7 @@
 //! All pairs of points within a threshold, of two bodies or within one: exact and sorted.
 
 use super::boxes::Dirty;
-use super::cells::{Cells, Fit, Sorted};
+use super::cells::{Cells, Sorted};
 use super::clip::{BlockBounds, Clip, Part, union};
 use super::exact::ExactTest;
 use super::features::FeatureTree;
@@ -65,7 +65,6 @@ pub struct PointGrid {
     overlap: Overlap,
     parts: [Vec<Part>; 2],
     cull: OccupancyCull,
-    fit: Fit,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
     sorter: Sorter,
@@ -198,7 +197,7 @@ impl PointGrid {
             return Ok(());
         }
         let filter = frame.filter(threshold.get());
-        let cells = self.fit.cells(&self.parts[0], filter.reach);
+        let cells = Cells::fitting(&self.parts[0], filter.reach);
         let ([sorted_a, sorted_b], [parts_a, parts_b]) = (&mut self.sorted, &self.parts);
         both(
             shared && !ONE_BODY,
