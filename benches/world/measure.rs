@@ -20,6 +20,7 @@ pub(crate) struct Row {
     triangles_ms: Option<f64>,
     parry_kept: f64,
     parry_new: f64,
+    parry_boxes: f64,
     contacts: usize,
     kept: usize,
     bytes: [f64; 2],
@@ -27,7 +28,7 @@ pub(crate) struct Row {
 
 impl Row {
     pub(crate) const HEADING: &'static str = "| scene | moved | bodies ms | worst / new | new ms | triangles ms | parry kept | \
-        parry new | ratio | contacts | kept pairs | bytes a body | a pair |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+        parry new | ratio | parry boxes | ratio with them | contacts | kept pairs | bytes a body | a pair |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 }
 
 impl fmt::Display for Row {
@@ -40,10 +41,14 @@ impl fmt::Display for Row {
             }
         };
         let fastest = self.parry_kept.min(self.parry_new);
+        let ratio = |theirs: f64| match self.moved {
+            0 => "-".to_owned(),
+            _ => format!("{:.2}", theirs / self.bodies_ms),
+        };
         let [body, pair] = self.bytes;
         write!(
             f,
-            "| {} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} | {} | {body:.0} | {} |",
+            "| {} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {body:.0} | {} |",
             self.name,
             self.moved,
             ms(self.bodies_ms),
@@ -52,11 +57,9 @@ impl fmt::Display for Row {
             self.triangles_ms.map_or("-".to_owned(), ms),
             ms(self.parry_kept),
             ms(self.parry_new),
-            if self.moved == 0 {
-                "-".to_owned()
-            } else {
-                format!("{:.2}", fastest / self.bodies_ms)
-            },
+            ratio(fastest),
+            ms(self.parry_boxes),
+            ratio(fastest + self.parry_boxes),
             self.contacts,
             self.kept,
             if pair > 0.0 {
@@ -132,15 +135,21 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
     let mut kept = Kept::new(&boxes);
     let mut course = Course::new(centres.len());
     let mut moved = Vec::new();
-    let mut times: [Vec<f64>; 4] = [const { Vec::new() }; 4];
+    let mut poses: Vec<_> = centres.iter().map(|&centre| peers::pose(centre, 0.0)).collect();
+    let locals = [0, 1].map(|body| peers::local(scene.radius(body)));
+    let mut times: [Vec<f64>; 5] = [const { Vec::new() }; 5];
     for frame in 0..frames {
         course.step(scene, &mut centres, &mut moved);
+        let angle = |body: usize| scene.turn * (frame as f64 + body as f64);
         for &body in &moved {
-            boxes[body] = peers::bounds(centres[body], scene.radius(body));
+            poses[body] = peers::pose(centres[body], angle(body));
         }
         let placements: Vec<Placement> = moved
             .iter()
-            .map(|&body| Placement::from_translation(centres[body]).expect("finite"))
+            .map(|&body| {
+                let turned = Placement::from_axis_angle([0.0, 0.0, 1.0], angle(body)).expect("finite");
+                turned.moved(centres[body]).expect("finite")
+            })
             .collect();
         let ours = time(|| {
             for (&body, placement) in moved.iter().zip(&placements) {
@@ -149,19 +158,22 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
             find_pairs(&mut world);
         });
         let triangles = time(|| scene.triangles.then(|| world.update().expect("a frame")));
+        let posed = time(|| peers::posed(|body| locals[body.min(1)], &poses, &moved, &mut boxes));
         let parry = time(|| kept.follow(&boxes, &moved));
         // the first frames fill rooms that later ones reuse
         if frame >= frames / 8 {
             times[0].push(ours.0);
             times[1].push(triangles.0);
             times[2].push(parry.0);
+            times[4].push(posed.0);
             if frame.is_multiple_of(4) || frames < 8 {
                 times[3].push(time(|| std::hint::black_box(peers::anew(&boxes))).0);
             }
         }
     }
     let worst = times[0].iter().copied().fold(0.0, f64::max);
-    let [bodies_ms, triangles_ms, parry_kept, parry_new] = times.map(|mut times| median(&mut times));
+    let [bodies_ms, triangles_ms, parry_kept, parry_new, parry_boxes] =
+        times.map(|mut times| median(&mut times));
     let (kept, bytes) = (world.kept_pairs(), world.bytes() as f64);
     let count = centres.len() as f64;
     let a_body = if kept > centres.len() / 2 {
@@ -178,6 +190,7 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
         triangles_ms: scene.triangles.then_some(triangles_ms),
         parry_kept,
         parry_new,
+        parry_boxes,
         contacts: world.contacts().count(),
         kept,
         bytes: [a_body, (bytes - a_body * count) / kept.max(1) as f64],

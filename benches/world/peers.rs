@@ -2,8 +2,8 @@
 
 use foldhash::fast::FixedState;
 use hashbrown::HashMap;
-use parry3d::bounding_volume::Aabb;
-use parry3d::math::Vector;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 /// By how much kept boxes are wider, as rapier3d has it for bodies of this size.
@@ -17,6 +17,25 @@ pub(crate) fn bounds(centre: [f64; 3], radius: f64) -> Aabb {
         Vector::splat(radius as f32 + 0.005),
     );
     Aabb::new(centre - by, centre + by)
+}
+
+/// A body at a place, turned by this angle, as parry3d has it.
+pub(crate) fn pose(centre: [f64; 3], angle: f64) -> Pose {
+    let [x, y, z] = centre.map(|c| c as f32);
+    Pose::from_parts(Vector::new(x, y, z), Rotation::from_rotation_z(angle as f32))
+}
+
+/// The box of a body at rest, as a mesh keeps it.
+pub(crate) fn local(radius: f64) -> Aabb {
+    let side = Vector::splat(radius as f32);
+    Aabb::new(-side, side)
+}
+
+/// The boxes of the bodies that move, from where they are, inflated by half the threshold.
+pub(crate) fn posed(local: impl Fn(usize) -> Aabb, poses: &[Pose], moved: &[usize], boxes: &mut [Aabb]) {
+    for &body in moved {
+        boxes[body] = local(body).transform_by(&poses[body]).loosened(0.005);
+    }
 }
 
 /// A new tree and its pairs.

@@ -16,6 +16,8 @@ pub(crate) struct Scene {
     pub(crate) huge: Option<f64>,
     /// Every so many-th body moves; 0 for none.
     pub(crate) every: usize,
+    /// By how much a moving body turns a frame, in radians.
+    pub(crate) turn: f64,
     /// Whether triangles are examined too.
     pub(crate) triangles: bool,
 }
@@ -49,6 +51,7 @@ impl Scene {
             centres,
             huge: None,
             every,
+            turn: 0.0,
             triangles: true,
         }
     }
@@ -59,6 +62,10 @@ impl Scene {
         let mut scenes: Vec<Self> = [(0, "0"), (1000, "0.1 %"), (10, "10 %"), (1, "100 %")]
             .map(|(every, share)| Self::new(format!("lattice, {share} moving"), lattice(bodies, 1.0), every))
             .into();
+        scenes.push(Self {
+            turn: 0.05,
+            ..Self::new("lattice, 100 % moving and turning", lattice(bodies, 1.0), 1)
+        });
         // bodies in a pile touch a few others
         let jitter = random(bodies, 0.15);
         let pile = lattice(bodies, 0.78).into_iter().zip(jitter);

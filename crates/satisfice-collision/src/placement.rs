@@ -150,6 +150,18 @@ impl Placement {
         })
     }
 
+    /// Becomes another placement, and says whether it is one; without another rotation the matrix is kept.
+    #[inline]
+    pub(crate) fn go_to(&mut self, to: &CompactPlacement) -> bool {
+        if self.quaternion != to.quaternion {
+            *self = Self::from(*to);
+            return true;
+        }
+        let moves = self.translation != to.translation;
+        self.translation = to.translation;
+        moves
+    }
+
     /// The mesh after the motion. It shares edges and triangles with the original.
     ///
     /// # Errors

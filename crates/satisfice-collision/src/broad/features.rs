@@ -35,6 +35,7 @@ pub struct FeatureTree {
     pub(crate) tree: BoxTree,
     /// The sum of sides when the tree was built, in the unit of the coordinates.
     built_sum_of_sides: f64,
+    threads: usize,
 }
 
 /// A tree is rebuilt once its boxes have grown by this factor since it was built.
@@ -95,9 +96,19 @@ impl Work for Move<'_> {
 }
 
 impl FeatureTree {
-    /// Builds the tree. Cost: O(n log n).
+    /// Builds the tree on one thread, on which it is refitted too. Cost: O(n log n).
     #[must_use]
     pub fn new(mesh: &Mesh, kind: FeatureKind) -> Self {
+        Self::on_threads(mesh, kind, 1)
+    }
+
+    /// Builds the tree on the current rayon pool, on which it is refitted too. The result is the same.
+    #[must_use]
+    pub fn parallel(mesh: &Mesh, kind: FeatureKind) -> Self {
+        Self::on_threads(mesh, kind, rayon::current_num_threads())
+    }
+
+    fn on_threads(mesh: &Mesh, kind: FeatureKind, threads: usize) -> Self {
         let bounds = mesh.bounds();
         let mut tree = Self {
             kind,
@@ -111,6 +122,7 @@ impl FeatureTree {
             moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
             built_sum_of_sides: 0.0,
+            threads,
         };
         tree.measure(mesh.vertices());
         let points: Vec<Box32>;
@@ -126,7 +138,7 @@ impl FeatureTree {
         } else {
             &tree.boxes
         };
-        tree.tree = BoxTree::order(boxes, kind == FeatureKind::Vertex, rayon::current_num_threads());
+        tree.tree = BoxTree::order(boxes, kind == FeatureKind::Vertex, threads);
         tree.fit(mesh.vertices());
         tree.built_sum_of_sides = tree.tree.sum_of_sides() / tree.frame.scale;
         tree
@@ -180,11 +192,10 @@ impl FeatureTree {
 
     /// Puts the features into the tree.
     fn fit(&mut self, vertices: &[Point]) {
-        let threads = rayon::current_num_threads();
         if self.kind == FeatureKind::Vertex {
-            self.tree.refit_points(vertices, &self.frame, threads);
+            self.tree.refit_points(vertices, &self.frame, self.threads);
         } else {
-            self.tree.refit(&self.boxes, threads);
+            self.tree.refit(&self.boxes, self.threads);
         }
     }
 

@@ -13,6 +13,7 @@ mod visits;
 
 pub(super) use follow::Change;
 
+use super::extent::{Extent, largest};
 use crate::Aabb;
 use crate::broad::{Box32, exponent, order_by_median, power_of_two};
 use node::{NONE, Node, at_lane, lane_in, lanes, node_of};
@@ -48,9 +49,6 @@ pub(super) struct BodyTree {
     bodies: usize,
     /// Bodies put elsewhere since the tree was built.
     moves: usize,
-    /// The sum of the sides of the boxes of all nodes but the root, and the least of it since the tree was built.
-    size: f64,
-    least_size: f64,
     /// Nodes with a changed box, leaves first.
     changed: Vec<u32>,
 }
@@ -102,7 +100,7 @@ impl BodyTree {
         self.free.clear();
         self.places.fill(NONE);
         self.changed.clear();
-        (self.root, self.bodies, self.moves, self.size) = (None, boxes.len(), 0, 0.0);
+        (self.root, self.bodies, self.moves) = (None, boxes.len(), 0);
         if let Some(most) = boxes.iter().map(|&(body, _)| body as usize + 1).max()
             && most > self.places.len()
         {
@@ -121,18 +119,15 @@ impl BodyTree {
                     self.adopt(*child, level, at_lane(id, lane));
                 }
                 let bounds = node.bounds();
-                self.size += size_of_box(&bounds);
                 above.push((id, bounds));
                 super::push(&mut self.nodes, node);
             }
             if above.len() == 1 {
                 self.root = Some(above[0].0);
-                self.size -= size_of_box(&above[0].1);
             }
             below = above;
             level += 1;
         }
-        self.least_size = self.size;
     }
 
     /// Coordinates count from the middle of all boxes, in a unit in which `f32` overflows last.
@@ -173,6 +168,35 @@ impl BodyTree {
         }
     }
 
+    /// Where the centre of a body's ball may lie, in the frame, so that its box in the tree holds the ball and `half` around it.
+    pub(super) fn room(&self, body: u32, extent: &Extent, half: f64) -> Box32 {
+        let known = self.box_of(body);
+        let farthest =
+            |b: &Box32| (0..3).fold(0.0_f32, |most, k| most.max(b.min[k].abs()).max(b.max[k].abs()));
+        let far = f64::from(farthest(&known)) / self.scale + largest(&self.origin);
+        let reach = (extent.radius() + half + 2.0 * extent.blur(far)) * self.scale;
+        let reach = (reach as f32).next_up();
+        // the conversion of the box, of the centre, and the sums here round once each
+        let slack = 4.0 * f32::EPSILON * (farthest(&known) + reach) + f32::MIN_POSITIVE;
+        let room = Box32 {
+            min: known.min.map(|c| c + (reach + slack)),
+            max: known.max.map(|c| c - (reach + slack)),
+        };
+        match reach.is_finite() {
+            true => room,
+            false => Box32::EMPTY,
+        }
+    }
+
+    /// Whether a point lies in a room.
+    #[inline]
+    pub(super) fn is_within(&self, room: &Box32, point: [f64; 3]) -> bool {
+        (0..3).all(|k| {
+            let at = ((point[k] - self.origin[k]) * self.scale) as f32;
+            room.min[k] <= at && at <= room.max[k]
+        })
+    }
+
     fn adopt(&mut self, child: u32, level: u8, parent: u32) {
         if level == 0 {
             self.places[child as usize] = parent;
@@ -196,9 +220,7 @@ impl BodyTree {
 
     /// Gives a node another box in its parent.
     fn set_box(&mut self, place: u32, to: &Box32) {
-        let node = &mut self.nodes[node_of(place) as usize];
-        self.size += size_of_box(to) - size_of_box(&node.lane_box(lane_in(place)));
-        node.set_box(lane_in(place), to);
+        self.nodes[node_of(place) as usize].set_box(lane_in(place), to);
     }
 
     /// Inserts a body. Cost: O(log n).
@@ -243,9 +265,6 @@ impl BodyTree {
     /// Puts a child into a node, which is split if it is full.
     fn attach(&mut self, node: u32, child: u32, to: &Box32) {
         let level = self.nodes[node as usize].level;
-        if level > 0 {
-            self.size += size_of_box(to);
-        }
         if let Some(lane) = self.nodes[node as usize].free_lane() {
             self.nodes[node as usize].set(lane, child, to);
             self.adopt(child, level, at_lane(node, lane));
@@ -277,7 +296,6 @@ impl BodyTree {
             for (lane, id) in [node, other].into_iter().enumerate() {
                 self.nodes[root as usize].set(lane, id, &bounds[lane]);
                 self.nodes[id as usize].parent = at_lane(root, lane);
-                self.size += size_of_box(&bounds[lane]);
             }
         } else {
             self.set_box(full.parent, &bounds[0]);
@@ -295,9 +313,6 @@ impl BodyTree {
         loop {
             let id = node_of(place);
             let node = &mut self.nodes[id as usize];
-            if node.level > 0 {
-                self.size -= size_of_box(&node.lane_box(lane_in(place)));
-            }
             node.set(lane_in(place), NONE, &Box32::EMPTY);
             let parent = node.parent;
             if node.taken() != 0 {
@@ -306,7 +321,7 @@ impl BodyTree {
             }
             self.free.push(id);
             if parent == NONE {
-                (self.root, self.size, self.least_size) = (None, 0.0, 0.0);
+                self.root = None;
                 return;
             }
             place = parent;
@@ -325,11 +340,4 @@ impl BodyTree {
             node = node_of(parent);
         }
     }
-}
-
-/// The sum of the sides, in double precision, in which it is finite; 0 for the empty box.
-fn size_of_box(b: &Box32) -> f64 {
-    (0..3)
-        .map(|k| (f64::from(b.max[k]) - f64::from(b.min[k])).max(0.0))
-        .sum()
 }

@@ -120,7 +120,12 @@ impl Deforming {
 
     /// Builds the tree over features of this kind, or refits it if the vertices have moved since; rebuilds it if it has
     /// degraded.
-    pub(super) fn ensure_tree(&mut self, mesh: &Mesh, kind: FeatureKind) -> Result<(), Error> {
+    pub(super) fn ensure_tree(
+        &mut self,
+        mesh: &Mesh,
+        kind: FeatureKind,
+        parallel: bool,
+    ) -> Result<(), Error> {
         let slot = &mut self.trees[kind as usize];
         if let Some(kept) = slot {
             if kept.version == self.version {
@@ -134,8 +139,12 @@ impl Deforming {
             }
             self.rebuilds += 1;
         }
+        let mesh = mesh.with_vertices(self.vertices.clone())?;
         *slot = Some(KeptTree {
-            tree: FeatureTree::new(&mesh.with_vertices(self.vertices.clone())?, kind),
+            tree: match parallel {
+                true => FeatureTree::parallel(&mesh, kind),
+                false => FeatureTree::new(&mesh, kind),
+            },
             version: self.version,
             from: None,
         });

@@ -1,27 +1,52 @@
-//! The box of a mesh and of its placements.
+//! The box and the ball around a mesh, and those of its placements.
 
 use crate::mesh::Point;
-use crate::{Aabb, Placement};
+use crate::{Aabb, Mesh, Placement};
 
-/// The box of the vertices in the coordinates of the mesh.
+/// The box of the vertices in the coordinates of the mesh, and a ball around its centre that holds them.
 #[derive(Debug)]
 pub(super) struct Extent {
     bounds: Aabb,
     centre: Point,
     /// Half of its sides.
     half: Point,
+    /// Of the ball; infinite where it cannot be computed.
+    radius: f64,
     /// The largest coordinates of its two corners, added up.
     size: f64,
 }
 
 impl Extent {
-    pub(super) fn new(bounds: Aabb) -> Self {
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let bounds = mesh.bounds();
+        let centre = std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0);
+        let square = |p: &Point| (0..3).map(|k| (p[k] - centre[k]).powi(2)).sum::<f64>();
+        let farthest = mesh.vertices().iter().map(square).fold(0.0, f64::max);
         Self {
-            centre: std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0),
+            centre,
+            // squares below 1e-300 may have lost their digits
+            radius: farthest.sqrt() * (1.0 + 1e-12) + 1e-150,
             half: std::array::from_fn(|k| bounds.max[k] / 2.0 - bounds.min[k] / 2.0),
             size: largest(&bounds.min) + largest(&bounds.max),
             bounds,
         }
+    }
+
+    /// Where the centre of the ball around the posed vertices lies, up to [`blur`](Self::blur).
+    #[inline]
+    pub(super) fn centre(&self, placement: &Placement) -> Point {
+        placement.apply(self.centre)
+    }
+
+    /// The radius of the ball.
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// At least how far rounding moves a posed vertex, and the centre, where no coordinate of the centre exceeds `farthest`.
+    pub(super) fn blur(&self, farthest: f64) -> f64 {
+        // the translation is the difference of the centres
+        1e-14 * (2.0 * self.size + farthest)
     }
 
     /// At least the largest coordinate.

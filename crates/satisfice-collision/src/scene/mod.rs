@@ -237,7 +237,7 @@ impl World {
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
     pub fn bounds(&self, body: BodyId) -> Result<Aabb, Error> {
-        Ok(self.known(body)?.bounds)
+        Ok(self.known(body)?.bounds())
     }
 
     /// Bytes held beside the meshes and their trees.

@@ -90,8 +90,8 @@ impl World {
 
     /// Whether the inflated boxes of two bodies do not meet.
     pub(super) fn boxes_apart(&self, [a, b]: [u32; 2]) -> bool {
-        let (one, two) = (&self.state(a).bounds, &self.state(b).bounds);
-        a != b && intersection(one, &inflate(two, self.threshold.get())).is_none()
+        let bounds = |slot| self.state(slot).bounds();
+        a != b && intersection(&bounds(a), &inflate(&bounds(b), self.threshold.get())).is_none()
     }
 
     /// Finds the pairs of a record, or those found before the watch stops it. The trees of the plan exist.
@@ -241,10 +241,11 @@ impl World {
         distance::within(&a.shape(kind_a, pair.a), &b.shape(kind_b, pair.b), self.threshold)
     }
 
-    /// Brings the trees of two deforming bodies up to date.
+    /// Brings the trees of two bodies up to date.
     pub(super) fn ensure_trees(&mut self, [a, b]: [u32; 2]) -> Result<(), Error> {
         let (kind_a, kind_b) = self.kind.features();
-        self.state_mut(a).ensure_tree(kind_a)?;
-        self.state_mut(b).ensure_tree(kind_b)
+        let parallel = self.parallel;
+        self.state_mut(a).ensure_tree(kind_a, parallel)?;
+        self.state_mut(b).ensure_tree(kind_b, parallel)
     }
 }

@@ -153,7 +153,7 @@ impl World {
     /// How many contacts a record had last, and how much the boxes of its bodies overlap.
     fn likelihood(&self, record: u32) -> (usize, f64) {
         let known = &self.pairs[record];
-        let [a, b] = known.bodies.map(|slot| self.state(slot).bounds);
+        let [a, b] = known.bodies.map(|slot| self.state(slot).bounds());
         let delta = self.threshold.get();
         let side = |k: usize| (a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]) + delta).max(0.0);
         (known.pairs.len(), side(0) * side(1) * side(2))

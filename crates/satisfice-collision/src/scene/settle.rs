@@ -10,7 +10,7 @@ use crate::distance::{Point, Threshold};
 use crate::{Aabb, CompactPlacement, Error, Placement};
 
 /// The box of a moving body is widened by so many frames of its motion...
-const FRAMES: f64 = 4.0;
+const FRAMES: f64 = 8.0;
 /// ...but by at most this share of its size.
 const MOST: f64 = 0.25;
 /// All records are looked through, in their order in memory, if more than this share of the bodies moves.
@@ -158,6 +158,7 @@ impl World {
         } else if !changes.is_empty() {
             self.tree.follow(&mut changes);
         }
+        self.give_room(&changes);
         if many {
             self.go_through_records(&changes, &has_moved);
         } else {
@@ -174,28 +175,14 @@ impl World {
         let mut pending = std::mem::take(&mut self.pending);
         self.came_from.clear();
         for Pending { slot, to } in pending.drain(..).filter(|pending| pending.slot != NONE) {
-            let state = self.state_mut(slot);
-            state.pending = NONE;
-            let (placement, bounds) = (state.placement, state.bounds);
-            let motion = match to {
-                Some(to) => state.go_to(&to.into()),
-                None => state.advance(),
+            let moved = match to {
+                Some(to) => self.move_rigid(slot, &to, half, &mut changes),
+                None => self.move_deforming(slot, half, &mut changes),
             };
-            let Some(motion) = motion else { continue };
-            (state.moved_at, state.motion) = (frame, motion);
-            let (new, is_rigid) = (state.bounds, state.deforming.is_none());
-            let wanted = inflate(&new, half);
-            if !self.tree.holds(slot, &wanted) {
-                changes.push(Change {
-                    body: slot,
-                    is_recheck: false,
-                    to: self.tree.place(&fattened(&wanted, &bounds, &new, motion)),
-                    before: Box32::EMPTY,
-                });
+            if !moved {
+                continue;
             }
-            if is_rigid && self.predicts {
-                self.came_from.push((slot, (&placement).into()));
-            }
+            self.state_mut(slot).moved_at = frame;
             match has_moved.get_mut(slot as usize) {
                 Some(has_moved) => *has_moved = true,
                 None => self.mark_records(slot),
@@ -203,6 +190,64 @@ impl World {
         }
         self.pending = pending;
         changes
+    }
+
+    /// Moves a rigid body, and lists it if it leaves its box in the tree. Returns whether it moves.
+    fn move_rigid(&mut self, slot: u32, to: &CompactPlacement, half: f64, changes: &mut Vec<Change>) -> bool {
+        let predicts = self.predicts;
+        let Some(state) = self.states[slot as usize].as_mut() else {
+            return false;
+        };
+        state.pending = NONE;
+        let from = state.placement;
+        if !state.go_to(to) {
+            return false;
+        }
+        state.motion = f64::INFINITY;
+        let extent = state.mesh.extent();
+        if predicts {
+            state.motion = extent.motion(&from, &state.placement);
+            self.came_from.push((slot, (&from).into()));
+        }
+        // the ball first: nothing else has to be known of a body that stays in its room
+        if self.tree.is_within(&state.room, extent.centre(&state.placement)) {
+            return true;
+        }
+        let new = extent.posed(&state.placement);
+        let wanted = inflate(&new, half);
+        if !self.tree.holds(slot, &wanted) {
+            let motion = extent.motion(&from, &state.placement);
+            let fat = fattened(&wanted, &extent.posed(&from), &new, motion);
+            changes.push(Change::to(slot, self.tree.place(&fat)));
+        }
+        true
+    }
+
+    /// The same for a deforming body.
+    fn move_deforming(&mut self, slot: u32, half: f64, changes: &mut Vec<Change>) -> bool {
+        let state = self.state_mut(slot);
+        state.pending = NONE;
+        let bounds = state.bounds();
+        let motion = state.deforming.as_mut().and_then(|deforming| deforming.advance());
+        let Some(motion) = motion else { return false };
+        state.motion = motion;
+        let new = state.bounds();
+        let wanted = inflate(&new, half);
+        if !self.tree.holds(slot, &wanted) {
+            let fat = fattened(&wanted, &bounds, &new, motion);
+            changes.push(Change::to(slot, self.tree.place(&fat)));
+        }
+        true
+    }
+
+    /// Tells the bodies whose boxes have changed how far they may go in them.
+    fn give_room(&mut self, changes: &[Change]) {
+        let half = self.half_threshold();
+        for change in changes {
+            if let Some(state) = self.states[change.body as usize].as_mut() {
+                state.room = self.tree.room(change.body, state.mesh.extent(), half);
+            }
+        }
     }
 
     /// Adds the bodies whose partners must be found again.
@@ -213,10 +258,8 @@ impl World {
         let half = self.half_threshold();
         for body in std::mem::take(&mut self.unpaired) {
             changes.push(Change {
-                body,
                 is_recheck: self.tree.contains(body),
-                to: self.tree.place(&inflate(&self.state(body).bounds, half)),
-                before: Box32::EMPTY,
+                ..Change::to(body, self.tree.place(&inflate(&self.state(body).bounds(), half)))
             });
         }
         changes.sort_by_key(|change| change.body);
@@ -233,13 +276,11 @@ impl World {
         let half = self.half_threshold();
         let states = (0..).zip(&self.states);
         let boxes: Vec<(u32, Aabb)> = states
-            .filter_map(|(slot, state)| Some((slot, inflate(&state.as_ref()?.bounds, half))))
+            .filter_map(|(slot, state)| Some((slot, inflate(&state.as_ref()?.bounds(), half))))
             .collect();
         let change = |&(body, _): &(u32, Aabb)| Change {
-            body,
             is_recheck: self.tree.contains(body),
-            to: Box32::EMPTY,
-            before: Box32::EMPTY,
+            ..Change::to(body, Box32::EMPTY)
         };
         let changes = boxes.iter().map(change).collect();
         self.tree.build(&boxes);

@@ -56,6 +56,15 @@ impl SharedMesh {
         self.0.trees[kind as usize].get_or_init(|| FeatureTree::new(&self.0.mesh, kind))
     }
 
+    /// Builds the tree on the current rayon pool, unless there is one.
+    pub(super) fn build_on_threads(&self, kind: FeatureKind) {
+        let slot = &self.0.trees[kind as usize];
+        if slot.get().is_none() {
+            // no lock is held: a thread that waits for its share may take up work that needs the same tree
+            let _ = slot.set(FeatureTree::parallel(&self.0.mesh, kind));
+        }
+    }
+
     /// Whether the tree exists or several bodies would share it, so that building it pays at once.
     pub(super) fn pays_for_tree(&self, kind: FeatureKind) -> bool {
         self.0.trees[kind as usize].get().is_some() || Arc::strong_count(&self.0) > 2
@@ -65,7 +74,7 @@ impl SharedMesh {
 impl From<Mesh> for SharedMesh {
     fn from(mesh: Mesh) -> Self {
         Self(Arc::new(Inner {
-            extent: Extent::new(mesh.bounds()),
+            extent: Extent::new(&mesh),
             mesh,
             trees: Default::default(),
         }))

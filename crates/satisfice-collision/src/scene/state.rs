@@ -7,17 +7,17 @@ use super::body::{Body, Motion};
 use super::deforming::Deforming;
 use super::extent::largest;
 use super::pairs::NONE;
-use crate::broad::{BlockBounds, Dirty, FeatureTree};
+use crate::broad::{BlockBounds, Box32, Dirty, FeatureTree};
 use crate::mesh::Point;
-use crate::{Aabb, Error, FeatureKind, Placement, Shape};
+use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement, Shape};
 
 /// A body and its place at the last frame.
 pub(super) struct State {
     pub(super) mesh: SharedMesh,
     pub(super) kind: Motion,
     pub(super) placement: Placement,
-    /// The box of the posed vertices, roundings included.
-    pub(super) bounds: Aabb,
+    /// Where the centre of a rigid body may go so that its box in the tree still holds it.
+    pub(super) room: Box32,
     pub(super) groups: u32,
     pub(super) mask: u32,
     pub(super) generation: u32,
@@ -27,7 +27,7 @@ pub(super) struct State {
     rests: bool,
     /// The frame in which it moved last.
     pub(super) moved_at: u64,
-    /// No vertex moved further than this then.
+    /// No vertex moved further than this then; infinite where nobody asks.
     pub(super) motion: f64,
     pub(super) deforming: Option<Box<Deforming>>,
     /// The vertices that count; `None` for all.
@@ -45,7 +45,7 @@ impl State {
             mesh: body.mesh,
             kind: body.motion,
             placement: body.placement,
-            bounds,
+            room: Box32::EMPTY,
             groups: body.groups,
             mask: body.mask,
             generation,
@@ -66,27 +66,20 @@ impl State {
         check(&self.mesh, placement, &extent.posed(placement))
     }
 
-    /// Goes to a placement. Returns a bound on the motion of all vertices, or `None` if nothing moves.
-    pub(super) fn go_to(&mut self, placement: &Placement) -> Option<f64> {
-        if *placement == self.placement {
-            return None;
-        }
-        let extent = self.mesh.extent();
-        let motion = extent.motion(&self.placement, placement);
-        self.bounds = extent.posed(placement);
-        self.placement = *placement;
-        self.rests = *placement == Placement::IDENTITY;
-        Some(motion)
+    /// Goes to a placement. Returns whether that is another one.
+    pub(super) fn go_to(&mut self, placement: &CompactPlacement) -> bool {
+        let moves = self.placement.go_to(placement);
+        self.rests = self.placement == Placement::IDENTITY;
+        moves
     }
 
-    /// Goes to the next frame of a deforming body. As [`State::go_to`].
-    pub(super) fn advance(&mut self) -> Option<f64> {
-        let deforming = self.deforming.as_mut()?;
-        let motion = deforming.advance()?;
-        if let Some(bounds) = deforming.blocks().and_then(BlockBounds::whole) {
-            self.bounds = bounds;
-        }
-        Some(motion)
+    /// The box of the posed vertices, roundings included. Cost: constant.
+    pub(super) fn bounds(&self) -> Aabb {
+        let deforming = self.deforming.as_ref();
+        let moved = deforming
+            .and_then(|deforming| deforming.blocks())
+            .and_then(BlockBounds::whole);
+        moved.unwrap_or_else(|| self.mesh.extent().posed(&self.placement))
     }
 
     /// What moved in frame `frame`, of the features of a kind.
@@ -106,12 +99,14 @@ impl State {
         }
     }
 
-    /// Sees to the tree over features of this kind of a deforming body; those of other bodies are built when they are used.
-    pub(super) fn ensure_tree(&mut self, kind: FeatureKind) -> Result<(), Error> {
+    /// Sees to the tree over features of this kind. Those of rigid bodies are built when they are used, unless threads may help.
+    pub(super) fn ensure_tree(&mut self, kind: FeatureKind, parallel: bool) -> Result<(), Error> {
         match &mut self.deforming {
-            Some(deforming) => deforming.ensure_tree(self.mesh.mesh(), kind),
-            None => Ok(()),
+            Some(deforming) => return deforming.ensure_tree(self.mesh.mesh(), kind, parallel),
+            None if parallel => self.mesh.build_on_threads(kind),
+            None => {}
         }
+        Ok(())
     }
 
     /// The tree; `None` for a deforming body whose tree does not fit its vertices.
@@ -183,7 +178,8 @@ impl State {
 
     /// No coordinate of a rigid body, before or after its placement, is larger.
     pub(super) fn extent(&self) -> f64 {
-        let [min, max] = [&self.bounds.min, &self.bounds.max].map(largest);
+        let bounds = self.bounds();
+        let [min, max] = [&bounds.min, &bounds.max].map(largest);
         self.mesh.extent().size() + min + max + largest(&self.placement.translation())
     }
 

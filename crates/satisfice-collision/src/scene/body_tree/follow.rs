@@ -1,12 +1,10 @@
 //! Changed boxes: many at once, from the bottom up, and the pairs that meet now and did not before.
 
-use super::{BodyTree, NONE, lane_in, lanes, node_of, size_of_box};
+use super::{BodyTree, NONE, lane_in, lanes, node_of};
 use crate::broad::Box32;
 use crate::simd::{Lanes, Work, dispatch};
 
-/// The tree is rebuilt if its boxes have grown to this many times their size since it was built...
-const GROWN: f64 = 1.5;
-/// ...or if more than this share of the bodies change their leaf in a frame.
+/// The tree is rebuilt if more than this share of the bodies change their leaf in a frame.
 const REBUILT: f64 = 0.3;
 /// A body stays in its leaf unless the box of the leaf grows to more than this many times its size.
 const STAYS: f32 = 1.5;
@@ -21,6 +19,18 @@ pub(in crate::scene) struct Change {
     pub(in crate::scene) to: Box32,
     /// The one before; empty for a body that was not in the tree.
     pub(in crate::scene) before: Box32,
+}
+
+impl Change {
+    /// A body that gets this box.
+    pub(in crate::scene) fn to(body: u32, to: Box32) -> Self {
+        Self {
+            body,
+            is_recheck: false,
+            to,
+            before: Box32::EMPTY,
+        }
+    }
 }
 
 impl BodyTree {
@@ -38,8 +48,7 @@ impl BodyTree {
             strangers += usize::from(!self.stays(change));
         }
         let is_worn = self.moves + strangers > 4 * self.bodies + 64;
-        let has_grown = self.size > GROWN * self.least_size;
-        if is_worn || has_grown || strangers as f64 > REBUILT * self.bodies as f64 {
+        if is_worn || strangers as f64 > REBUILT * self.bodies as f64 {
             self.rebuild(changes);
         } else if strangers > 0 {
             // first, so that lanes are what they will be
@@ -70,7 +79,6 @@ impl BodyTree {
                 self.mark(parent);
             }
         }
-        self.least_size = self.least_size.min(self.size);
     }
 
     /// Notes that a box has changed.
@@ -120,7 +128,7 @@ impl BodyTree {
             most.max(f64::from(whole.max[k]).abs())
                 .max(f64::from(whole.min[k]).abs())
         });
-        farthest > 64.0 * size_of_box(&whole) || farthest > 1e30
+        farthest > 64.0 * f64::from(whole.sum_of_sides()) || farthest > 1e30
     }
 
     /// Visits every pair of overlapping boxes of which one has changed at the last [`follow`](Self::follow), each once.

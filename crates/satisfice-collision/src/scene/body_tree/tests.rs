@@ -5,6 +5,7 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 use super::*;
 use crate::broad::inflate;
+use crate::{Placement, generate};
 
 fn meets(a: &Aabb, b: &Aabb) -> bool {
     (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
@@ -200,4 +201,49 @@ fn boxes_in_one_place_are_all_found() {
         pairs += (0..a).filter(|&b| boxes.tree.overlap(a, b)).count();
     }
     assert_eq!(pairs, 100 * 99 / 2);
+}
+
+/// A body whose centre is in its room is held by its box, however it is turned.
+#[test]
+fn a_body_in_its_room_is_in_its_box() {
+    let mut boxes = Boxes {
+        rng: Xoshiro256PlusPlus::seed_from_u64(11),
+        tree: BodyTree::default(),
+        known: vec![None; 8],
+        size: 1.0,
+        shift: 0.0,
+    };
+    for (scale, shift) in [(1.0, 0.0), (1e-12, 0.0), (1e12, 0.0), (1.0, 1e7)] {
+        let ball = generate::icosphere(scale, 1).unwrap();
+        let off = |&[x, y, z]: &[f64; 3]| [x + scale, 2.0 * y, z / 3.0];
+        let mesh = ball
+            .with_vertices(ball.vertices().iter().map(off).collect())
+            .unwrap();
+        let extent = Extent::new(&mesh);
+        let half = 0.01 * scale;
+        let placement = |boxes: &mut Boxes, around: [f64; 3], spread: f64| {
+            let turn = Placement::from_quaternion([(); 4].map(|()| boxes.unit() - 0.5)).unwrap();
+            let way = [(); 3].map(|()| spread * scale * (boxes.unit() - 0.5));
+            turn.moved(around).and_then(|place| place.moved(way)).unwrap()
+        };
+        let places: Vec<Placement> = (0..8).map(|_| placement(&mut boxes, [shift; 3], 10.0)).collect();
+        let wide = |place: &Placement| inflate(&extent.posed(place), 2.0 * scale);
+        let all: Vec<(u32, Aabb)> = (0..).zip(places.iter().map(wide)).collect();
+        boxes.tree.build(&all);
+        let mut inside = 0;
+        for body in 0..8 {
+            let room = boxes.tree.room(body, &extent, half);
+            for _ in 0..200 {
+                let near = placement(&mut boxes, places[body as usize].translation(), 8.0);
+                if boxes.tree.is_within(&room, extent.centre(&near)) {
+                    inside += 1;
+                    for &vertex in mesh.vertices() {
+                        let ball = inflate(&Aabb::point(near.apply(vertex)), half);
+                        assert!(boxes.tree.holds(body, &ball));
+                    }
+                }
+            }
+        }
+        assert!(inside > 20, "{inside} at {scale}, {shift}");
+    }
 }

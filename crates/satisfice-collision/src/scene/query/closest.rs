@@ -192,7 +192,8 @@ impl World {
         closest: &mut Closest<(u32, u32)>,
     ) -> Result<(), Error> {
         let (_, kind) = self.feature_kinds();
-        self.state_mut(slot).ensure_tree(kind)?;
+        let parallel = self.parallel;
+        self.state_mut(slot).ensure_tree(kind, parallel)?;
         let state = self.state(slot);
         let counts = |_: u32, feature: u32| state.counts(kind, feature);
         if let Some(tree) = state.tree(kind) {
@@ -298,7 +299,7 @@ impl World {
 
     /// A lower bound of the distance of two bodies, by their boxes.
     fn gap(&self, a: u32, b: u32) -> f64 {
-        let (a, b) = (&self.state(a).bounds, &self.state(b).bounds);
+        let (a, b) = (self.state(a).bounds(), self.state(b).bounds());
         let side = |k: usize| (b.min[k] - a.max[k]).max(a.min[k] - b.max[k]).max(0.0);
         side(0).hypot(side(1)).hypot(side(2)) * (1.0 - 1e-12)
     }

@@ -88,7 +88,9 @@ impl World {
         if self.state(slot).mesh.mesh().triangles().is_empty() {
             return Ok(());
         }
-        self.state_mut(slot).ensure_tree(FeatureKind::Triangle)?;
+        let parallel = self.parallel;
+        self.state_mut(slot)
+            .ensure_tree(FeatureKind::Triangle, parallel)?;
         let state = self.state(slot);
         if let Some(tree) = state.tree(FeatureKind::Triangle) {
             let keep = |triangle| state.counts(FeatureKind::Triangle, triangle);

@@ -34,7 +34,7 @@ impl World {
         self.settle();
         let (mut found, mut stack) = (Vec::new(), Vec::new());
         self.tree.overlapping(region, &mut stack, |slot| {
-            let bounds = &self.state(slot).bounds;
+            let bounds = self.state(slot).bounds();
             if (0..3).all(|k| bounds.min[k] <= region.max[k] && region.min[k] <= bounds.max[k]) {
                 found.push(self.id(slot));
             }
