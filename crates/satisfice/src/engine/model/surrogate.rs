@@ -36,6 +36,15 @@ engine_settings! {
     ///
     /// Cost of a proposal: O(n²) for n points that a model knows; see `docs/results/expensive.md`. For an F that takes a
     /// millisecond or more, and 20 to 500 evaluations.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Surrogate, from_fn};
+    /// // Where a curve of two parameters is nearly 0; suppose that each point takes a minute.
+    /// let problem = from_fn(Space::cube(2, -2.0, 2.0)?, 0.1, |x: &[f64]| (x[0] * x[0] + x[1]).abs()).separation(0.2);
+    /// let report = Search::with(Surrogate::default()).run(&problem, &Budget::evaluations(40))?;
+    /// assert!(report.hit_count() >= 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Surrogate {
         /// Points proposed at once, for evaluation in parallel.
         pub batch: usize = 1, 1..=1024;

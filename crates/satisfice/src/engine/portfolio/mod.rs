@@ -77,6 +77,15 @@ engine_settings! {
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
     /// share until something hits; any other source that finds nothing takes at most 4 % of the evaluations. All of them learn the
     /// hits of the others. No parameter depends on the problem.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};
+    /// let problem = from_fn(Space::lattice(2, 40)?, 2.5, |x: &[f64]| (x[0] - 30.0).hypot(x[1] - 20.0));
+    /// let report = Search::with(Portfolio::default()).run(&problem, &Budget::evaluations(5_000))?;
+    /// // The budget has room for all 1,600 points.
+    /// assert_eq!((report.hit_count(), report.completeness), (21, Completeness::Proved));
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
     pub struct Portfolio {
         /// Candidates proposed at once. By default as many as go on at once by the word of the budget, 4 in the
         /// first batch, and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
