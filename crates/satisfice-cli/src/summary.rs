@@ -89,10 +89,10 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&FoundSolution) -> Stri
     line(
         "time",
         format!(
-            "{}{}, stopped by {}",
+            "{}{}, {}",
             time(report.elapsed_seconds),
             rate(counts.evaluations, report.elapsed_seconds),
-            format!("{:?}", report.stop_reason).to_lowercase()
+            report.stop_reason
         ),
     );
     for (index, slice) in report.slices.iter().enumerate() {

@@ -158,7 +158,7 @@ impl Report {
     fn __repr__(&self) -> String {
         let report = &self.report;
         format!(
-            "<satisfice.Report {} hits in {} evaluations and {:.3} s by {} on {}, seed {}; stopped by {:?}, completeness {:?}>",
+            "<satisfice.Report {} hits in {} evaluations and {:.3} s by {} on {}, seed {}; {}, completeness {:?}>",
             report.hits,
             report.counts.evaluations,
             report.elapsed_seconds,

@@ -201,3 +201,19 @@ pub enum StopReason {
     /// The problem panicked, and the run was to [catch that](crate::RunOptions::catch_panics).
     Panicked,
 }
+
+/// For people, as the end of a line about the time.
+impl core::fmt::Display for StopReason {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Time => "stopped by time",
+            Self::Evaluations => "stopped by evaluations",
+            Self::Hits => "stopped by hits",
+            Self::Cancelled => "cancelled",
+            Self::Observer => "stopped by an observer",
+            Self::Exhausted => "ended because the engine has nothing more to propose",
+            Self::Covered => "finished",
+            Self::Panicked => "ended by a panic of the problem",
+        })
+    }
+}

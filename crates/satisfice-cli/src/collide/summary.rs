@@ -148,11 +148,8 @@ pub(super) fn elapsed(head: &Head) -> String {
         late if late > 0.0 => format!(", {} beyond the limit", shown::seconds(late)),
         _ => String::new(),
     };
-    let why = match head.stop_reason {
-        StopReason::Covered => "finished".to_owned(),
-        reason => format!("stopped by {}", format!("{reason:?}").to_lowercase()),
-    };
-    format!("{}{late}, {why}", shown::seconds(head.elapsed_seconds))
+    let elapsed = shown::seconds(head.elapsed_seconds);
+    format!("{elapsed}{late}, {}", head.stop_reason)
 }
 
 /// Why no more was done.

@@ -165,7 +165,7 @@ impl<T> core::fmt::Display for Report<T> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(
             f,
-            "{} hits in {} evaluations ({} duplicates) and {:.3} s by {} on {}, seed {}; stopped by {:?}; completeness {:?}",
+            "{} hits in {} evaluations ({} duplicates) and {:.3} s by {} on {}, seed {}; {}; completeness {:?}",
             self.archive.len(),
             self.counts.evaluations,
             self.counts.duplicates,

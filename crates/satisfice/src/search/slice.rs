@@ -110,14 +110,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let limit = self.ledger.remaining();
         self.candidates.probing = from == BatchSource::Probes;
         let ledger = &self.ledger;
-        self.candidates.prepare(
-            problem,
-            &ledger.archive,
-            &mut self.batch,
-            limit,
-            deletes,
-            || ledger.is_interrupted(),
-        );
+        self.candidates
+            .prepare(problem, &ledger.archive, &mut self.batch, limit, deletes, || {
+                ledger.is_interrupted()
+            });
         self.stage = Stage::Settle(from);
     }
 

@@ -72,10 +72,7 @@ pub(super) fn audit<S: Real>(
         let (limit, spent) = (report.budget.evaluations, counts.evaluations);
         say(
             EngineLaw::Budget,
-            format!(
-                "{spent} of {limit:?} evaluations, stopped by {:?}",
-                report.stop_reason
-            ),
+            format!("{spent} of {limit:?} evaluations, {}", report.stop_reason),
         );
     }
     let countable = case.space.cardinality().is_some_and(|points| points < 1e5);
