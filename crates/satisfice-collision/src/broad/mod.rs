@@ -25,8 +25,8 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use boxes::{Box32, Dirty, order_by_median};
-pub(crate) use clip::{BlockBounds, inflate, intersection};
+pub(crate) use boxes::{Box32, Dirty, fold, order_by_median};
+pub(crate) use clip::{BlockBounds, greater, inflate, intersection, lesser};
 pub use closest::closest_pairs;
 pub(crate) use closest::{Closest, find_closest};
 pub use features::{FeatureTree, Refit};

@@ -6,14 +6,15 @@
 //! bound is not below the upper one, the answer is proved. So that there is an upper bound early, a pair that is proved free for half as long as
 //! all before it is asked about at once.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::Separation;
 use super::advance::Goal;
+use super::meetings::{Meet, Meetings};
 use super::query::{Impact, free_until, within};
 use super::step::{FeatureList, MovingContact, Step};
-use super::tree::{LANES, MIXED, Meetings, MovingBox, MovingTree};
+use super::tree::{LANES, MIXED, MovingBox, MovingTree};
+use super::waiting::{FEATURE, GroupOrFeature, Waiting};
 use crate::Error;
 use crate::distance::PairKind;
 
@@ -40,55 +41,25 @@ pub struct Earliest {
     pub queries: u64,
 }
 
-/// Two groups of boxes that wait.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Waiting {
-    /// When their boxes first meet.
-    time: f64,
-    kind: u8,
-    a: GroupOrFeature,
-    b: GroupOrFeature,
+/// Where both features of a kind of pairs come from.
+#[derive(Clone, Copy)]
+struct Sides<'s> {
+    lists: [FeatureList; 2],
+    trees: [&'s MovingTree; 2],
 }
 
-/// A group of boxes, or a feature.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct GroupOrFeature {
-    level: u8,
-    group: u32,
-}
-
-/// The level of nodes that are features.
-const FEATURE: u8 = u8::MAX;
-
-impl Eq for Waiting {}
-
-impl Ord for Waiting {
-    /// The earliest is the greatest; among equals the lowest in the tree.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let depth = |waiting: &Self| {
-            (
-                waiting.a.level != FEATURE,
-                waiting.a.level.wrapping_add(waiting.b.level),
-            )
-        };
-        let place = |waiting: &Self| (waiting.kind, waiting.a.group, waiting.b.group);
-        other
-            .time
-            .total_cmp(&self.time)
-            .then_with(|| depth(other).cmp(&depth(self)))
-            .then_with(|| place(other).cmp(&place(self)))
-    }
-}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
+impl Sides<'_> {
+    fn is_one_list(&self) -> bool {
+        self.lists[0] == self.lists[1]
     }
 }
 
 /// The state of a search.
 struct Descent<'s> {
     step: &'s Step,
+    /// By kind, for those that are looked for.
+    sides: [Option<Sides<'s>>; KINDS.len()],
+    has_rigid_bodies: bool,
     separation: Separation,
     tolerance: f64,
     margin: f32,
@@ -141,6 +112,8 @@ impl Step {
         let tolerance = Goal::checked(tolerance)?;
         let mut descent = Descent {
             step: self,
+            sides: [None; KINDS.len()],
+            has_rigid_bodies: self.has_rigid_bodies(),
             separation,
             tolerance,
             margin: self.margin(separation.get()),
@@ -157,11 +130,13 @@ impl Step {
             },
         };
         for &kind in kinds {
-            Self::lists(kind)?;
-            let number = KINDS.iter().position(|known| *known == kind).unwrap_or_default();
-            descent.start(number as u8)?;
+            let lists = Self::lists(kind)?;
+            let trees = lists.map(|list| self.tree(list));
+            if let Some(number) = KINDS.iter().position(|known| *known == kind) {
+                descent.start(number as u8, Sides { lists, trees });
+            }
         }
-        descent.run(stop)
+        Ok(descent.run(stop))
     }
 
     /// A time up to which the step is proved free of hits, and which is at most 1e-6 before the first one. Above 0 whenever the
@@ -211,8 +186,9 @@ impl Step {
 }
 
 impl<'s> Descent<'s> {
-    fn start(&mut self, number: u8) -> Result<(), Error> {
-        let [a, b] = self.trees(number)?;
+    fn start(&mut self, number: u8, sides: Sides<'s>) {
+        self.sides[number as usize] = Some(sides);
+        let [a, b] = sides.trees;
         let root = |tree: &MovingTree| GroupOrFeature {
             level: tree.levels.len() as u8 - 1,
             group: 0,
@@ -224,15 +200,9 @@ impl<'s> Descent<'s> {
             a,
             b,
         });
-        Ok(())
     }
 
-    fn trees(&self, number: u8) -> Result<[&'s MovingTree; 2], Error> {
-        let step: &'s Step = self.step;
-        Ok(Step::lists(KINDS[number as usize])?.map(|list| step.tree(list)))
-    }
-
-    fn run(mut self, stop: &mut dyn FnMut() -> bool) -> Result<Earliest, Error> {
+    fn run(mut self, stop: &mut dyn FnMut() -> bool) -> Earliest {
         let mut rounds = 0_u32;
         while let Some(next) = self.at_once.pop().or_else(|| self.waiting.pop()) {
             if next.time >= self.best.time[1] {
@@ -247,30 +217,31 @@ impl<'s> Descent<'s> {
             if rounds.is_multiple_of(16) && stop() {
                 self.best.undecided = (self.waiting.len() + self.at_once.len()) as u64 + 1;
                 self.best.time[0] = self.best.time[0].min(next.time);
-                return Ok(self.best);
+                return self.best;
             }
             self.now = next.time;
-            let lists = Step::lists(KINDS[next.kind as usize])?;
-            let trees = self.trees(next.kind)?;
+            let Some(sides) = self.sides[next.kind as usize] else {
+                continue;
+            };
             match (next.a.level, next.b.level) {
                 (FEATURE, _) => self.ask(
                     KINDS[next.kind as usize],
-                    lists,
+                    sides.lists,
                     [next.a.group, next.b.group],
                     next.time,
                 ),
-                (0, 0) => self.look(&next, lists, trees),
-                (a, b) if a > b => self.open_first(&next, trees),
-                (a, b) if b > a => self.open_second(&next, trees),
-                _ => self.open_both(&next, trees, lists[0] == lists[1]),
+                (0, 0) => self.look(&next, &sides),
+                (a, b) if a > b => self.open_first(&next, sides.trees),
+                (a, b) if b > a => self.open_second(&next, sides.trees),
+                _ => self.open_both(&next, &sides),
             }
         }
         self.best.is_proved = true;
-        Ok(self.best)
+        self.best
     }
 
     fn wait(&mut self, kind: u8, time: f64, a: GroupOrFeature, b: GroupOrFeature) {
-        if time < self.best.time[1] && !self.is_one_rigid_body(kind, a, b) {
+        if time < self.best.time[1] && !(self.has_rigid_bodies && self.is_one_rigid_body(kind, a, b)) {
             self.push(Waiting { time, kind, a, b });
         }
     }
@@ -284,10 +255,15 @@ impl<'s> Descent<'s> {
     }
 
     fn is_one_rigid_body(&self, kind: u8, a: GroupOrFeature, b: GroupOrFeature) -> bool {
-        self.trees(kind).is_ok_and(|[first, second]| {
-            let body = first.rigid_body(a.level as usize, a.group);
-            body != MIXED && body == second.rigid_body(b.level as usize, b.group)
-        })
+        self.sides[kind as usize].is_some_and(
+            |Sides {
+                 trees: [first, second],
+                 ..
+             }| {
+                let body = first.rigid_body(a.level as usize, a.group);
+                body != MIXED && body == second.rigid_body(b.level as usize, b.group)
+            },
+        )
     }
 
     /// Replaces the first of two groups, the one of a higher level, by its groups.
@@ -310,8 +286,9 @@ impl<'s> Descent<'s> {
     }
 
     /// Replaces both groups; each pair of groups of one list once.
-    fn open_both(&mut self, of: &Waiting, trees: [&MovingTree; 2], is_one_list: bool) {
-        let meetings = self.meetings(of, trees);
+    fn open_both(&mut self, of: &Waiting, sides: &Sides<'s>) {
+        let meetings = self.meetings(of, sides);
+        let is_one_list = sides.is_one_list();
         for (lane, mask) in meetings.masks.iter().enumerate() {
             let child = |node: GroupOrFeature, lane: usize| GroupOrFeature {
                 level: node.level - 1,
@@ -327,17 +304,27 @@ impl<'s> Descent<'s> {
         }
     }
 
-    fn meetings(&self, of: &Waiting, trees: [&MovingTree; 2]) -> Meetings {
-        let [a, b] = [(trees[0], of.a), (trees[1], of.b)]
-            .map(|(tree, node)| &tree.levels[node.level as usize][node.group as usize]);
-        let lanes = trees[0].lanes(of.a.level as usize, of.a.group);
-        a.meetings(lanes, self.margin, b, (self.best.time[1] as f32).next_up())
+    fn meetings(&self, of: &Waiting, sides: &Sides<'s>) -> Meetings {
+        let [first, second] = sides.trees;
+        let group = |tree: &'s MovingTree, node: GroupOrFeature| {
+            &tree.levels[node.level as usize][node.group as usize]
+        };
+        let is_same = sides.is_one_list() && of.a == of.b;
+        let meet = Meet {
+            a: group(first, of.a),
+            lanes: first.lanes(of.a.level as usize, of.a.group),
+            b: group(second, of.b),
+            around_b: (!is_same).then(|| second.box_around(of.b.level as usize, of.b.group)),
+            margin: self.margin,
+        };
+        meet.until((self.best.time[1] as f32).next_up())
     }
 
     /// Looks at the pairs of features of two groups.
-    fn look(&mut self, of: &Waiting, lists: [FeatureList; 2], trees: [&MovingTree; 2]) {
-        let is_one_list = lists[0] == lists[1];
-        let meetings = self.meetings(of, trees);
+    fn look(&mut self, of: &Waiting, sides: &Sides<'s>) {
+        let Sides { lists, trees } = *sides;
+        let is_one_list = sides.is_one_list();
+        let meetings = self.meetings(of, sides);
         for (lane, mask) in meetings.masks.iter().enumerate() {
             let mask = match is_one_list && of.a == of.b {
                 true => mask & (!0 << (lane + 1)),

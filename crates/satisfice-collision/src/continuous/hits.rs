@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc;
 
 use super::advance::Goal;
+use super::meetings::Meet;
 use super::query::decide_during;
 use super::step::{FeatureList, MovingContact, Step};
-use super::tree::{LANES, MovingBox, MovingTree};
+use super::tree::{LANES, MovingTree};
 use super::{Decided, DecidedBy, Separation};
 use crate::Error;
 use crate::distance::PairKind;
@@ -188,36 +189,43 @@ impl PairSearch<'_> {
         let mut stack = Vec::new();
         for row in rows {
             let around = self.trees[0].box_around(0, row).grown(self.margin);
-            let lanes: Vec<MovingBox> = (0..self.trees[0].lanes(0, row) as u32)
-                .map(|lane| {
-                    self.trees[0]
-                        .box_of(0, row * LANES as u32 + lane)
-                        .grown(self.margin)
-                })
-                .collect();
             let least = if self.is_one_list() { row } else { 0 };
             let own = self.trees[0].rigid_body(0, row);
             self.trees[1].visit(&around, least, own, &mut stack, &mut |group| {
-                self.groups(row, &lanes, group, &mut found);
+                self.groups(row, group, &mut found);
             });
         }
         found
     }
 
     /// The features of a row against those of a group.
-    fn groups(&self, row: u32, lanes: &[MovingBox], group: u32, found: &mut FoundPairs) {
-        let boxes = &self.trees[1].levels[0][group as usize];
-        for (lane, of) in lanes.iter().enumerate() {
-            let mut mask = boxes.candidates(of);
-            if self.is_one_list() && row == group {
+    fn groups(&self, row: u32, group: u32, found: &mut FoundPairs) {
+        let is_same = self.is_one_list() && row == group;
+        let (own, boxes) = (
+            &self.trees[0].levels[0][row as usize],
+            &self.trees[1].levels[0][group as usize],
+        );
+        let meet = Meet {
+            a: own,
+            lanes: self.trees[0].lanes(0, row),
+            b: boxes,
+            around_b: (!is_same).then(|| self.trees[1].box_around(0, group)),
+            margin: self.margin,
+        };
+        for (lane, mut mask) in meet.masks().into_iter().enumerate() {
+            if is_same {
                 // Only the features after this one.
                 mask &= !0 << (lane + 1);
             }
+            if mask == 0 {
+                continue;
+            }
+            let of = own.lane(lane).grown(self.margin);
             let a = self.trees[0].order[row as usize * LANES + lane];
             while mask != 0 {
                 let other = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
-                let Some(during) = boxes.lane(other).meeting(of) else {
+                let Some(during) = boxes.lane(other).meeting(&of) else {
                     continue;
                 };
                 let b = self.trees[1].order[group as usize * LANES + other];

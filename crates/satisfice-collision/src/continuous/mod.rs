@@ -30,6 +30,7 @@ mod form;
 mod hits;
 mod hull;
 mod integers;
+mod meetings;
 mod motion;
 mod nearest;
 mod pairs;
@@ -43,6 +44,7 @@ mod swept;
 mod system;
 mod tree;
 mod vector;
+mod waiting;
 
 pub use crate::distance::DecidedBy;
 pub use earliest::Earliest;

@@ -219,8 +219,14 @@ impl Step {
         }
     }
 
+    /// Whether any body collides with others only.
+    pub(super) fn has_rigid_bodies(&self) -> bool {
+        self.bodies.iter().any(|body| !body.collides_with_itself)
+    }
+
     /// Whether two features, of different bodies or of one that collides with itself, can be a pair: they share no vertex,
     /// and two vertices are not joined by an edge.
+    #[inline]
     pub(super) fn may_pair(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
         if self.is_one_deforming_body() {
             return !self.share_a_vertex(lists, a, b);
@@ -232,6 +238,7 @@ impl Step {
         self.bodies[body_a as usize].collides_with_itself && !self.share_a_vertex(lists, a, b)
     }
 
+    #[inline(always)]
     fn share_a_vertex(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
         match lists {
             [FeatureList::Vertices, FeatureList::Triangles] => self.triangles[b as usize].contains(&a),
@@ -249,6 +256,7 @@ impl Step {
     }
 
     /// Whether all features belong to one body that collides with itself.
+    #[inline]
     fn is_one_deforming_body(&self) -> bool {
         matches!(self.bodies.as_slice(), [body] if body.collides_with_itself)
     }
@@ -261,20 +269,29 @@ impl Step {
     pub(super) fn tree(&self, list: FeatureList) -> &MovingTree {
         self.trees[list as usize].get_or_init(|| {
             let frame = self.frame();
-            let body = |number: u32| {
-                let body = self.feature(list, number).body;
-                let is_rigid = !self.bodies[body as usize].collides_with_itself;
-                (body, if is_rigid { body } else { MIXED })
-            };
+            let bodies = (0..).zip(&self.bodies).map(|(number, body)| {
+                let rigid = if body.collides_with_itself { MIXED } else { number };
+                (body.first[list as usize] as usize, rigid)
+            });
+            let bodies: Vec<(usize, u32)> = bodies.collect();
             let vertices = frame.boxes(&self.from, &self.to);
             let around =
                 |corners: &[u32]| MovingBox::around(corners.iter().map(|&corner| &vertices[corner as usize]));
-            let boxes = match list {
-                FeatureList::Vertices => vertices,
-                FeatureList::Edges => self.edges.iter().map(|edge| around(edge)).collect(),
-                FeatureList::Triangles => self.triangles.iter().map(|triangle| around(triangle)).collect(),
-            };
-            MovingTree::new(&boxes, body)
+            match list {
+                FeatureList::Vertices => {
+                    MovingTree::new(vertices.len(), |vertex| vertices[vertex as usize], &bodies)
+                }
+                FeatureList::Edges => MovingTree::new(
+                    self.edges.len(),
+                    |edge| around(&self.edges[edge as usize]),
+                    &bodies,
+                ),
+                FeatureList::Triangles => MovingTree::new(
+                    self.triangles.len(),
+                    |triangle| around(&self.triangles[triangle as usize]),
+                    &bodies,
+                ),
+            }
         })
     }
 

@@ -6,13 +6,12 @@
 //!
 //! Boxes are in single precision, rounded outwards, in a frame centred on the scene and scaled to its size.
 
-use crate::broad::{Box32, order_by_median};
+use crate::broad::{fold, greater, lesser, order_by_median};
 use crate::distance::Point;
-use crate::simd::{self, Floats};
+use crate::simd::Eight;
 
 /// Boxes of a group.
 pub(super) const LANES: usize = 8;
-type Lanes = [f32; LANES];
 
 /// Where the frame of the boxes lies.
 #[derive(Debug, Clone, Copy)]
@@ -32,8 +31,8 @@ pub(super) struct MovingBox {
 /// Eight boxes, a lane each. Unused lanes are empty boxes, apart from all others.
 #[derive(Debug, Clone)]
 pub(super) struct MovingGroup {
-    min: [[Lanes; 3]; 2],
-    max: [[Lanes; 3]; 2],
+    pub(super) min: [[Eight; 3]; 2],
+    pub(super) max: [[Eight; 3]; 2],
 }
 
 /// The boxes of a list of features.
@@ -43,7 +42,7 @@ pub(super) struct MovingTree {
     pub(super) order: Vec<u32>,
     /// From the groups of features to the root. A group's number is the number of its box one level higher.
     pub(super) levels: Vec<Vec<MovingGroup>>,
-    /// For every group the rigid body that all its features belong to, or [`MIXED`].
+    /// For every group the rigid body that all its features belong to, or [`MIXED`]; empty if there is none.
     rigid: Vec<Vec<u32>>,
 }
 
@@ -100,22 +99,6 @@ fn above(x: f32) -> f32 {
     x + (x.abs() * 4.0 * f32::EPSILON + 1e-12)
 }
 
-/// A lower end less a margin, rounded down.
-#[inline(always)]
-fn lowered(x: f32, margin: f32) -> f32 {
-    if margin == 0.0 {
-        x
-    } else {
-        (x - margin).next_down()
-    }
-}
-
-/// An upper end and a margin, rounded up.
-#[inline(always)]
-fn raised(x: f32, margin: f32) -> f32 {
-    if margin == 0.0 { x } else { (x + margin).next_up() }
-}
-
 impl MovingBox {
     const EMPTY: Self = Self {
         min: [[f32::INFINITY; 3]; 2],
@@ -132,34 +115,30 @@ impl MovingBox {
     }
 
     fn include(&mut self, other: &Self) {
-        let less = |x: f32, y: f32| if x < y { x } else { y };
-        let more = |x: f32, y: f32| if x > y { x } else { y };
         for end in 0..2 {
             for k in 0..3 {
-                self.min[end][k] = less(other.min[end][k], self.min[end][k]);
-                self.max[end][k] = more(other.max[end][k], self.max[end][k]);
+                self.min[end][k] = lesser(other.min[end][k], self.min[end][k]);
+                self.max[end][k] = greater(other.max[end][k], self.max[end][k]);
             }
         }
     }
 
     /// The box grown by a margin on every side.
+    #[inline(always)]
     pub(super) fn grown(&self, margin: f32) -> Self {
+        if margin == 0.0 {
+            return *self;
+        }
         Self {
-            min: self.min.map(|p| p.map(|x| lowered(x, margin))),
-            max: self.max.map(|p| p.map(|x| raised(x, margin))),
+            min: self.min.map(|p| p.map(|x| (x - margin).next_down())),
+            max: self.max.map(|p| p.map(|x| (x + margin).next_up())),
         }
     }
 
-    /// The middle at half of the step.
-    fn middle(&self) -> Box32 {
-        let middle = std::array::from_fn(|k| {
-            let sum = |end: usize| self.min[end][k] + self.max[end][k];
-            0.25 * (sum(0) + sum(1))
-        });
-        Box32 {
-            min: middle,
-            max: middle,
-        }
+    /// Four times the middle at half of the step.
+    fn middle(&self) -> [f32; 3] {
+        let sum = |end: usize, k: usize| self.min[end][k] + self.max[end][k];
+        std::array::from_fn(|k| sum(0, k) + sum(1, k))
     }
 
     /// Bounds of the times at which two boxes meet, or `None` if they are apart all the time.
@@ -183,89 +162,7 @@ impl MovingBox {
     }
 }
 
-/// When the boxes of two groups first meet.
-#[derive(Debug, Clone)]
-pub(super) struct Meetings {
-    /// For each box of the first group those of the second that are not apart from it until the time asked for, a bit each.
-    pub(super) masks: [u32; LANES],
-    /// Lower bounds of the times at which they first meet, where the bit is set.
-    pub(super) first: [Lanes; LANES],
-}
-
-/// The work of [`MovingGroup::meetings`].
-struct Meet<'g> {
-    a: &'g MovingGroup,
-    b: &'g MovingGroup,
-    lanes: usize,
-    margin: f32,
-    until: f32,
-}
-
-impl simd::Work for Meet<'_> {
-    type Output = Meetings;
-
-    /// A gap is a difference of two numbers, so its sign is right and its value off by one rounding; a quotient of gaps is off by
-    /// less than four. A gap above 0 that shrinks is above 0 until a time if it is so, as computed with four roundings, until
-    /// one that is later by a hundred roundings.
-    #[inline(always)]
-    fn run<L: simd::Lanes>(self, lanes: L) -> Meetings {
-        let s = lanes.single();
-        let zero = s.splat(0.0);
-        let down = s.splat(1.0 - 8.0 * f32::EPSILON);
-        let until = s.splat(self.until * (1.0 + 100.0 * f32::EPSILON));
-        let mut meetings = Meetings {
-            masks: [0; LANES],
-            first: [[0.0; LANES]; LANES],
-        };
-        for lane in 0..self.lanes {
-            let mut apart = s.splat(-1.0);
-            let mut gaps = [[zero; 2]; 6];
-            for k in 0..3 {
-                let (mut after, mut before) = ([zero; 2], [zero; 2]);
-                for (end, (after, before)) in after.iter_mut().zip(&mut before).enumerate() {
-                    let max = s.splat(raised(self.a.max[end][k][lane], self.margin));
-                    let min = s.splat(lowered(self.a.min[end][k][lane], self.margin));
-                    *after = s.sub(s.load(&self.b.min[end][k]), max);
-                    *before = s.sub(min, s.load(&self.b.max[end][k]));
-                }
-                for [from, to] in [after, before] {
-                    let last = s.mul_add(until, s.sub(to, from), from);
-                    // in this order an empty box, whose last gap is no number, is apart
-                    apart = s.max(s.min(last, from), apart);
-                }
-                gaps[2 * k] = after;
-                gaps[2 * k + 1] = before;
-            }
-            let mask = s.bits(s.at_most(apart, zero));
-            meetings.masks[lane] = mask;
-            if mask != 0 {
-                let mut first = zero;
-                for [from, to] in gaps {
-                    let from = s.max(from, zero);
-                    // NaN (of 0 / 0) is not greater.
-                    first = s.max(s.div(from, s.sub(from, to)), first);
-                }
-                meetings.first[lane] = s.store(s.mul(first, down));
-            }
-        }
-        meetings
-    }
-}
-
 impl MovingGroup {
-    /// When each of the first `lanes` boxes of this group, grown by a margin, meets the boxes of another group, if it does by the time
-    /// `until`.
-    #[inline]
-    pub(super) fn meetings(&self, lanes: usize, margin: f32, other: &Self, until: f32) -> Meetings {
-        simd::dispatch(Meet {
-            a: self,
-            b: other,
-            lanes,
-            margin,
-            until,
-        })
-    }
-
     const EMPTY: Self = Self {
         min: [[[f32::INFINITY; LANES]; 3]; 2],
         max: [[[f32::NEG_INFINITY; LANES]; 3]; 2],
@@ -280,6 +177,7 @@ impl MovingGroup {
         }
     }
 
+    #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> MovingBox {
         MovingBox {
             min: std::array::from_fn(|end| std::array::from_fn(|k| self.min[end][k][lane])),
@@ -288,68 +186,53 @@ impl MovingGroup {
     }
 
     fn union(&self) -> MovingBox {
-        let least = |lanes: &Lanes| lanes.iter().copied().fold(f32::INFINITY, f32::min);
-        let most = |lanes: &Lanes| lanes.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let least = |lanes: &Eight| fold(lanes, lesser);
+        let most = |lanes: &Eight| fold(lanes, greater);
         MovingBox {
             min: std::array::from_fn(|end| std::array::from_fn(|k| least(&self.min[end][k]))),
             max: std::array::from_fn(|end| std::array::from_fn(|k| most(&self.max[end][k]))),
         }
     }
-
-    /// The lanes that are not apart from a box in the same order at both ends, a bit each.
-    #[inline]
-    pub(super) fn candidates(&self, of: &MovingBox) -> u32 {
-        let mut apart = [0_u32; LANES];
-        for k in 0..3 {
-            let (min, max) = ([of.min[0][k], of.min[1][k]], [of.max[0][k], of.max[1][k]]);
-            let (lower, upper) = (
-                [&self.min[0][k], &self.min[1][k]],
-                [&self.max[0][k], &self.max[1][k]],
-            );
-            // Without branches, so that lanes become those of vector instructions.
-            for lane in 0..LANES {
-                let after = u32::from(lower[0][lane] > max[0]) & u32::from(lower[1][lane] > max[1]);
-                let before = u32::from(min[0] > upper[0][lane]) & u32::from(min[1] > upper[1][lane]);
-                apart[lane] |= after | before;
-            }
-        }
-        let mut mask = 0;
-        for (lane, apart) in apart.into_iter().enumerate() {
-            mask |= (apart ^ 1) << lane;
-        }
-        mask
-    }
 }
 
 impl MovingTree {
-    /// The tree over features with these boxes: `body` gives the body of each, and again if it is rigid or [`MIXED`]. Features
-    /// of a body stay together.
-    pub(super) fn new(boxes: &[MovingBox], body: impl Fn(u32) -> (u32, u32)) -> Self {
-        let middles: Vec<Box32> = boxes.iter().map(MovingBox::middle).collect();
-        let mut order = Vec::with_capacity(boxes.len());
-        while order.len() < boxes.len() {
-            // The features of a body follow each other.
-            let first = order.len();
-            let number = body(first as u32).0;
-            let rest = (first..boxes.len()).take_while(|&feature| body(feature as u32).0 == number);
-            let end = first + rest.count();
-            let within = order_by_median(&middles[first..end], false);
+    /// The tree over so many features with the boxes `of` them. `bodies` are where those of each body begin, and the body if it is rigid or [`MIXED`].
+    /// Features of a body stay together.
+    pub(super) fn new(count: usize, of: impl Fn(u32) -> MovingBox, bodies: &[(usize, u32)]) -> Self {
+        let mut order = Vec::with_capacity(count);
+        let mut owners = Vec::new();
+        let has_rigid = bodies.iter().any(|&(_, rigid)| rigid != MIXED);
+        for (number, &(first, rigid)) in bodies.iter().enumerate() {
+            let end = bodies.get(number + 1).map_or(count, |&(next, _)| next);
+            let middles = (first..end).map(|feature| of(feature as u32).middle());
+            let within = order_by_median(middles, false);
             order.extend(within.into_iter().map(|feature| feature + first as u32));
+            if has_rigid {
+                owners.resize(end, rigid);
+            }
         }
-        let mut rigid = vec![common(order.iter().map(|&feature| body(feature).1))];
-        let sorted = order.iter().map(|&feature| boxes[feature as usize]);
-        let mut levels = vec![groups(sorted)];
+        let mut levels = vec![groups(order.iter().map(|&feature| of(feature)))];
         while levels[levels.len() - 1].len() > 1 {
             let next = groups(levels[levels.len() - 1].iter().map(MovingGroup::union));
             levels.push(next);
-            rigid.push(common(rigid[rigid.len() - 1].iter().copied()));
+        }
+        let mut rigid: Vec<Vec<u32>> = Vec::new();
+        if has_rigid {
+            rigid.push(common(&owners));
+            for level in 1..levels.len() {
+                rigid.push(common(&rigid[level - 1]));
+            }
         }
         Self { order, levels, rigid }
     }
 
     /// The rigid body that all features of a group belong to, or [`MIXED`].
     pub(super) fn rigid_body(&self, level: usize, group: u32) -> u32 {
-        self.rigid[level].get(group as usize).copied().unwrap_or(MIXED)
+        let level = self.rigid.get(level);
+        level
+            .and_then(|level| level.get(group as usize))
+            .copied()
+            .unwrap_or(MIXED)
     }
 
     /// A box of a level.
@@ -428,8 +311,7 @@ impl MovingTree {
 }
 
 /// What all of eight have in common, or [`MIXED`].
-fn common(bodies: impl Iterator<Item = u32>) -> Vec<u32> {
-    let bodies: Vec<u32> = bodies.collect();
+fn common(bodies: &[u32]) -> Vec<u32> {
     let of_eight = |eight: &[u32]| {
         let all_the_same = eight.iter().all(|&body| body == eight[0]);
         if all_the_same { eight[0] } else { MIXED }
@@ -437,8 +319,8 @@ fn common(bodies: impl Iterator<Item = u32>) -> Vec<u32> {
     bodies.chunks(LANES).map(of_eight).collect()
 }
 
-fn groups(boxes: impl Iterator<Item = MovingBox>) -> Vec<MovingGroup> {
-    let mut groups = Vec::new();
+fn groups(boxes: impl ExactSizeIterator<Item = MovingBox>) -> Vec<MovingGroup> {
+    let mut groups = Vec::with_capacity(boxes.len().div_ceil(LANES));
     for (number, of) in boxes.enumerate() {
         if number % LANES == 0 {
             groups.push(MovingGroup::EMPTY);

@@ -106,7 +106,7 @@ impl BodyTree {
         {
             self.places.resize(most, NONE);
         }
-        let order = order_by_median(boxes.iter().map(|(_, bounds)| bounds), false);
+        let order = order_by_median(boxes.iter().map(|(_, bounds)| bounds.twice_centre()), false);
         let mut below: Vec<(u32, Box32)> = order.iter().map(|&at| boxes[at as usize]).collect();
         let mut level = 0;
         while self.root.is_none() && !below.is_empty() {
