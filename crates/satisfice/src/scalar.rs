@@ -136,3 +136,29 @@ pub(crate) fn copy_row<S: Copy>(to: &mut [S], from: &[S]) {
         (to, from) => to.copy_from_slice(from),
     }
 }
+
+/// Bits that are ordered as the numbers are.
+pub(crate) fn ordered(x: f64) -> u64 {
+    let bits = x.to_bits();
+    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_ordered_as_numbers_are() {
+        let numbers = [
+            f64::NEG_INFINITY,
+            -2.5,
+            -1e-300,
+            0.0,
+            1e-300,
+            1.0,
+            7.0,
+            f64::INFINITY,
+        ];
+        assert!(numbers.is_sorted_by(|&a, &b| ordered(a) < ordered(b)));
+    }
+}

@@ -96,3 +96,34 @@ fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {
         .unwrap();
     assert_ne!(short.completeness, Completeness::Proved);
 }
+
+/// The model of F costs a hundred times the time of other sources. Where it predicts nothing it is asked a few dozen times, whatever the
+/// others find; where it predicts F, most candidates are its own.
+#[test]
+fn a_model_that_predicts_nothing_is_not_asked_for_long() {
+    let asked = |delta: f64, fitness: fn(&[f64]) -> f64| {
+        let problem = from_fn(Space::lattice(6, 10).unwrap(), delta, fitness).boxed();
+        let report = Search::new()
+            .seed(1)
+            .run(&problem, &Budget::evaluations(400))
+            .unwrap();
+        let model = report
+            .sources
+            .names
+            .iter()
+            .position(|name| name == "model")
+            .unwrap();
+        report.sources.rows.last().unwrap().proposed[model]
+    };
+    let noise = |x: &[f64]| {
+        let digits = x.iter().fold(7_u64, |sum, &x| {
+            (sum ^ x as u64)
+                .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                .rotate_left(29)
+        });
+        (digits >> 11) as f64
+    };
+    let bowl = |x: &[f64]| x.iter().map(|x| (x.floor() - 6.0).powi(2)).sum::<f64>();
+    assert!(asked(-1.0, noise) < 80, "{}", asked(-1.0, noise));
+    assert!(asked(2.5, bowl) > 120, "{}", asked(2.5, bowl));
+}

@@ -2,7 +2,7 @@
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
-use crate::engine::local::flood::Flood;
+use crate::engine::local::flood::{Flood, Order};
 use crate::engine::{Answers, Ask, Engine, Origin, WarmStart};
 use crate::error::Error;
 use crate::report::SourceCount;
@@ -29,7 +29,7 @@ impl<S: Real> FloodFill<S> {
     pub(in crate::engine) fn around(engine: Box<dyn Engine<S>>) -> Self {
         Self {
             inner: engine,
-            flood: Flood::new(FIRST_STEP),
+            flood: Flood::new(FIRST_STEP, Order::First),
             flooding: false,
             proposed: [0, 0],
             rest: None,

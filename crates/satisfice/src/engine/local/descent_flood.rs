@@ -1,7 +1,7 @@
 //! Restarted descent, and a flood fill from every hit.
 
 use super::descent::RestartedDescent;
-use super::flood::Flood;
+use super::flood::{Flood, Order};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
@@ -50,7 +50,7 @@ impl DescentFlood {
     fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
         Box::new(FloodingDescent {
             descent: RestartedDescent::new(self.step, self.shortest),
-            flood: Flood::new(self.flood_step),
+            flood: Flood::new(self.flood_step, Order::First),
             flooding: false,
         })
     }

@@ -1,8 +1,9 @@
 //! Exhaustion: from every hit its neighbours, breadth first.
 
+use core::cmp::Reverse;
 use core::hash::BuildHasher;
 use core::ops::Range;
-use std::collections::VecDeque;
+use std::collections::BinaryHeap;
 
 use foldhash::fast::FixedState;
 use hashbrown::HashTable;
@@ -10,7 +11,7 @@ use hashbrown::HashTable;
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
 use crate::error::Error;
-use crate::scalar::Real;
+use crate::scalar::{Real, ordered};
 use crate::state::{Part, Reader, Saved, State};
 
 /// Of positions; fixed, so that a run is the same on every machine.
@@ -21,6 +22,18 @@ const DOUBLINGS: usize = 8;
 /// Halvings afterwards: the step found is at most an eighth too long.
 const HALVINGS: usize = 3;
 
+/// Rows that are kept until twice as many have gone.
+const KEPT: usize = 1024;
+
+/// Which hit is next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::engine) enum Order {
+    /// The earliest: breadth first.
+    First,
+    /// The one of least F, which is deepest within its region: most of its neighbours are hits.
+    Best,
+}
+
 /// The hits whose neighbours are still to be proposed.
 ///
 /// Neighbours are the problem's own, or else the next lattice points; on continuous axes, in both directions of each axis, the
@@ -29,8 +42,11 @@ const HALVINGS: usize = 3;
 #[derive(Debug)]
 pub(in crate::engine) struct Flood<S> {
     first_step: S,
-    /// Positions, flat.
-    queue: VecDeque<S>,
+    order: Order,
+    /// The hits that wait, the next one on top: the ordered bits of its fitness where the best are first, and its row of `positions`.
+    queue: BinaryHeap<Reverse<(u64, usize)>>,
+    /// Of the hits since the queue was empty, flat.
+    positions: Vec<S>,
     /// Keys of the points proposed in this flood; two points under one key, 2^-64 likely, would cost one of them its turn.
     seen: HashTable<u64>,
     /// The hit whose neighbours are proposed, and the index of the next one; steps along axes follow the neighbours.
@@ -40,10 +56,12 @@ pub(in crate::engine) struct Flood<S> {
 
 impl<S: Real> Flood<S> {
     /// `first_step`: where the search for the nearest undeleted point begins, as a share of each continuous axis.
-    pub(in crate::engine) fn new(first_step: f64) -> Self {
+    pub(in crate::engine) fn new(first_step: f64, order: Order) -> Self {
         Self {
             first_step: S::of(first_step),
-            queue: VecDeque::new(),
+            order,
+            queue: BinaryHeap::new(),
+            positions: Vec::new(),
             seen: HashTable::new(),
             centre: Vec::new(),
             next: 0,
@@ -52,6 +70,7 @@ impl<S: Real> Flood<S> {
 
     pub(in crate::engine) fn clear(&mut self) {
         self.queue.clear();
+        self.positions.clear();
         self.seen.clear();
         self.centre.clear();
     }
@@ -59,10 +78,33 @@ impl<S: Real> Flood<S> {
     /// Puts new hits into the queue.
     pub(in crate::engine) fn add_hits(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
         for (position, outcome) in batch.points().zip(outcomes) {
-            if outcome.is_hit() {
-                self.queue.extend(position);
+            if let Outcome::Hit(fitness) = *outcome {
+                let key = match self.order {
+                    Order::First => 0,
+                    Order::Best => ordered(fitness.f64()),
+                };
+                let row = self.positions.len() / position.len().max(1);
+                self.queue.push(Reverse((key, row)));
+                self.positions.extend_from_slice(position);
             }
         }
+    }
+
+    /// Frees the rows that no longer wait, once they are more than those that do.
+    fn forget_old(&mut self, dimension: usize) {
+        if self.positions.len() < 2 * dimension * (self.queue.len() + KEPT) {
+            return;
+        }
+        let mut waiting: Vec<(u64, usize)> = self.queue.drain().map(|Reverse(entry)| entry).collect();
+        waiting.sort_unstable_by_key(|&(_, row)| row);
+        // Rows move to the front, in their order.
+        for (to, (_, row)) in waiting.iter_mut().enumerate() {
+            self.positions
+                .copy_within(*row * dimension..(*row + 1) * dimension, to * dimension);
+            *row = to;
+        }
+        self.positions.truncate(waiting.len() * dimension);
+        self.queue = waiting.into_iter().map(Reverse).collect();
     }
 
     /// Proposes neighbours of the next hit that has any left; `false` when all is flooded.
@@ -70,13 +112,19 @@ impl<S: Real> Flood<S> {
         let dimension = out.dimension();
         while out.is_empty() {
             if self.centre.len() != dimension {
-                if self.queue.len() < dimension {
+                // A restored row may be of another space.
+                let Some(Reverse((_, row))) = self.queue.pop() else {
                     self.clear();
                     return false;
-                }
+                };
                 self.centre.clear();
-                self.centre.extend(self.queue.drain(..dimension));
+                let place = row.saturating_mul(dimension);
+                let Some(position) = self.positions.get(place..place.saturating_add(dimension)) else {
+                    continue;
+                };
+                self.centre.extend_from_slice(position);
                 self.next = 0;
+                self.forget_old(dimension);
             }
             let seen = &mut self.seen;
             let mut propose = |position: &[S]| {
@@ -103,7 +151,10 @@ impl<S: Real> Flood<S> {
 
 impl<S: Real> Part for Flood<S> {
     fn save(&self, state: &mut State) {
-        Saved::save(&self.queue, state);
+        let mut queue: Vec<(u64, usize)> = self.queue.iter().map(|&Reverse(entry)| entry).collect();
+        queue.sort_unstable();
+        Saved::save(&queue, state);
+        Saved::save(&self.positions, state);
         Saved::save(&self.centre, state);
         Saved::save(&self.next, state);
         let mut seen: Vec<u64> = self.seen.iter().copied().collect();
@@ -112,7 +163,12 @@ impl<S: Real> Part for Flood<S> {
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        self.queue = from.read()?;
+        self.queue = from
+            .read::<Vec<(u64, usize)>>()?
+            .into_iter()
+            .map(Reverse)
+            .collect();
+        self.positions = from.read()?;
         self.centre = from.read()?;
         self.next = from.read()?;
         self.seen.clear();

@@ -10,6 +10,7 @@ use super::reach::{reach, square};
 use super::record::Record;
 use super::region::TrustRegion;
 use super::scales::Scales;
+use super::skill::Skill;
 use super::target::Target;
 use super::units::Units;
 use crate::context::Context;
@@ -24,6 +25,10 @@ const STEPS: (usize, usize) = (40, 8);
 const REPLACED: usize = 4;
 /// Rounds in which candidates are drawn around the best one, each time closer.
 const ROUNDS: usize = 3;
+/// Points beyond which half as many candidates are drawn for each proposal.
+const AT_FULL_EFFORT: usize = 128;
+/// New points at which the next fit is due, at most.
+const MOST_NEW: usize = 40;
 /// Candidates that are examined for one proposal.
 const EXAMINED: usize = 4096;
 
@@ -122,18 +127,19 @@ impl Model {
         model
     }
 
-    /// Whether new points are worth a fit: a few while there are few, every ten later.
+    /// Whether new points are worth a fit: an eighth more than at the last one.
     pub(super) fn is_due(&self, record: &Record) -> bool {
-        record.len() >= self.fitted + (self.fitted / 8).clamp(2, 10)
+        record.len() >= self.fitted + (self.fitted / 8).clamp(2, MOST_NEW)
     }
 
-    /// Adds the points that were told since.
-    pub(super) fn follow(&mut self, record: &Record) {
+    /// Adds the points that were told since, each of which is first predicted.
+    pub(super) fn follow(&mut self, record: &Record, skill: &mut Skill) {
         for i in self.taken..record.len() {
             if record.duplicates.binary_search(&i).is_err() {
                 self.region.known.push(i);
-                self.process
-                    .push(record.point(i), self.target.of(record.values[i]));
+                let value = self.target.of(record.values[i]);
+                let error = self.process.push(record.point(i), value);
+                skill.count(value, error);
             }
         }
         self.taken = record.len();
@@ -156,12 +162,21 @@ impl Model {
         }
     }
 
+    /// Half of an effort, once so many points are known that a new candidate costs most of the time.
+    fn effort(&self, most: usize) -> usize {
+        if self.process.len() > AT_FULL_EFFORT {
+            most.div_ceil(2)
+        } else {
+            most
+        }
+    }
+
     /// Draws some candidates again.
     pub(super) fn refresh<S: Real>(&mut self, given: &mut Given<'_, S>, rng: &mut SearchRng) {
         let least = least(given.record, &self.region.known);
         let (lengths, radius) = (self.lengths(), self.radius);
         let mut rounded = Vec::new();
-        for k in 0..REPLACED {
+        for k in 0..self.effort(REPLACED) {
             let source = self.source(given.units, given.record, &lengths);
             let is_known = &mut |x: &[f64]| given.is_known(x, radius, &mut rounded);
             let block = source.either(k, &least, is_known, rng);
@@ -181,7 +196,7 @@ impl Model {
         let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
         let lengths = self.lengths();
         let mut longest = 0.5;
-        for _ in 0..ROUNDS {
+        for _ in 0..self.effort(ROUNDS) {
             let radius = self.radius;
             let mut rounded = Vec::new();
             let source = self.source(given.units, given.record, &lengths);

@@ -15,9 +15,11 @@ mod reach;
 mod record;
 mod region;
 mod scales;
+mod skill;
 mod surrogate;
 mod target;
 mod units;
 
 pub use gaussian_process::GaussianProcess;
+pub(super) use surrogate::ModelledSearch;
 pub use surrogate::Surrogate;

@@ -64,8 +64,8 @@ impl Process {
         self.solved.len()
     }
 
-    /// Adds a point. Cost: n² / 2.
-    pub(super) fn push(&mut self, input: &[f64], value: f64) {
+    /// Adds a point, and returns by how much it was predicted wrongly. Cost: n² / 2.
+    pub(super) fn push(&mut self, input: &[f64], value: f64) -> f64 {
         let fit = &mut self.fit;
         fit.points.push(self.scales.scaled_point(input).into_iter());
         let new = fit.points.len() - 1;
@@ -82,6 +82,7 @@ impl Process {
             .zip(&self.solved)
             .fold(value - fit.mean, |sum, (l, z)| sum - l * z);
         self.solved.push(known * fit.factor.inverse_pivot(new));
+        known
     }
 
     /// Brings a block back to what the first `len` points say.

@@ -6,6 +6,7 @@ use super::process::Process;
 use super::record::{Kind, Record};
 use super::region::TrustRegion;
 use super::scales::Scales;
+use super::skill::Skill;
 use super::target::Target;
 use super::units::Units;
 use crate::batch::{Batch, Outcome};
@@ -31,7 +32,7 @@ engine_settings! {
     ///   engine learns how far apart distinct hits are.
     /// - Logarithmic axes are seen by their logarithm, periodic ones as circles, permutations by the ranks of their keys. Integers are rounded
     ///   before the kernel sees them, and any two categories are equally far apart.
-    /// - Scales are the likeliest ones under a weak prior, found anew every ten points.
+    /// - Scales are the likeliest ones under a weak prior, found anew whenever the points are an eighth more, or 40.
     /// - Beyond `points` points a model knows the 128 points next to a hit, and the next one those next to another.
     ///
     /// Cost of a proposal: O(n²) for n points that a model knows; see `docs/results/expensive.md`. For an F that takes a
@@ -67,17 +68,7 @@ impl EngineConfig for Surrogate {
 
 impl Surrogate {
     fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
-        Box::new(ModelledSearch {
-            settings: self.clone(),
-            units: Units::default(),
-            record: Record::default(),
-            shift: Vec::new(),
-            started: 0,
-            pending: Vec::new(),
-            model: None,
-            position: Vec::new(),
-            enumerated: 0,
-        })
+        Box::new(ModelledSearch::new(self.clone()))
     }
 }
 
@@ -88,7 +79,7 @@ const ENUMERABLE: f64 = 1e6;
 
 /// The engine of [`Surrogate`].
 #[derive(Debug)]
-struct ModelledSearch<S> {
+pub(in crate::engine) struct ModelledSearch<S> {
     settings: Surrogate,
     units: Units,
     record: Record,
@@ -99,12 +90,33 @@ struct ModelledSearch<S> {
     /// Points that are proposed and not told yet.
     pending: Vec<Vec<f64>>,
     model: Option<Model>,
+    skill: Skill,
     position: Vec<S>,
     /// Points of the enumeration that were looked at.
     enumerated: usize,
 }
 
 impl<S: Real> ModelledSearch<S> {
+    pub(in crate::engine) fn new(settings: Surrogate) -> Self {
+        Self {
+            settings,
+            units: Units::default(),
+            record: Record::default(),
+            shift: Vec::new(),
+            started: 0,
+            pending: Vec::new(),
+            model: None,
+            skill: Skill::default(),
+            position: Vec::new(),
+            enumerated: 0,
+        }
+    }
+
+    /// Whether the model predicts F better than its mean does; `None` before that is known.
+    pub(in crate::engine) fn is_useful(&self) -> Option<bool> {
+        self.skill.is_useful()
+    }
+
     /// The next point of the design that is new.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let axes = self.units.len();
@@ -153,7 +165,7 @@ impl<S: Real> ModelledSearch<S> {
                 rng,
             ),
         };
-        model.follow(&self.record);
+        model.follow(&self.record, &mut self.skill);
         model.refresh(&mut given, rng);
         let known = model.process.len();
         for point in &self.pending {
@@ -214,6 +226,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         self.started = 0;
         self.pending.clear();
         self.model = None;
+        self.skill = Skill::default();
         self.enumerated = 0;
         self.position = vec![S::zero(); context.space().dimension()];
     }
@@ -268,6 +281,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         Part::save(&self.enumerated, state);
         Part::save(&self.position, state);
         Part::save(&self.units.saved(), state);
+        Part::save(&self.skill.saved(), state);
         Part::save(&self.model.is_some(), state);
         if let Some(model) = &self.model {
             model.save(state);
@@ -284,6 +298,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         self.units = Units::restored(&from.read::<Vec<f64>>()?)
             .filter(|units| units.len() == self.record.axes())
             .ok_or_else(|| Error::State("its axes do not fit".to_owned()))?;
+        self.skill = Skill::restored(from.read()?);
         self.model = if from.read()? {
             Some(Model::restore(&self.record, &self.units, from)?)
         } else {

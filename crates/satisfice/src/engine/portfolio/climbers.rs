@@ -22,7 +22,7 @@ const FIRST_STEP: (f64, f64) = (0.01, 0.1);
 /// The first step from a near miss.
 const REFINING_STEP: f64 = 0.003;
 /// One search in so many starts at a near miss, where there is one.
-const REFINED: u64 = 4;
+const REFINED: u64 = 2;
 
 /// A move to a point that was evaluated before, and so cannot be a new hit, is drawn again at most this often.
 const DRAWS: usize = 4;

@@ -11,8 +11,11 @@ const MEMORY: f64 = 12.0;
 /// Prior of an arm, in hits. In evaluations it is as many as the search takes for these lately, so that an arm that was not
 /// tried is expected to be as good as the others.
 const PRIOR_HITS: f64 = 0.15;
-/// Share of all evaluations that a source which has found nothing may take, and so many for a start.
+/// Share of all evaluations that a source which has found nothing may take, and that all of these may take together.
 const BARREN_SHARE: f64 = 0.04;
+const BARREN_SHARES: f64 = 0.12;
+/// Evaluations that it may take for a start: one for each so many that are planned, up to so many.
+const PLANNED: f64 = 50.0;
 const BARREN_START: f64 = 8.0;
 /// Share of what is found from a hit that counts for the source which found the place.
 const PLACE_SHARE: f64 = 0.2;
@@ -24,6 +27,24 @@ pub(super) struct Credit {
     evaluations: f64,
     total_hits: u64,
     total_evaluations: u64,
+}
+
+/// How many evaluations a source may take that has found nothing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Trial {
+    start: f64,
+    share: f64,
+}
+
+impl Trial {
+    /// Of a search for which so many evaluations were planned, if that is known, and with so many sources that have found nothing.
+    pub(super) fn new(planned: Option<u64>, barren: usize) -> Self {
+        let start = planned.map_or(BARREN_START, |planned| planned as f64 / PLANNED);
+        Self {
+            start: start.clamp(1.0, BARREN_START),
+            share: (BARREN_SHARES / barren.max(1) as f64).min(BARREN_SHARE),
+        }
+    }
 }
 
 impl Credit {
@@ -43,9 +64,19 @@ impl Credit {
     }
 
     /// Whether it has found anything, or has taken little of the evaluations of the search in all, or no other has found anything.
-    pub(super) fn is_worth_trying(&self, all: &Self) -> bool {
-        let most = BARREN_START + BARREN_SHARE * all.total_evaluations as f64;
-        self.total_hits > 0 || all.total_hits == 0 || self.total_evaluations as f64 <= most
+    pub(super) fn is_worth_trying(&self, all: &Self, trial: Trial) -> bool {
+        all.total_hits == 0 || self.is_within(all, trial)
+    }
+
+    /// Whether it has found anything, or has taken little of the evaluations of the search in all.
+    pub(super) fn is_within(&self, all: &Self, trial: Trial) -> bool {
+        let most = trial.start + trial.share * all.total_evaluations as f64;
+        self.total_hits > 0 || self.total_evaluations as f64 <= most
+    }
+
+    /// Whether it has found nothing.
+    pub(super) fn is_barren(&self) -> bool {
+        self.total_hits == 0
     }
 
     /// Evaluations that one hit takes lately, by all of a search.
@@ -187,14 +218,25 @@ mod tests {
     #[test]
     fn what_finds_nothing_takes_a_bounded_share() {
         let (mut barren, mut all) = (Credit::default(), Credit::default());
-        assert!(barren.is_worth_trying(&all));
+        let alone = Trial::new(None, 1);
+        assert!(barren.is_worth_trying(&all, alone));
         for i in 0..10_000 {
             all.count(i == 0);
-            if barren.is_worth_trying(&all) {
+            if barren.is_worth_trying(&all, alone) {
                 barren.count(false);
             }
         }
         let share = barren.evaluations() as f64;
         assert!((400.0..412.0).contains(&share), "{share}");
+        assert!(!barren.is_within(&all, Trial::new(None, 10)));
+        // One of ten, of 10,000: 8 and 1.2 %. Of 50 planned: one for a start.
+        let evaluations = |most: u64| Credit {
+            total_evaluations: most,
+            ..Credit::default()
+        };
+        assert!(evaluations(128).is_within(&evaluations(10_000), Trial::new(Some(10_000), 10)));
+        assert!(!evaluations(129).is_within(&evaluations(10_000), Trial::new(Some(10_000), 10)));
+        assert!(evaluations(1).is_within(&evaluations(10), Trial::new(Some(50), 10)));
+        assert!(!evaluations(2).is_within(&evaluations(10), Trial::new(Some(50), 10)));
     }
 }

@@ -2,14 +2,14 @@
 
 use core::ops::Range;
 
-use super::credit::Credit;
+use super::credit::{Credit, Trial};
 use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
 use crate::engine::local::RestartedCmaEs;
-use crate::engine::local::flood::Flood;
-use crate::engine::model::Surrogate;
+use crate::engine::local::flood::{Flood, Order};
+use crate::engine::model::{ModelledSearch, Surrogate};
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
@@ -21,6 +21,9 @@ use crate::state::{Part, Reader, State};
 const MODELLED: u64 = 500;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
+/// Weight of the model until it is known to predict nothing. From then on it is bounded like all that finds nothing, even where nothing
+/// else has found anything: its proposals cost a hundred times the time of others.
+const MODEL_WEIGHT: f64 = 40.0;
 /// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
 const CANDIDATES: (usize, usize) = (256, 1024);
 const POINTS_OF_LEAST: u64 = 300;
@@ -28,6 +31,9 @@ const POINTS_OF_LEAST: u64 = 300;
 const CMA_AXES: usize = 200;
 /// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
 const MOST_SEARCHES: usize = 64;
+/// Regions that are split at once: one for so many evaluations planned, and so many at most.
+const EVALUATIONS_OF_A_REGION: u64 = 64;
+const MOST_REGIONS: usize = 8;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
 const FLOOD_STEP: f64 = 1e-3;
 
@@ -44,10 +50,36 @@ enum Kind {
     Model,
 }
 
+/// The model, or another engine.
+enum Member<S> {
+    Model(Box<ModelledSearch<S>>),
+    Other(Box<dyn Engine<S>>),
+}
+
+impl<S: Real> core::ops::Deref for Member<S> {
+    type Target = dyn Engine<S>;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Model(model) => &**model,
+            Self::Other(engine) => &**engine,
+        }
+    }
+}
+
+impl<S: Real> core::ops::DerefMut for Member<S> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        match self {
+            Self::Model(model) => &mut **model,
+            Self::Other(engine) => &mut **engine,
+        }
+    }
+}
+
 /// An engine and how it has fared.
 struct Guest<S> {
     kind: Kind,
-    engine: Box<dyn Engine<S>>,
+    engine: Member<S>,
     arm: Credit,
     /// Whether it may still have something to propose.
     open: bool,
@@ -62,6 +94,8 @@ struct Sizes {
     searches: usize,
     /// Candidates of the model.
     candidates: usize,
+    /// Regions that are split at once.
+    regions: usize,
 }
 
 impl Sizes {
@@ -77,12 +111,18 @@ impl Sizes {
         Self {
             searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
             candidates,
+            regions: planned.map_or(MOST_REGIONS, |planned| {
+                usize::try_from(planned / EVALUATIONS_OF_A_REGION)
+                    .unwrap_or(MOST_REGIONS)
+                    .clamp(1, MOST_REGIONS)
+            }),
         }
     }
 
     fn are_possible(&self) -> bool {
         (1..=MOST_SEARCHES).contains(&self.searches)
             && (CANDIDATES.0..=CANDIDATES.1).contains(&self.candidates)
+            && (1..=MOST_REGIONS).contains(&self.regions)
     }
 }
 
@@ -114,22 +154,25 @@ pub(super) enum Answer {
 impl<S: Real> Guest<S> {
     fn new(kind: Kind, sizes: Sizes) -> Self {
         let engine = match kind {
-            Kind::Cma => RestartedCmaEs {
-                searches: sizes.searches,
-                ..RestartedCmaEs::default()
-            }
-            .build(),
-            Kind::Flood => Box::new(FloodAlone(Flood::new(FLOOD_STEP))),
-            Kind::Regions => BranchAndBound {
-                batch: 8,
-                ..BranchAndBound::default()
-            }
-            .build(),
-            Kind::Model => Surrogate {
+            Kind::Cma => Member::Other(
+                RestartedCmaEs {
+                    searches: sizes.searches,
+                    ..RestartedCmaEs::default()
+                }
+                .build(),
+            ),
+            Kind::Flood => Member::Other(Box::new(FloodAlone(Flood::new(FLOOD_STEP, Order::Best)))),
+            Kind::Regions => Member::Other(
+                BranchAndBound {
+                    batch: sizes.regions,
+                    ..BranchAndBound::default()
+                }
+                .build(),
+            ),
+            Kind::Model => Member::Model(Box::new(ModelledSearch::new(Surrogate {
                 candidates: sizes.candidates,
                 ..Surrogate::default()
-            }
-            .build(),
+            }))),
         };
         Self {
             kind,
@@ -218,20 +261,33 @@ impl<S: Real> Guests<S> {
         Source::Guest as usize + self.guests[index].kind as usize
     }
 
+    pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
+        self.guests.iter().map(|guest| &guest.arm)
+    }
+
     /// Offers the credit of each that is worth trying and has no part of the batch yet, with its weight.
-    pub(super) fn arms<'a>(&'a self, all: &'a Credit) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
-        let ready = self.guests.iter().enumerate().filter(move |(_, guest)| {
-            let searches = matches!(guest.kind, Kind::Cma | Kind::Model);
-            guest.open && guest.own.is_empty() && (searches || guest.arm.is_worth_trying(all))
-        });
-        ready.map(|(index, guest)| {
-            let weight = match guest.kind {
-                Kind::Cma => 2.0,
-                Kind::Flood => 1.0,
-                Kind::Regions => 0.3,
-                Kind::Model => 40.0,
+    pub(super) fn arms<'a>(
+        &'a self,
+        all: &'a Credit,
+        trial: Trial,
+    ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
+        let ready = self.guests.iter().enumerate();
+        ready.filter_map(move |(index, guest)| {
+            if !guest.open || !guest.own.is_empty() {
+                return None;
+            }
+            let is_worth_trying = guest.arm.is_worth_trying(all, trial);
+            let weight = match (guest.kind, &guest.engine) {
+                (Kind::Cma, _) => Some(2.0),
+                (Kind::Flood, _) => is_worth_trying.then_some(1.0),
+                (Kind::Regions, _) => is_worth_trying.then_some(0.3),
+                (Kind::Model, Member::Model(model)) => match model.is_useful() {
+                    None | Some(true) => Some(MODEL_WEIGHT),
+                    Some(false) => guest.arm.is_within(all, trial).then_some(1.0),
+                },
+                (Kind::Model, Member::Other(_)) => None,
             };
-            (index, &guest.arm, weight)
+            weight.map(|weight| (index, &guest.arm, weight))
         })
     }
 
@@ -388,5 +444,29 @@ impl<S: Real> Engine<S> for FloodAlone<S> {
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         self.0.restore(from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The model takes four times the candidates at half the evaluations, regions are split one by one in a short search, and searches go
+    /// on side by side where evaluations do.
+    #[test]
+    fn short_searches_think_more_and_ask_for_less_at_once() {
+        let sizes = |parallel, planned| {
+            let sizes = Sizes::new(parallel, planned);
+            assert!(sizes.are_possible(), "{sizes:?}");
+            [sizes.searches, sizes.candidates, sizes.regions]
+        };
+        assert_eq!(sizes(1, None), [1, 256, 8]);
+        assert_eq!(sizes(1, Some(10_000)), [1, 256, 8]);
+        assert_eq!(sizes(1, Some(300)), [1, 256, 4]);
+        assert_eq!(sizes(1, Some(150)), [1, 1024, 2]);
+        assert_eq!(sizes(1, Some(50)), [1, 1024, 1]);
+        assert_eq!(sizes(1, Some(0)), [1, 1024, 1]);
+        assert_eq!(sizes(32, Some(u64::MAX)), [8, 256, 8]);
+        assert_eq!(sizes(usize::MAX, None), [64, 256, 8]);
     }
 }

@@ -6,7 +6,7 @@ use hashbrown::HashTable;
 
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
-use crate::scalar::Real;
+use crate::scalar::{Real, ordered};
 use crate::state::{Reader, Saved, State};
 
 /// Once so many candidates are known, only hits are expanded: some 60 MB at two axes.
@@ -244,30 +244,4 @@ fn key<S: Real>(position: &[S]) -> u64 {
         let hash = (hash.rotate_left(23) ^ x.to_word()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         hash ^ (hash >> 32)
     })
-}
-
-/// Bits that are ordered as the numbers are.
-fn ordered(x: f64) -> u64 {
-    let bits = x.to_bits();
-    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bits_are_ordered_as_numbers_are() {
-        let numbers = [
-            f64::NEG_INFINITY,
-            -2.5,
-            -1e-300,
-            0.0,
-            1e-300,
-            1.0,
-            7.0,
-            f64::INFINITY,
-        ];
-        assert!(numbers.is_sorted_by(|&a, &b| ordered(a) < ordered(b)));
-    }
 }

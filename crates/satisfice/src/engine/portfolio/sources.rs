@@ -5,7 +5,7 @@ mod proposals;
 use proposals::SCANNED;
 
 use super::climbers::Climbers;
-use super::credit::{Credit, Patches, draw};
+use super::credit::{Credit, Patches, Trial, draw};
 use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
@@ -58,6 +58,8 @@ pub(super) struct Sources<S> {
     next_descent: usize,
     descended: usize,
     patches: Patches,
+    /// Evaluations that were planned when the slice began, if that was known.
+    planned: Option<u64>,
     guests: Guests<S>,
     hits: Vec<S>,
     visited: Option<Visited>,
@@ -89,6 +91,7 @@ impl<S: Real> Sources<S> {
             next_descent: 0,
             descended: 0,
             patches: Patches::default(),
+            planned: None,
             guests: Guests::new(),
             hits: Vec::new(),
             visited: None,
@@ -142,7 +145,8 @@ impl<S: Real> Sources<S> {
         };
         offer(self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
         offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
-        let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole);
+        let trial = Trial::new(self.planned, self.barren());
+        let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
         if uses(Omitted::Swarms) && is_worth(1) {
             offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
         }
@@ -172,10 +176,16 @@ impl<S: Real> Sources<S> {
         {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
-        for (index, arm, weight) in self.guests.arms(&self.whole) {
+        for (index, arm, weight) in self.guests.arms(&self.whole, trial) {
             offer(arm.draw(price, weight, rng), (Source::Guest, index));
         }
         best.1
+    }
+
+    /// Number of sources that have found nothing.
+    fn barren(&self) -> usize {
+        let arms = self.arms.iter().chain(self.guests.credits());
+        arms.filter(|arm| arm.is_barren()).count()
     }
 
     fn role(&self, (source, index): Tag) -> Role {
@@ -215,6 +225,10 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.whole = Credit::default();
         self.patches = Patches::default();
         self.chosen = None;
+        // Those of the last batch name sources of the slice before.
+        self.tags.clear();
+        self.trials.clear();
+        self.planned = context.evaluations_planned();
         self.guests.begin(context, self.without == Omitted::Recombination);
         let late = match self.timing {
             NeighbourTiming::Auto => context.evaluations_planned().is_none(),
@@ -399,7 +413,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
-        (self.whole, self.patches, self.chosen).save(state);
+        (self.whole, self.patches, self.chosen, self.planned).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);
         for descent in &self.descents {
@@ -420,7 +434,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
-        (self.whole, self.patches, self.chosen) = from.read()?;
+        (self.whole, self.patches, self.chosen, self.planned) = from.read()?;
         (self.batch, self.block, self.next_descent) = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();

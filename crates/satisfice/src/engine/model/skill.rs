@@ -1,0 +1,88 @@
+//! How well a model has predicted what it was told.
+
+/// Predictions after which a past one counts for 1/e.
+const MEMORY: f64 = 64.0;
+/// So many predictions tell.
+const ENOUGH: u64 = 48;
+/// Share of the variance of F that a model predicts which is of use.
+const USEFUL: f64 = 0.25;
+
+/// The share of the variance of F that was predicted before F was known (prequential analysis: Dawid 1984, doi 10.2307/2981683).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Skill {
+    predictions: u64,
+    /// Sums that fade: of squared errors of the predictions and of the running mean, of values, and of ones.
+    errors: f64,
+    spread: f64,
+    values: f64,
+    weight: f64,
+}
+
+impl Skill {
+    /// Counts a value and the error with which it was predicted.
+    pub(super) fn count(&mut self, value: f64, error: f64) {
+        let keep = 1.0 - 1.0 / MEMORY;
+        if self.weight > 0.0 {
+            let from_mean = value - self.values / self.weight;
+            self.errors = keep * self.errors + error * error;
+            self.spread = keep * self.spread + from_mean * from_mean;
+            self.predictions += 1;
+        }
+        self.values = keep * self.values + value;
+        self.weight = keep * self.weight + 1.0;
+    }
+
+    /// Whether the model predicts better than the mean does; `None` before enough predictions tell.
+    pub(super) fn is_useful(&self) -> Option<bool> {
+        (self.predictions >= ENOUGH).then_some(self.errors < (1.0 - USEFUL) * self.spread)
+    }
+
+    pub(super) fn saved(&self) -> (u64, [f64; 4]) {
+        (
+            self.predictions,
+            [self.errors, self.spread, self.values, self.weight],
+        )
+    }
+
+    pub(super) fn restored((predictions, [errors, spread, values, weight]): (u64, [f64; 4])) -> Self {
+        Self {
+            predictions,
+            errors,
+            spread,
+            values,
+            weight,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_predicts_is_told_from_what_does_not() {
+        let value = |i: u64| (i as f64 * 0.618).fract();
+        let (mut good, mut none, mut worse) = (Skill::default(), Skill::default(), Skill::default());
+        for i in 0..200 {
+            assert_eq!(good.is_useful(), (i > ENOUGH).then_some(true), "{i}");
+            good.count(value(i), 0.1);
+            none.count(value(i), value(i) - 0.5);
+            worse.count(value(i), 0.6);
+        }
+        assert_eq!([none.is_useful(), worse.is_useful()], [Some(false); 2]);
+        // What was learned later counts.
+        for i in 0..300 {
+            worse.count(value(i), 0.05);
+        }
+        assert_eq!(worse.is_useful(), Some(true));
+    }
+
+    #[test]
+    fn to_predict_a_constant_is_of_no_use() {
+        let mut skill = Skill::default();
+        for _ in 0..=ENOUGH {
+            skill.count(1.0, 0.0);
+        }
+        assert_eq!(skill.is_useful(), Some(false));
+    }
+}
