@@ -42,8 +42,11 @@ pub(crate) fn html(report: &RunReport) -> anyhow::Result<String> {
     }
     page.fact("Completeness", summary::completeness(report));
     page.fact("Evaluations", shown::count(report.counts.evaluations));
+    if report.counts.bound_calls > 0 {
+        page.fact("Bounds", shown::count(report.counts.bound_calls));
+    }
     page.fact("Time", shown::seconds(report.elapsed_seconds));
-    page.fact("Stopped by", format!("{:?}", report.stop_reason).to_lowercase());
+    page.fact("End", report.stop_reason.to_string());
     if let Some(best) = &report.best {
         page.fact(
             "Least F",

@@ -86,6 +86,12 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&FoundSolution) -> Stri
             counts.evaluations, counts.fitness_calls, counts.duplicates, counts.non_finite
         ),
     );
+    if counts.bound_calls > 0 {
+        line(
+            "bounds",
+            format!("{}, each counted like an evaluation", counts.bound_calls),
+        );
+    }
     line(
         "time",
         format!(

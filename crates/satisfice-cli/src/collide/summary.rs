@@ -149,7 +149,12 @@ pub(super) fn elapsed(head: &Head) -> String {
         _ => String::new(),
     };
     let elapsed = shown::seconds(head.elapsed_seconds);
-    format!("{elapsed}{late}, {}", head.stop_reason)
+    let end = match head.stop_reason {
+        // All that was asked for was found before all pairs were examined.
+        StopReason::Exhausted => StopReason::Covered,
+        reason => reason,
+    };
+    format!("{elapsed}{late}, {end}")
 }
 
 /// Why no more was done.
