@@ -8,7 +8,7 @@ use super::advance::Goal;
 use super::meetings::Meet;
 use super::query::decide_during;
 use super::step::{FeatureList, MovingContact, Step};
-use super::tree::{LANES, MovingTree};
+use super::tree::{LANES, MIXED, MovingTree};
 use super::{Decided, DecidedBy, Separation};
 use crate::Error;
 use crate::distance::PairKind;
@@ -44,7 +44,7 @@ struct FoundPairs {
     by_integers: u64,
 }
 
-/// Groups that a thread searches at a time, between two looks at the stop condition.
+/// Groups that a thread searches at a time, between two looks at the stop condition; a multiple of eight.
 const ROWS: u32 = 16;
 
 impl Step {
@@ -187,31 +187,73 @@ impl PairSearch<'_> {
     fn rows(&self, rows: std::ops::Range<u32>) -> FoundPairs {
         let mut found = FoundPairs::default();
         let mut stack = Vec::new();
+        if self.trees.iter().all(|tree| tree.levels.len() > 1) {
+            // eight rows descend together
+            let lanes = LANES as u32;
+            for block in rows.start / lanes..rows.end.div_ceil(lanes) {
+                self.block(block, &mut stack, &mut found);
+            }
+            return found;
+        }
         for row in rows {
-            let around = self.trees[0].box_around(0, row).grown(self.margin);
-            let least = if self.is_one_list() { row } else { 0 };
-            let own = self.trees[0].rigid_body(0, row);
-            self.trees[1].visit(&around, least, own, &mut stack, &mut |group| {
+            self.descend(0, row, &mut stack, &mut |group| {
                 self.groups(row, group, &mut found);
             });
         }
         found
     }
 
+    /// Visits the groups of a level of the second tree that are not apart from one of the first, each pair once.
+    fn descend(&self, level: u8, of: u32, stack: &mut Vec<(u8, u32)>, visit: &mut impl FnMut(u32)) {
+        let first = self.trees[0];
+        let around = first.box_around(level.into(), of).grown(self.margin);
+        let least = if self.is_one_list() { of } else { 0 };
+        let own = first.rigid_body(level.into(), of);
+        self.trees[1].visit(level, &around, least, own, stack, visit);
+    }
+
+    /// The rows below a group of level 1.
+    fn block(&self, block: u32, stack: &mut Vec<(u8, u32)>, found: &mut FoundPairs) {
+        let [first, second] = self.trees;
+        self.descend(1, block, stack, &mut |other| {
+            let masks = self.meet(1, block, other).masks();
+            let is_same = self.is_one_list() && block == other;
+            for (lane, mut mask) in masks.into_iter().enumerate() {
+                if is_same {
+                    mask &= !0 << lane;
+                }
+                let row = block * LANES as u32 + lane as u32;
+                let own = first.rigid_body(0, row);
+                while mask != 0 {
+                    let group = other * LANES as u32 + mask.trailing_zeros();
+                    mask &= mask - 1;
+                    if own == MIXED || own != second.rigid_body(0, group) {
+                        self.groups(row, group, found);
+                    }
+                }
+            }
+        });
+    }
+
+    /// A group of a level of the first tree and one of the second.
+    fn meet(&self, level: u8, a: u32, b: u32) -> Meet<'_> {
+        let [first, second] = self.trees;
+        let number = usize::from(level);
+        let is_same = self.is_one_list() && a == b;
+        Meet {
+            a: &first.levels[number][a as usize],
+            lanes: first.lanes(number, a),
+            b: &second.levels[number][b as usize],
+            around_b: (!is_same).then(|| second.box_around(number, b)),
+            margin: self.margin,
+        }
+    }
+
     /// The features of a row against those of a group.
     fn groups(&self, row: u32, group: u32, found: &mut FoundPairs) {
         let is_same = self.is_one_list() && row == group;
-        let (own, boxes) = (
-            &self.trees[0].levels[0][row as usize],
-            &self.trees[1].levels[0][group as usize],
-        );
-        let meet = Meet {
-            a: own,
-            lanes: self.trees[0].lanes(0, row),
-            b: boxes,
-            around_b: (!is_same).then(|| self.trees[1].box_around(0, group)),
-            margin: self.margin,
-        };
+        let meet = self.meet(0, row, group);
+        let (own, boxes) = (meet.a, meet.b);
         for (lane, mut mask) in meet.masks().into_iter().enumerate() {
             if is_same {
                 // Only the features after this one.

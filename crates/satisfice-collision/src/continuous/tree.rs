@@ -278,10 +278,11 @@ impl MovingTree {
         below.saturating_sub(group as usize * LANES).min(LANES)
     }
 
-    /// Visits the groups of features, from number `least` on, whose box is not apart from `of`, leaving out those of the
+    /// Visits the groups of a level, from number `least` on, whose box is not apart from `of`, leaving out those of the
     /// rigid body `without`.
     pub(super) fn visit(
         &self,
+        floor: u8,
         of: &MovingBox,
         least: u32,
         without: u32,
@@ -291,7 +292,7 @@ impl MovingTree {
         stack.clear();
         stack.push((self.levels.len() as u8 - 1, 0));
         while let Some((level, group)) = stack.pop() {
-            if level == 0 {
+            if level == floor {
                 visit(group);
                 continue;
             }
@@ -299,8 +300,8 @@ impl MovingTree {
             while mask != 0 {
                 let child = group * LANES as u32 + mask.trailing_zeros();
                 mask &= mask - 1;
-                // The last group of features below the child.
-                let last = ((u64::from(child) + 1) << (3 * (u32::from(level) - 1))) - 1;
+                // The last group of the floor below the child.
+                let last = ((u64::from(child) + 1) << (3 * u32::from(level - 1 - floor))) - 1;
                 let is_own = without != MIXED && self.rigid_body(usize::from(level) - 1, child) == without;
                 if last >= u64::from(least) && !is_own {
                     stack.push((level - 1, child));
