@@ -274,6 +274,20 @@ fn a_false_record_is_found_out() {
     }
 }
 
+/// A search by bounds spends most of its budget on them: a report that leaves them out has not spent its budget.
+#[test]
+fn bounds_count_towards_the_budget_that_was_spent() {
+    let instance = catalogue::find("rastrigin").unwrap().build([]).unwrap();
+    let spec = RunSpec::new("branch-and-bound").evaluations(500);
+    let mut report = instance.run(&spec, RunControl::default()).unwrap();
+    assert_eq!(report.stop_reason, satisfice::StopReason::Evaluations);
+    assert!(report.counts.evaluations < 500 && report.counts.bound_calls > 100);
+    assert_eq!(instance.verify(&report, None), []);
+    report.counts.bound_calls = 0;
+    let found = instance.verify(&report, None);
+    assert!(found.iter().any(|m| m.place == "evaluations"), "{found:?}");
+}
+
 #[test]
 fn an_unknown_problem_is_an_error() {
     let error = catalogue::find("no such problem").err().unwrap().to_string();
