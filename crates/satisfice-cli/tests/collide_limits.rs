@@ -135,7 +135,7 @@ fn many_pairs_take_little_memory() {
 #[cfg(unix)]
 #[test]
 fn memory_that_ends_is_one_line() {
-    const VERTICES: usize = 1500;
+    const VERTICES: usize = 2000;
     let folder = tempfile::tempdir().unwrap();
     let arguments = "--out pairs.csv --json report.json";
     let done = in_little_memory(folder.path(), 300_000, VERTICES as u32, arguments);
