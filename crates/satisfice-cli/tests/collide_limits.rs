@@ -135,10 +135,10 @@ fn many_pairs_take_little_memory() {
 #[cfg(unix)]
 #[test]
 fn memory_that_ends_is_one_line() {
-    const VERTICES: usize = 2000;
+    const VERTICES: usize = 1500;
     let folder = tempfile::tempdir().unwrap();
     let arguments = "--out pairs.csv --json report.json";
-    let done = in_little_memory(folder.path(), 300_000, VERTICES as u32, arguments);
+    let done = in_little_memory(folder.path(), 200_000, VERTICES as u32, arguments);
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     assert_eq!(done.status.code(), Some(2), "{said}");
     let csv = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
