@@ -21,7 +21,7 @@ use crate::state::{Part, Reader, State};
 const MODELLED: u64 = 500;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
-/// Weight of the model until it is known to predict nothing. From then on it is bounded like all that finds nothing, even where nothing
+/// Weight of the model until it is known to predict too little. From then on it is bounded like all that finds nothing, even where nothing
 /// else has found anything: its proposals cost a hundred times the time of others.
 const MODEL_WEIGHT: f64 = 40.0;
 /// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.

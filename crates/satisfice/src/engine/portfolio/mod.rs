@@ -76,7 +76,7 @@ engine_settings! {
     ///
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
     /// share until something hits. Any other source that finds nothing takes at most 4 % of the evaluations, and all of these together
-    /// 18 %; so does the model, once it is known to predict F no better than the mean does, and then it costs no more time. All of them
+    /// 18 %; so does the model, once it is known to predict less than a quarter of the variance of F, and then it costs no more time. All of them
     /// learn the hits of the others. No parameter depends on the problem.
     ///
     /// ```
