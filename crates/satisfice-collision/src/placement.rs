@@ -150,16 +150,9 @@ impl Placement {
         })
     }
 
-    /// Becomes another placement, and says whether it is one; without another rotation the matrix is kept.
-    #[inline]
-    pub(crate) fn go_to(&mut self, to: &CompactPlacement) -> bool {
-        if self.quaternion != to.quaternion {
-            *self = Self::from(*to);
-            return true;
-        }
-        let moves = self.translation != to.translation;
-        self.translation = to.translation;
-        moves
+    /// The same rotation, and this translation, which is finite.
+    pub(crate) fn at(self, translation: [f64; 3]) -> Self {
+        Self { translation, ..self }
     }
 
     /// The mesh after the motion. It shares edges and triangles with the original.
@@ -176,6 +169,47 @@ impl Placement {
 pub(crate) struct CompactPlacement {
     quaternion: [f64; 4],
     translation: [f64; 3],
+}
+
+impl CompactPlacement {
+    pub(crate) const IDENTITY: Self = Self {
+        quaternion: Placement::IDENTITY.quaternion,
+        translation: Placement::IDENTITY.translation,
+    };
+
+    #[inline]
+    pub(crate) fn translation(&self) -> [f64; 3] {
+        self.translation
+    }
+
+    /// The image of a point under the rotation alone.
+    pub(crate) fn rotate(&self, p: [f64; 3]) -> [f64; 3] {
+        matrix(self.quaternion).map(|[x, y, z]| x * p[0] + y * p[1] + z * p[2])
+    }
+
+    /// Whether it rotates.
+    #[inline]
+    pub(crate) fn is_turned(&self) -> bool {
+        differ(&self.quaternion, &Placement::IDENTITY.quaternion)
+    }
+
+    /// Whether another placement has another rotation.
+    #[inline]
+    pub(crate) fn turns_to(&self, other: &Self) -> bool {
+        differ(&self.quaternion, &other.quaternion)
+    }
+
+    /// Whether another placement has another translation.
+    #[inline]
+    pub(crate) fn shifts_to(&self, other: &Self) -> bool {
+        differ(&self.translation, &other.translation)
+    }
+}
+
+/// `!=` without a branch for each number.
+#[inline]
+fn differ<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
+    (0..N).fold(false, |differ, k| differ | (a[k] != b[k]))
 }
 
 impl From<&Placement> for CompactPlacement {

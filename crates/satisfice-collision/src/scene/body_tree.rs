@@ -169,15 +169,14 @@ impl BodyTree {
     }
 
     /// Where the centre of a body's ball may lie, in the frame, so that its box in the tree holds the ball and `half` around it.
-    pub(super) fn room(&self, body: u32, extent: &Extent, half: f64) -> Box32 {
-        let known = self.box_of(body);
+    pub(super) fn room(&self, known: &Box32, extent: &Extent, half: f64) -> Box32 {
         let farthest =
             |b: &Box32| (0..3).fold(0.0_f32, |most, k| most.max(b.min[k].abs()).max(b.max[k].abs()));
-        let far = f64::from(farthest(&known)) / self.scale + largest(&self.origin);
+        let far = f64::from(farthest(known)) / self.scale + largest(&self.origin);
         let reach = (extent.radius() + half + 2.0 * extent.blur(far)) * self.scale;
         let reach = (reach as f32).next_up();
         // the conversion of the box, of the centre, and the sums here round once each
-        let slack = 4.0 * f32::EPSILON * (farthest(&known) + reach) + f32::MIN_POSITIVE;
+        let slack = 4.0 * f32::EPSILON * (farthest(known) + reach) + f32::MIN_POSITIVE;
         let room = Box32 {
             min: known.min.map(|c| c + (reach + slack)),
             max: known.max.map(|c| c - (reach + slack)),

@@ -32,10 +32,9 @@ impl Extent {
         }
     }
 
-    /// Where the centre of the ball around the posed vertices lies, up to [`blur`](Self::blur).
-    #[inline]
-    pub(super) fn centre(&self, placement: &Placement) -> Point {
-        placement.apply(self.centre)
+    /// The centre of the ball. Posed, it is the centre of a ball around the posed vertices, up to [`blur`](Self::blur).
+    pub(super) fn centre(&self) -> Point {
+        self.centre
     }
 
     /// The radius of the ball.
@@ -54,9 +53,9 @@ impl Extent {
         self.size
     }
 
-    /// A quick proof that no vertex leaves the range of numbers; false if there is none.
-    pub(super) fn stays_finite(&self, placement: &Placement) -> bool {
-        (4.0 * self.size + largest(&placement.translation())).is_finite()
+    /// Whether no vertex leaves the range of numbers as long as the translation is small too.
+    pub(super) fn is_small(&self) -> bool {
+        4.0 * self.size < SMALL
     }
 
     /// A box that holds the posed vertices. A rotated box has its rotated centre, and half sides by the absolute matrix; posing
@@ -102,6 +101,17 @@ impl Extent {
     fn rounding(&self, placement: &Placement) -> f64 {
         1e-14 * (self.size + largest(&placement.translation()))
     }
+}
+
+/// Twice this is a number.
+const SMALL: f64 = f64::MAX / 4.0;
+
+/// Whether a body that [is small](Extent::is_small) stays in the range of numbers after this translation.
+#[inline]
+pub(super) fn is_small(translation: &[f64; 3]) -> bool {
+    translation
+        .iter()
+        .fold(true, |small, c| small & (c.abs() < SMALL))
 }
 
 /// The largest absolute coordinate.

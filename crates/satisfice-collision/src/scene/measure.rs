@@ -38,7 +38,7 @@ impl World {
 
     /// Where a rigid body is in the next frame if it moves as it did from `from` on.
     fn next_place(&self, slot: u32, from: &Placement) -> Placement {
-        let now = self.state(slot).placement;
+        let now = self.state(slot).placement();
         let step = from.inverse().and_then(|back| back.then(&now));
         step.and_then(|step| now.then(&step)).unwrap_or(now)
     }
@@ -46,7 +46,10 @@ impl World {
     fn measure(&self, record: &Record, expected: &BTreeMap<u32, Placement>) -> Slack {
         let [a, b] = record.bodies;
         let delta = self.threshold.get();
-        let place = |slot: u32| expected.get(&slot).copied().unwrap_or(self.state(slot).placement);
+        let place = |slot: u32| {
+            let next = expected.get(&slot).copied();
+            next.unwrap_or_else(|| self.state(slot).placement())
+        };
         let places = self.are_rigid(record).then(|| [place(a), place(b)]);
         let slack = |pair: &Pair| {
             let nearest = self.proximity_of(record.bodies, *pair);

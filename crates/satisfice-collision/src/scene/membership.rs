@@ -150,7 +150,7 @@ impl World {
         let new = Body {
             mesh,
             motion: known.kind,
-            placement: known.placement,
+            placement: known.placement(),
             groups: known.groups,
             mask: known.mask,
             ring: known.deforming.as_ref().and_then(|own| own.ring),

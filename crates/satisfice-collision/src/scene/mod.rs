@@ -117,6 +117,16 @@ pub struct World {
     numbers: Vec<u32>,
 }
 
+/// There is no such body.
+#[cold]
+fn unknown(body: BodyId) -> Error {
+    Error::parameter(
+        "body",
+        body,
+        "a handle that `add` returned, of a body that has not been removed",
+    )
+}
+
 /// Pushes to a list that grows by an eighth, so that little of its room is empty.
 fn push<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
@@ -229,7 +239,7 @@ impl World {
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
     pub fn placement(&self, body: BodyId) -> Result<Placement, Error> {
-        Ok(self.known(body)?.placement)
+        Ok(self.known(body)?.placement())
     }
 
     /// A box that holds a body in the last frame, at most a few roundings wider than its posed box.
@@ -296,11 +306,7 @@ impl World {
     fn known(&self, body: BodyId) -> Result<&State, Error> {
         match self.states.get(body.slot as usize) {
             Some(Some(state)) if state.generation == body.generation => Ok(state),
-            _ => Err(Error::parameter(
-                "body",
-                body,
-                "a handle that `add` returned, of a body that has not been removed",
-            )),
+            _ => Err(unknown(body)),
         }
     }
 

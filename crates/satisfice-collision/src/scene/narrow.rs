@@ -5,9 +5,9 @@ use super::pairs::{Record, Status};
 use super::plan::{Plan, Situation};
 use super::state::State;
 use super::{Skips, World};
-use crate::Error;
 use crate::broad::{Dirty, Pair, PairQuery, PointGrid, TreeJoin, Watch, inflate, intersection};
 use crate::distance::{self, PairKind, Point, Threshold};
+use crate::{Error, Placement};
 
 /// The memory that a thread needs to find pairs.
 #[derive(Default)]
@@ -52,7 +52,8 @@ impl Posed {
         let of = Some((slot, state.generation, state.moved_at));
         if self.of != of {
             self.points.clear();
-            let posed = state.vertices().iter().map(|&p| state.placement.apply(p));
+            let placement = state.placement();
+            let posed = state.vertices().iter().map(|&p| placement.apply(p));
             self.points.extend(posed);
             self.of = of;
         }
@@ -180,7 +181,8 @@ impl World {
         let (kind_a, kind_b) = self.kind.features();
         let filter = PairFilter::new(self.kind, one, two, a == b);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-        let Some(mut query) = self.pair_query(record.bodies, self.threshold, &filter, &keep) else {
+        let places = self.places(record.bodies);
+        let Some(mut query) = self.pair_query(record.bodies, &places, self.threshold, &filter, &keep) else {
             return Ok(Vec::new());
         };
         if all {
@@ -214,10 +216,16 @@ impl World {
         Ok(pairs)
     }
 
-    /// The query for two bodies whose trees exist.
+    /// Where two bodies are.
+    pub(super) fn places(&self, bodies: [u32; 2]) -> [Placement; 2] {
+        bodies.map(|slot| self.state(slot).placement())
+    }
+
+    /// The query for two bodies in their places, whose trees exist.
     pub(super) fn pair_query<'a>(
         &'a self,
         [a, b]: [u32; 2],
+        [place_a, place_b]: &'a [Placement; 2],
         threshold: Threshold,
         filter: &PairFilter<'_>,
         keep: &'a (dyn Fn(u32, u32) -> bool + Sync),
@@ -225,8 +233,8 @@ impl World {
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
         Some(PairQuery {
-            a: (one.tree(kind_a)?, &one.placement),
-            b: (two.tree(kind_b)?, &two.placement),
+            a: (one.tree(kind_a)?, place_a),
+            b: (two.tree(kind_b)?, place_b),
             one_body: a == b && kind_a == kind_b,
             threshold,
             keep: filter.is_needed().then_some(keep),

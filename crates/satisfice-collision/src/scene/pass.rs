@@ -326,7 +326,8 @@ impl World {
                 let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
                 let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
                 let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-                if let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) {
+                let places = self.places(bodies);
+                if let Some(query) = self.pair_query(bodies, &places, self.threshold, &filter, &keep) {
                     if !*started {
                         query.start(stack);
                     }

@@ -1,10 +1,11 @@
 //! Going to the next frame: which bodies move, whose boxes meet now, and which records to examine. Linear in the bodies that
 //! move.
 
-use super::World;
 use super::body::{BodyId, Motion};
 use super::body_tree::Change;
 use super::pairs::{NONE, Status};
+use super::state::State;
+use super::{World, unknown};
 use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
 use crate::{Aabb, CompactPlacement, Error, Placement};
@@ -20,8 +21,32 @@ const ALL_RECORDS: f64 = 0.2;
 pub(super) struct Pending {
     /// [`NONE`] if the body was removed since.
     slot: u32,
-    /// Where a rigid body goes.
-    to: Option<CompactPlacement>,
+    /// Whether the body is rigid and goes there.
+    is_placed: bool,
+    to: CompactPlacement,
+}
+
+impl Pending {
+    #[inline]
+    fn place(slot: u32, placement: &Placement) -> Self {
+        Self {
+            slot,
+            is_placed: true,
+            to: placement.into(),
+        }
+    }
+
+    /// Lists what a body does in the next frame, in the place of what it was to do.
+    #[inline]
+    fn add(list: &mut Vec<Self>, state: &mut State, next: Self) {
+        match state.pending {
+            NONE => {
+                state.pending = list.len() as u32;
+                super::push(list, next);
+            }
+            at => list[at as usize] = next,
+        }
+    }
 }
 
 impl World {
@@ -31,7 +56,11 @@ impl World {
     /// [`Error::Parameter`] if there is no such body or it is not rigid; [`Error::NonFiniteVertex`] if a vertex would leave the
     /// range of numbers. The world is then as before.
     pub fn place(&mut self, body: BodyId, placement: Placement) -> Result<(), Error> {
-        let state = self.known(body)?;
+        // the world is looked up once: a frame calls this for every body that moves
+        let state = match self.states.get_mut(body.slot as usize) {
+            Some(Some(state)) if state.generation == body.generation => state,
+            _ => return Err(unknown(body)),
+        };
         if state.kind != Motion::Rigid {
             return Err(Error::parameter(
                 "body",
@@ -40,18 +69,18 @@ impl World {
             ));
         }
         state.check_placement(&placement)?;
-        self.move_to(body.slot, &placement);
+        Pending::add(&mut self.pending, state, Pending::place(body.slot, &placement));
         Ok(())
     }
 
     pub(super) fn move_to(&mut self, slot: u32, placement: &Placement) {
-        self.pend(slot).to = Some(placement.into());
+        self.pend(Pending::place(slot, placement));
     }
 
     /// Where a rigid body goes in the next frame, if it was placed since the last query.
     pub(super) fn next_placement(&self, slot: u32) -> Option<Placement> {
         let pending = self.pending.get(self.state(slot).pending as usize)?;
-        pending.to.map(Placement::from)
+        pending.is_placed.then(|| pending.to.into())
     }
 
     /// Gives the vertices of a deforming body in the next frame. The last call before a query counts. Cost: linear in them.
@@ -69,7 +98,11 @@ impl World {
             ));
         };
         deforming.deform(vertices)?;
-        self.pend(body.slot);
+        self.pend(Pending {
+            slot: body.slot,
+            is_placed: false,
+            to: CompactPlacement::IDENTITY,
+        });
         Ok(())
     }
 
@@ -107,17 +140,10 @@ impl World {
         }
     }
 
-    fn pend(&mut self, slot: u32) -> &mut Pending {
-        let at = match self.state(slot).pending {
-            NONE => {
-                let at = self.pending.len();
-                self.state_mut(slot).pending = at as u32;
-                super::push(&mut self.pending, Pending { slot, to: None });
-                at
-            }
-            at => at as usize,
-        };
-        &mut self.pending[at]
+    fn pend(&mut self, next: Pending) {
+        if let Some(state) = self.states[next.slot as usize].as_mut() {
+            Pending::add(&mut self.pending, state, next);
+        }
     }
 
     pub(super) fn forget_pending(&mut self, slot: u32) {
@@ -158,7 +184,6 @@ impl World {
         } else if !changes.is_empty() {
             self.tree.follow(&mut changes);
         }
-        self.give_room(&changes);
         if many {
             self.go_through_records(&changes, &has_moved);
         } else {
@@ -170,19 +195,18 @@ impl World {
     /// Moves the bodies, and lists those that leave their boxes in the tree, with new boxes. Notes which bodies move, or
     /// marks their records if `has_moved` is empty.
     fn move_bodies(&mut self, has_moved: &mut [bool]) -> Vec<Change> {
-        let (frame, half) = (self.frame, self.half_threshold());
+        let half = self.half_threshold();
         let mut changes = Vec::new();
         let mut pending = std::mem::take(&mut self.pending);
         self.came_from.clear();
-        for Pending { slot, to } in pending.drain(..).filter(|pending| pending.slot != NONE) {
-            let moved = match to {
-                Some(to) => self.move_rigid(slot, &to, half, &mut changes),
-                None => self.move_deforming(slot, half, &mut changes),
+        for Pending { slot, is_placed, to } in pending.drain(..).filter(|pending| pending.slot != NONE) {
+            let moved = match is_placed {
+                true => self.move_rigid(slot, &to, half, &mut changes),
+                false => self.move_deforming(slot, half, &mut changes),
             };
             if !moved {
                 continue;
             }
-            self.state_mut(slot).moved_at = frame;
             match has_moved.get_mut(slot as usize) {
                 Some(has_moved) => *has_moved = true,
                 None => self.mark_records(slot),
@@ -194,59 +218,61 @@ impl World {
 
     /// Moves a rigid body, and lists it if it leaves its box in the tree. Returns whether it moves.
     fn move_rigid(&mut self, slot: u32, to: &CompactPlacement, half: f64, changes: &mut Vec<Change>) -> bool {
-        let predicts = self.predicts;
         let Some(state) = self.states[slot as usize].as_mut() else {
             return false;
         };
         state.pending = NONE;
-        let from = state.placement;
+        let from = state.place;
         if !state.go_to(to) {
             return false;
         }
-        state.motion = f64::INFINITY;
-        let extent = state.mesh.extent();
-        if predicts {
-            state.motion = extent.motion(&from, &state.placement);
+        state.moved_at = self.frame;
+        if self.predicts {
+            let from = Placement::from(from);
+            state.motion = state.mesh.extent().motion(&from, &state.placement());
             self.came_from.push((slot, (&from).into()));
         }
         // the ball first: nothing else has to be known of a body that stays in its room
-        if self.tree.is_within(&state.room, extent.centre(&state.placement)) {
-            return true;
-        }
-        let new = extent.posed(&state.placement);
-        let wanted = inflate(&new, half);
-        if !self.tree.holds(slot, &wanted) {
-            let motion = extent.motion(&from, &state.placement);
-            let fat = fattened(&wanted, &extent.posed(&from), &new, motion);
-            changes.push(Change::to(slot, self.tree.place(&fat)));
+        if !self.tree.is_within(&state.room, state.centre()) {
+            let placement = state.placement();
+            let extent = state.mesh.extent();
+            let new = extent.posed(&placement);
+            let wanted = inflate(&new, half);
+            if !self.tree.holds(slot, &wanted) {
+                let from = Placement::from(from);
+                let motion = extent.motion(&from, &placement);
+                let fat = fattened(&wanted, from.apply(extent.centre()), &new, motion);
+                let fat = self.tree.place(&fat);
+                // at once: the body may be far away in memory later
+                state.room = self.tree.room(&fat, extent, half);
+                changes.push(Change::to(slot, fat));
+            }
         }
         true
     }
 
     /// The same for a deforming body.
     fn move_deforming(&mut self, slot: u32, half: f64, changes: &mut Vec<Change>) -> bool {
+        let frame = self.frame;
         let state = self.state_mut(slot);
         state.pending = NONE;
-        let bounds = state.bounds();
+        let from = middle(&state.bounds());
         let motion = state.deforming.as_mut().and_then(|deforming| deforming.advance());
         let Some(motion) = motion else { return false };
-        state.motion = motion;
+        (state.motion, state.moved_at) = (motion, frame);
         let new = state.bounds();
         let wanted = inflate(&new, half);
         if !self.tree.holds(slot, &wanted) {
-            let fat = fattened(&wanted, &bounds, &new, motion);
+            let fat = fattened(&wanted, from, &new, motion);
             changes.push(Change::to(slot, self.tree.place(&fat)));
         }
         true
     }
 
-    /// Tells the bodies whose boxes have changed how far they may go in them.
-    fn give_room(&mut self, changes: &[Change]) {
-        let half = self.half_threshold();
-        for change in changes {
-            if let Some(state) = self.states[change.body as usize].as_mut() {
-                state.room = self.tree.room(change.body, state.mesh.extent(), half);
-            }
+    /// Tells a body how far it may go in a box.
+    fn give_room(&mut self, slot: u32, bounds: &Box32, half: f64) {
+        if let Some(state) = self.states[slot as usize].as_mut() {
+            state.room = self.tree.room(bounds, state.mesh.extent(), half);
         }
     }
 
@@ -257,9 +283,11 @@ impl World {
         }
         let half = self.half_threshold();
         for body in std::mem::take(&mut self.unpaired) {
+            let bounds = self.tree.place(&inflate(&self.state(body).bounds(), half));
+            self.give_room(body, &bounds, half);
             changes.push(Change {
                 is_recheck: self.tree.contains(body),
-                ..Change::to(body, self.tree.place(&inflate(&self.state(body).bounds(), half)))
+                ..Change::to(body, bounds)
             });
         }
         changes.sort_by_key(|change| change.body);
@@ -284,6 +312,9 @@ impl World {
         };
         let changes = boxes.iter().map(change).collect();
         self.tree.build(&boxes);
+        for &(slot, _) in &boxes {
+            self.give_room(slot, &self.tree.box_of(slot), half);
+        }
         changes
     }
 
@@ -382,13 +413,17 @@ impl World {
     }
 }
 
-/// A box that will hold a body for some frames if it continues as from `old` to `new`, and for about one if it turns.
-fn fattened(wanted: &Aabb, old: &Aabb, new: &Aabb, motion: f64) -> Aabb {
-    let most = MOST * new.size();
+/// The middle of a box.
+fn middle(bounds: &Aabb) -> Point {
+    std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0)
+}
+
+/// A box that will hold a body for some frames if it continues as from a box around `from` to `new`, and for about one if it turns.
+fn fattened(wanted: &Aabb, from: Point, new: &Aabb, motion: f64) -> Aabb {
+    let (most, to) = (MOST * new.size(), middle(new));
     let mut fat = inflate(wanted, motion.min(most));
     for k in 0..3 {
-        let way = new.min[k] / 2.0 - old.min[k] / 2.0 + (new.max[k] / 2.0 - old.max[k] / 2.0);
-        let way = (FRAMES * way).clamp(-most, most);
+        let way = (FRAMES * (to[k] - from[k])).clamp(-most, most);
         fat.min[k] = (fat.min[k] + way.min(0.0)).max(f64::MIN);
         fat.max[k] = (fat.max[k] + way.max(0.0)).min(f64::MAX);
     }

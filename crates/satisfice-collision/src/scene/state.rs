@@ -5,30 +5,37 @@ use std::sync::Arc;
 use super::SharedMesh;
 use super::body::{Body, Motion};
 use super::deforming::Deforming;
-use super::extent::largest;
+use super::extent::{is_small, largest};
 use super::pairs::NONE;
 use crate::broad::{BlockBounds, Box32, Dirty, FeatureTree};
 use crate::mesh::Point;
 use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement, Shape};
 
-/// A body and its place at the last frame.
+/// A body and its place at the last frame. What a frame reads of a rigid body that moves comes first, on two lines of memory.
+#[repr(C, align(64))]
 pub(super) struct State {
-    pub(super) mesh: SharedMesh,
-    pub(super) kind: Motion,
-    pub(super) placement: Placement,
-    /// Where the centre of a rigid body may go so that its box in the tree still holds it.
-    pub(super) room: Box32,
-    pub(super) groups: u32,
-    pub(super) mask: u32,
     pub(super) generation: u32,
     /// Its place in the list of what moves in the next frame, or [`NONE`].
     pub(super) pending: u32,
+    pub(super) kind: Motion,
+    /// Whether only a large translation takes a vertex out of the range of numbers.
+    is_small: bool,
+    /// Whether the placement rotates.
+    is_turned: bool,
     /// Whether the placement is the identity.
     rests: bool,
+    /// Where the centre of a rigid body may go so that its box in the tree still holds it.
+    pub(super) room: Box32,
+    /// The centre of the mesh, rotated.
+    offset: Point,
     /// The frame in which it moved last.
     pub(super) moved_at: u64,
+    pub(super) place: CompactPlacement,
     /// No vertex moved further than this then; infinite where nobody asks.
     pub(super) motion: f64,
+    pub(super) mesh: SharedMesh,
+    pub(super) groups: u32,
+    pub(super) mask: u32,
     pub(super) deforming: Option<Box<Deforming>>,
     /// The vertices that count; `None` for all.
     pub(super) counted: Option<Arc<[bool]>>,
@@ -40,37 +47,77 @@ impl State {
         check(&body.mesh, &body.placement, &bounds)?;
         let deforming =
             (body.motion == Motion::Deforming).then(|| Box::new(Deforming::new(body.mesh.mesh(), body.ring)));
-        Ok(Self {
-            rests: body.placement == Placement::IDENTITY,
-            mesh: body.mesh,
-            kind: body.motion,
-            placement: body.placement,
-            room: Box32::EMPTY,
-            groups: body.groups,
-            mask: body.mask,
+        let mut state = Self {
             generation,
             pending: NONE,
+            kind: body.motion,
+            is_small: body.mesh.extent().is_small(),
+            is_turned: false,
+            rests: false,
+            room: Box32::EMPTY,
+            offset: [0.0; 3],
             moved_at: 0,
-            motion: 0.0,
+            place: (&body.placement).into(),
+            motion: f64::INFINITY,
+            mesh: body.mesh,
+            groups: body.groups,
+            mask: body.mask,
             deforming,
             counted: body.counted,
-        })
+        };
+        state.note_rotation();
+        state.note_rest();
+        Ok(state)
     }
 
     /// Refuses a placement that takes a vertex out of the range of numbers.
+    #[inline]
     pub(super) fn check_placement(&self, placement: &Placement) -> Result<(), Error> {
-        let extent = self.mesh.extent();
-        if extent.stays_finite(placement) {
-            return Ok(());
+        match self.is_small && is_small(&placement.translation()) {
+            true => Ok(()),
+            false => check(&self.mesh, placement, &self.mesh.extent().posed(placement)),
         }
-        check(&self.mesh, placement, &extent.posed(placement))
     }
 
     /// Goes to a placement. Returns whether that is another one.
-    pub(super) fn go_to(&mut self, placement: &CompactPlacement) -> bool {
-        let moves = self.placement.go_to(placement);
-        self.rests = self.placement == Placement::IDENTITY;
-        moves
+    #[inline]
+    pub(super) fn go_to(&mut self, to: &CompactPlacement) -> bool {
+        let (turns, shifts) = (self.place.turns_to(to), self.place.shifts_to(to));
+        self.place = *to;
+        if turns {
+            self.note_rotation();
+        }
+        self.note_rest();
+        turns | shifts
+    }
+
+    fn note_rotation(&mut self) {
+        self.is_turned = self.place.is_turned();
+        let centre = self.mesh.extent().centre();
+        self.offset = match self.is_turned {
+            true => self.place.rotate(centre),
+            false => centre,
+        };
+    }
+
+    #[inline]
+    fn note_rest(&mut self) {
+        self.rests = !self.is_turned && self.place.translation() == [0.0; 3];
+    }
+
+    /// Its placement. Cost: that of a matrix.
+    pub(super) fn placement(&self) -> Placement {
+        match self.is_turned {
+            true => self.place.into(),
+            false => Placement::IDENTITY.at(self.place.translation()),
+        }
+    }
+
+    /// Where the centre of the ball around a rigid body lies.
+    #[inline]
+    pub(super) fn centre(&self) -> Point {
+        let translation = self.place.translation();
+        std::array::from_fn(|k| self.offset[k] + translation[k])
     }
 
     /// The box of the posed vertices, roundings included. Cost: constant.
@@ -79,7 +126,7 @@ impl State {
         let moved = deforming
             .and_then(|deforming| deforming.blocks())
             .and_then(BlockBounds::whole);
-        moved.unwrap_or_else(|| self.mesh.extent().posed(&self.placement))
+        moved.unwrap_or_else(|| self.mesh.extent().posed(&self.placement()))
     }
 
     /// What moved in frame `frame`, of the features of a kind.
@@ -135,21 +182,15 @@ impl State {
         self.deforming.as_ref()?.blocks()
     }
 
-    /// Where a vertex is in the world.
-    #[inline]
-    pub(super) fn vertex(&self, v: u32) -> Point {
-        let vertex = self.vertices()[v as usize];
-        if self.rests {
-            vertex
-        } else {
-            self.placement.apply(vertex)
-        }
-    }
-
     /// Where a feature is in the world.
     #[inline]
     pub(super) fn shape(&self, kind: FeatureKind, feature: u32) -> Shape {
-        self.mesh.mesh().features(kind).shape(feature, |v| self.vertex(v))
+        let (vertices, features) = (self.vertices(), self.mesh.mesh().features(kind));
+        if self.rests {
+            return features.shape(feature, |v| vertices[v as usize]);
+        }
+        let placement = self.placement();
+        features.shape(feature, |v| placement.apply(vertices[v as usize]))
     }
 
     /// The vertices of a feature, the last repeated to make three.
@@ -170,9 +211,10 @@ impl State {
 
     /// How far no vertex of a rigid body is from where it is in another placement.
     pub(super) fn away_from(&self, placement: &Placement) -> f64 {
-        match *placement == self.placement {
+        let now = self.placement();
+        match *placement == now {
             true => 0.0,
-            false => self.mesh.extent().motion(placement, &self.placement),
+            false => self.mesh.extent().motion(placement, &now),
         }
     }
 
@@ -180,7 +222,7 @@ impl State {
     pub(super) fn extent(&self) -> f64 {
         let bounds = self.bounds();
         let [min, max] = [&bounds.min, &bounds.max].map(largest);
-        self.mesh.extent().size() + min + max + largest(&self.placement.translation())
+        self.mesh.extent().size() + min + max + largest(&self.place.translation())
     }
 
     /// How many features of a kind there are.

@@ -232,10 +232,10 @@ fn a_body_in_its_room_is_in_its_box() {
         boxes.tree.build(&all);
         let mut inside = 0;
         for body in 0..8 {
-            let room = boxes.tree.room(body, &extent, half);
+            let room = boxes.tree.room(&boxes.tree.box_of(body), &extent, half);
             for _ in 0..200 {
                 let near = placement(&mut boxes, places[body as usize].translation(), 8.0);
-                if boxes.tree.is_within(&room, extent.centre(&near)) {
+                if boxes.tree.is_within(&room, near.apply(extent.centre())) {
                     inside += 1;
                     for &vertex in mesh.vertices() {
                         let ball = inflate(&Aabb::point(near.apply(vertex)), half);

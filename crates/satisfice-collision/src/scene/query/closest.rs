@@ -195,11 +195,12 @@ impl World {
         let parallel = self.parallel;
         self.state_mut(slot).ensure_tree(kind, parallel)?;
         let state = self.state(slot);
+        let placement = state.placement();
         let counts = |_: u32, feature: u32| state.counts(kind, feature);
         if let Some(tree) = state.tree(kind) {
             let query = PairQuery {
                 a: (&probe.tree, &Placement::IDENTITY),
-                b: (tree, &state.placement),
+                b: (tree, &placement),
                 one_body: false,
                 threshold: Threshold::LARGEST,
                 keep: Some(&counts),
@@ -275,7 +276,8 @@ impl World {
         let [one, two] = bodies.map(|slot| self.state(slot));
         let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
-        if let Some(query) = self.pair_query(bodies, Threshold::LARGEST, &filter, &keep) {
+        let places = self.places(bodies);
+        if let Some(query) = self.pair_query(bodies, &places, Threshold::LARGEST, &filter, &keep) {
             find_closest(&query, closest, |pair| (bodies, pair), watch);
         }
         Ok(())

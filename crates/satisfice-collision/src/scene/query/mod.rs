@@ -146,7 +146,8 @@ impl World {
         let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let mut found = Vec::new();
-        if let Some(query) = self.pair_query(bodies, self.threshold, &filter, &keep) {
+        let places = self.places(bodies);
+        if let Some(query) = self.pair_query(bodies, &places, self.threshold, &filter, &keep) {
             let mut stack = Vec::new();
             query.start(&mut stack);
             while !stack.is_empty() && found.is_empty() && !watch.ask(0) {

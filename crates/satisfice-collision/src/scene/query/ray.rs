@@ -94,7 +94,7 @@ impl World {
         let state = self.state(slot);
         if let Some(tree) = state.tree(FeatureKind::Triangle) {
             let keep = |triangle| state.counts(FeatureKind::Triangle, triangle);
-            first.add((tree, &state.placement), keep, |triangle| (slot, triangle));
+            first.add((tree, &state.placement()), keep, |triangle| (slot, triangle));
         }
         Ok(())
     }
