@@ -191,6 +191,31 @@ fn a_time_limit_covers_measuring() {
     assert!(pairs.iter().all(|pair| pair["distance"].is_null()));
 }
 
+/// Building the trees of 82,000 triangles takes longer than the first look at the clock is away.
+#[test]
+fn a_time_limit_covers_the_trees() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = generate::icosphere(1.0, 6).unwrap();
+    io::save_obj(&ball, folder.path().join("ball.obj")).unwrap();
+    for ask in ["", "--touching", "--closest 3", "--first"] {
+        let scene = format!(
+            "collide ball.obj ball.obj --pairs triangle-triangle --threshold 0.001 {ask} --time 100us --json -"
+        );
+        let done = satisfice_in(folder.path(), &scene);
+        assert!(
+            done.code == 1 && done.stderr.contains("no pair was compared"),
+            "{ask}: {}",
+            done.stderr
+        );
+        let report: Value = serde_json::from_str(&done.stdout).unwrap();
+        assert_eq!(
+            (&report["stop_reason"], &report["completeness"], &report["hits"]),
+            (&"Time".into(), &"Unknown".into(), &0.into()),
+            "{ask}"
+        );
+    }
+}
+
 #[test]
 fn witnesses_are_written_to_json_and_csv() {
     let folder = tempfile::tempdir().unwrap();

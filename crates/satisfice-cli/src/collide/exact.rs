@@ -1,7 +1,9 @@
 //! The exact methods: every pair is decided, or excluded by a bound.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use satisfice::{Cancel, StopReason};
 use satisfice_collision::broad::Method;
@@ -9,6 +11,7 @@ use satisfice_collision::distance::Proximity;
 use satisfice_collision::scene::{self, Completeness, Contact, Skips};
 
 use super::arguments::Find;
+use super::building;
 use super::memory::{Listed, Lists, Room};
 use super::overlaps::{self, Overlap};
 use super::pairs::Pairs;
@@ -69,6 +72,25 @@ struct Enumerated {
     is_full: bool,
 }
 
+impl Enumerated {
+    /// Nothing was compared.
+    fn nothing(stop: StopReason, witnesses: bool) -> Self {
+        Self {
+            lists: Lists {
+                pairs: Vec::new(),
+                distances: Vec::new(),
+                witnesses: witnesses.then(Vec::new),
+            },
+            known: Vec::new(),
+            skips: Skips::default(),
+            stop,
+            complete: false,
+            count: None,
+            is_full: false,
+        }
+    }
+}
+
 /// Until when to work.
 struct Limit<'a> {
     start: Instant,
@@ -91,34 +113,65 @@ impl Limit<'_> {
 
 impl Exact<'_> {
     /// Finds on as many threads as are wanted.
-    pub(super) fn find(&self, world: &World) -> anyhow::Result<Found> {
-        if self.threads == 1 {
-            return self.find_in(world);
-        }
-        super::threads(self.threads)?.install(|| self.find_in(world))
-    }
-
     #[expect(
         clippy::disallowed_methods,
         reason = "a scene is told when to stop; it does not ask the time itself"
     )]
-    fn find_in(&self, world: &World) -> anyhow::Result<Found> {
+    pub(super) fn find(&self, world: &Arc<World>) -> anyhow::Result<Found> {
         let limit = Limit {
             start: Instant::now(),
             time: self.time,
             cancel: self.cancel,
         };
+        let pool = match self.threads {
+            1 => None,
+            threads => Some(Arc::new(super::threads(threads)?)),
+        };
+        let scene = self.built(world, pool.as_ref(), &limit)?;
+        match pool {
+            Some(pool) => pool.install(|| self.find_in(world, scene, &limit)),
+            None => self.find_in(world, scene, &limit),
+        }
+    }
+
+    /// The scene with its trees; `None` if the limit is reached before.
+    fn built(
+        &self,
+        world: &Arc<World>,
+        pool: Option<&Arc<ThreadPool>>,
+        limit: &Limit<'_>,
+    ) -> anyhow::Result<Option<scene::World>> {
+        let (world, pool, method) = (Arc::clone(world), pool.cloned(), self.method);
+        let built = building::within_limit(
+            || limit.is_reached(),
+            move || -> anyhow::Result<scene::World> {
+                let mut scene = world.scene(method)?;
+                match &pool {
+                    Some(pool) => {
+                        scene = scene.parallel();
+                        pool.install(|| scene.build_trees())?;
+                    }
+                    None => scene.build_trees()?,
+                }
+                Ok(scene)
+            },
+        )?;
+        built.transpose()
+    }
+
+    fn find_in(
+        &self,
+        world: &World,
+        scene: Option<scene::World>,
+        limit: &Limit<'_>,
+    ) -> anyhow::Result<Found> {
         let counting = Counting::new();
-        let mut answer = {
-            let mut scene = world.scene(self.method)?;
-            if self.threads != 1 {
-                scene = scene.parallel();
-            }
-            self.answer(world, &mut scene, &limit, &counting)?
+        let mut answer = match scene {
+            Some(mut scene) => self.answer(world, &mut scene, limit, &counting)?,
+            None => Enumerated::nothing(limit.reason(), self.witnesses),
         };
         counting.say(format!("measuring {} pairs", answer.lists.pairs.len()));
-        // By another scene: the first one keeps the pairs for a next frame, which takes memory.
-        let pairs = self.measured(world, &world.measure()?, &mut answer, &limit)?;
+        let pairs = self.measured(world, &mut answer, limit)?;
         if pairs.unmeasured() > 0 {
             answer.stop = limit.reason();
         }
@@ -156,23 +209,15 @@ impl Exact<'_> {
         // `enough`: why no more were wanted, if some pairs answer the question.
         let answer = |contacts: Vec<Contact>, enough: Option<StopReason>, state: Completeness| {
             let proved = state == Completeness::Proved;
-            Enumerated {
-                lists: Lists {
-                    pairs: world.pairs(contacts.into_iter()).collect(),
-                    distances: Vec::new(),
-                    witnesses: self.witnesses.then(Vec::new),
-                },
-                known: Vec::new(),
-                skips: Skips::default(),
-                stop: match (proved, enough) {
-                    (true, None) => StopReason::Covered,
-                    (true, Some(reason)) => reason,
-                    (false, _) => limit.reason(),
-                },
-                complete: proved && enough.is_none(),
-                count: None,
-                is_full: false,
-            }
+            let stop = match (proved, enough) {
+                (true, None) => StopReason::Covered,
+                (true, Some(reason)) => reason,
+                (false, _) => limit.reason(),
+            };
+            let mut found = Enumerated::nothing(stop, self.witnesses);
+            found.lists.pairs.extend(world.pairs(contacts.into_iter()));
+            found.complete = proved && enough.is_none();
+            found
         };
         Ok(match world.request.find {
             Find::Touching => {
@@ -270,13 +315,7 @@ impl Exact<'_> {
     }
 
     /// The pairs with their distances, measured until the limit is reached.
-    fn measured(
-        &self,
-        world: &World,
-        measure: &Measure,
-        answer: &mut Enumerated,
-        limit: &Limit<'_>,
-    ) -> anyhow::Result<Pairs> {
+    fn measured(&self, world: &World, answer: &mut Enumerated, limit: &Limit<'_>) -> anyhow::Result<Pairs> {
         let Lists {
             pairs: found,
             distances,
@@ -295,7 +334,11 @@ impl Exact<'_> {
                 witnesses.push(near);
             }
         };
-        if answer.known.is_empty() {
+        if !answer.known.is_empty() {
+            answer.known.drain(..).map(Some).for_each(&mut keep);
+        } else if !found.is_empty() {
+            // By another scene: the first one keeps the pairs for a next frame, which takes memory.
+            let measure = &world.measure()?;
             // In blocks, so that no more than the distance is kept of each pair.
             for block in found.chunks(4096 * MEASURED_AT_ONCE) {
                 self.block(measure, block, limit)?
@@ -303,8 +346,6 @@ impl Exact<'_> {
                     .flatten()
                     .for_each(&mut keep);
             }
-        } else {
-            answer.known.drain(..).map(Some).for_each(&mut keep);
         }
         pairs.pairs = found;
         Ok(pairs)

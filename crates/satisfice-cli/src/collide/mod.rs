@@ -1,6 +1,7 @@
 //! `satisfice collide`: pairs of mesh features that are closer than a threshold.
 
 pub(crate) mod arguments;
+mod building;
 mod csv;
 mod digits;
 mod exact;
@@ -128,7 +129,7 @@ struct Answer {
 
 fn by_exact_method(
     arguments: &CollideArguments,
-    world: &World,
+    world: &Arc<World>,
     name: &str,
     method: Method,
     cancel: &Cancel,

@@ -219,6 +219,28 @@ impl Step {
         }
     }
 
+    /// Builds the trees that pairs of a kind are searched by, which is the part of a search that asks no `stop`: for callers with a
+    /// deadline, who can leave it to a thread that they need not wait for. No answer depends on it. Cost: O(n log n), once.
+    ///
+    /// ```
+    /// use satisfice_collision::continuous::Step;
+    /// use satisfice_collision::{distance::PairKind, generate};
+    /// let ball = generate::icosphere(1.0, 2)?;
+    /// let mut step = Step::new();
+    /// step.add_rigid(&ball, ball.vertices())?;
+    /// step.build_trees(PairKind::EdgeEdge)?;
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for kinds whose motion is not decided: edge-triangle and triangle-triangle.
+    pub fn build_trees(&self, kind: PairKind) -> Result<(), Error> {
+        for list in Self::lists(kind)? {
+            self.tree(list);
+        }
+        Ok(())
+    }
+
     /// Whether any body collides with others only.
     pub(super) fn has_rigid_bodies(&self) -> bool {
         self.bodies.iter().any(|body| !body.collides_with_itself)

@@ -5,7 +5,7 @@ use super::pairs::Status;
 use super::plan::Plan;
 use super::{Completeness, Contact, Frame, Skips, Update, World};
 use crate::Error;
-use crate::broad::Watch;
+use crate::broad::{Method, Watch};
 
 /// Records a thread, from which on threads share them instead of working on one together.
 const SHARED: usize = 4;
@@ -31,6 +31,40 @@ impl World {
     /// As [`World::update`].
     pub fn update_until(&mut self, stop: &(dyn Fn(usize) -> bool + Sync)) -> Result<Update, Error> {
         self.refresh(&Watch::until(stop))
+    }
+
+    /// Builds or refits the trees that the next answer about the present frame needs, which is the part of an answer that asks no
+    /// `stop`: for callers with a deadline, who can leave it to a thread that they need not wait for. No answer depends on it.
+    ///
+    /// ```
+    /// use satisfice_collision::distance::{PairKind, Threshold};
+    /// use satisfice_collision::generate;
+    /// use satisfice_collision::scene::{Body, World};
+    /// let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.2)?);
+    /// world.add(Body::fixed(generate::icosphere(1.0, 3)?))?;
+    /// world.add(Body::fixed(generate::icosphere(1.1, 3)?))?;
+    /// world.build_trees()?;
+    /// assert!(!world.frame()?.contacts.is_empty());
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`World::update`].
+    pub fn build_trees(&mut self) -> Result<(), Error> {
+        self.settle();
+        if self.method == Method::Grid {
+            return Ok(());
+        }
+        let mut dirty = self.take_dirty();
+        let result = dirty.iter().try_for_each(|&record| {
+            let bodies = self.pairs[record].bodies;
+            if self.boxes_apart(bodies) {
+                return Ok(());
+            }
+            self.ensure_trees(bodies)
+        });
+        std::mem::swap(&mut self.dirty, &mut dirty);
+        result
     }
 
     /// [`World::update`] and the sorted list of all contacts. Cost: that of the update, and linear in all contacts.

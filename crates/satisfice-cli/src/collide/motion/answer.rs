@@ -1,5 +1,6 @@
 //! The search: all pairs that come near during the step, or the earliest impact.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -7,6 +8,7 @@ use satisfice::{Cancel, StopReason};
 use satisfice_collision::continuous::MovingContact;
 use satisfice_collision::distance::PairKind;
 
+use super::super::building;
 use super::TOLERANCE;
 use super::frames::Frames;
 use crate::progress::Counting;
@@ -62,10 +64,14 @@ impl Search<'_> {
     pub(super) fn run(&self, frames: &Frames) -> anyhow::Result<Impacts> {
         let pool = super::super::threads(self.threads)?;
         let start = now();
-        let found = pool.install(|| match frames.request.first {
-            true => self.first(frames, start),
-            false => self.all(frames, start),
-        })?;
+        let (step, kinds) = (Arc::clone(&frames.step), frames.kinds.clone());
+        let build = move || kinds.into_iter().try_for_each(|kind| step.build_trees(kind));
+        let built = building::within_limit(|| self.is_over(start), build)?;
+        let found = match built.transpose()? {
+            None => self.nothing(frames),
+            Some(()) if frames.request.first => pool.install(|| self.first(frames, start))?,
+            Some(()) => pool.install(|| self.all(frames, start))?,
+        };
         Ok(Impacts {
             elapsed: start.elapsed(),
             ..found
@@ -80,6 +86,19 @@ impl Search<'_> {
         match self.cancel.is_cancelled() {
             true => StopReason::Cancelled,
             false => StopReason::Time,
+        }
+    }
+
+    /// What is known before anything is compared.
+    fn nothing(&self, frames: &Frames) -> Impacts {
+        Impacts {
+            pairs: Vec::new(),
+            count: None,
+            complete: false,
+            first: frames.request.first.then_some(([0.0, 1.0], false)),
+            queries: 0,
+            stop: self.why_stopped(),
+            elapsed: Duration::ZERO,
         }
     }
 

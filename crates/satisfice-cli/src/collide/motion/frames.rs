@@ -35,7 +35,8 @@ pub(super) struct Frames {
     pub(super) bodies: Vec<NamedBody>,
     /// The same bodies at the end.
     pub(super) ends: Vec<Arc<Mesh>>,
-    pub(super) step: Step,
+    /// Shared with the thread that builds its trees.
+    pub(super) step: Arc<Step>,
     pub(super) kinds: Vec<PairKind>,
     pub(super) separation: Separation,
     is_at_rest: bool,
@@ -71,7 +72,7 @@ impl Frames {
             request,
             bodies,
             ends: ends.into_iter().map(|end| end.mesh).collect(),
-            step,
+            step: Arc::new(step),
             kinds,
             separation,
             is_at_rest,

@@ -318,6 +318,7 @@ impl Script {
                         continue;
                     }
                 }
+                3 => self.world.build_trees().unwrap(),
                 _ => {}
             }
             let update = self.world.update().unwrap();

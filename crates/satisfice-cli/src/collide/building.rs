@@ -1,0 +1,38 @@
+//! Building what a search needs, which nothing interrupts: by a thread that is not waited for beyond the limit.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use anyhow::bail;
+
+use crate::message;
+
+/// How often to look at the limit.
+const LOOK_EVERY: Duration = Duration::from_millis(2);
+
+/// What `build` returns, or `None` and a message if the limit is reached before.
+pub(super) fn within_limit<T: Send + 'static>(
+    is_reached: impl Fn() -> bool,
+    build: impl FnOnce() -> T + Send + 'static,
+) -> anyhow::Result<Option<T>> {
+    let (sender, receiver) = channel();
+    std::thread::Builder::new()
+        .name("satisfice-trees".to_owned())
+        .spawn(move || {
+            // Nobody may wait for it any more.
+            let _ = sender.send(build());
+        })?;
+    loop {
+        match receiver.recv_timeout(LOOK_EVERY) {
+            Ok(built) => return Ok(Some(built)),
+            Err(RecvTimeoutError::Timeout) if is_reached() => {
+                message::say(format_args!(
+                    "no pair was compared: the trees of the meshes were still being built"
+                ));
+                return Ok(None);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => bail!("the trees of the meshes could not be built"),
+        }
+    }
+}
