@@ -20,7 +20,7 @@ pub(super) fn read(path: &str) -> Result<String, Error> {
 }
 
 /// Longer files are refused: devices and pipes may have no end.
-const LONGEST: u64 = 1 << 30;
+const LONGEST: u64 = 1 << 28;
 
 struct Reader<'a> {
     path: &'a str,
@@ -116,6 +116,13 @@ pub(super) fn edges(path: &str, text: &str) -> Result<(usize, Vec<[usize; 2]>), 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_without_end_is_refused() {
+        let error = read("/dev/zero").unwrap_err().to_string();
+        assert!(error.contains("bytes or more"), "{error}");
+    }
 
     #[test]
     fn clauses_may_span_lines_and_end_without_zero() {

@@ -9,6 +9,7 @@ mod dimacs;
 mod graph_colouring;
 mod langford;
 mod latin_square;
+mod lists;
 mod magic_square;
 mod queens;
 mod sat;

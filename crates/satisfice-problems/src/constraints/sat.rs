@@ -5,6 +5,7 @@ use core::fmt::Write;
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
 use satisfice::{Error, SatisficingProblem, SearchRng};
 
+use super::lists::Lists;
 use super::{Extendable, Violations, constraint_bounds, constraint_methods, counted, dimacs};
 use crate::lattice::{Lattice, description};
 
@@ -103,9 +104,9 @@ pub struct Sat {
     lattice: Lattice,
     threshold: f64,
     description: Description,
-    clauses: Vec<Vec<i32>>,
+    clauses: Lists<i32>,
     /// For each variable the clauses of which it is the last.
-    ends: Vec<Vec<usize>>,
+    ends: Lists<u32>,
     /// Clauses without a literal: never satisfied.
     empty: bool,
 }
@@ -120,25 +121,29 @@ impl Sat {
     }
 
     fn described<const N: usize>(parameters: [(&str, String); N], formula: Formula) -> Result<Self, Error> {
-        let mut ends = vec![Vec::new(); formula.variables];
-        for (number, clause) in formula.clauses.iter().enumerate() {
-            let outside =
-                |literal: &&i32| !(1..=formula.variables).contains(&(literal.unsigned_abs() as usize));
-            if let Some(literal) = clause.iter().find(outside) {
-                let allowed = format!("from 1 to {}, or its negative", formula.variables);
-                return Err(Error::parameter("literal", literal, allowed));
-            }
-            if let Some(last) = clause.iter().map(|literal| literal.unsigned_abs()).max() {
-                ends[last as usize - 1].push(number);
-            }
+        let outside = |literal: &&i32| !(1..=formula.variables).contains(&(literal.unsigned_abs() as usize));
+        if let Some(literal) = formula.clauses.iter().flatten().find(outside) {
+            let allowed = format!("from 1 to {}, or its negative", formula.variables);
+            return Err(Error::parameter("literal", literal, allowed));
         }
+        let clauses = Lists::new(formula.clauses.iter().map(Vec::as_slice)).ok_or_else(|| {
+            Error::parameter(
+                "clauses",
+                formula.clauses.len(),
+                "fewer than 2^32 literals in all",
+            )
+        })?;
+        let last = |clause: &[i32]| clause.iter().map(|&literal| wanted(literal).0).max();
         Ok(Self {
             lattice: Lattice::new(vec![2; formula.variables])?,
             threshold: 1.0,
             description: description(Self::NAME, parameters),
             empty: formula.clauses.iter().any(Vec::is_empty),
-            clauses: formula.clauses,
-            ends,
+            ends: Lists::positions(
+                formula.variables,
+                formula.clauses.iter().map(|clause| last(clause)),
+            ),
+            clauses,
         })
     }
 }
@@ -153,7 +158,7 @@ impl Violations for Sat {
     /// Cost: one step per literal.
     #[inline]
     fn violations(&self, value: impl Fn(usize) -> Option<u32>) -> u32 {
-        let falsified = |clause: &&Vec<i32>| {
+        let falsified = |clause: &&[i32]| {
             clause.iter().all(|&literal| {
                 let (variable, wanted) = wanted(literal);
                 value(variable).is_some_and(|value| value != wanted)
@@ -168,13 +173,13 @@ impl Extendable for Sat {
         (variable < self.ends.len()).then_some(2)
     }
     fn extends(&self, partial: &[u32]) -> bool {
-        let satisfied = |&clause: &usize| {
-            self.clauses[clause].iter().any(|&literal| {
+        let satisfied = |&clause: &u32| {
+            self.clauses.get(clause as usize).iter().any(|&literal| {
                 let (variable, wanted) = wanted(literal);
                 partial[variable] == wanted
             })
         };
-        !self.empty && self.ends[partial.len() - 1].iter().all(satisfied)
+        !self.empty && self.ends.get(partial.len() - 1).iter().all(satisfied)
     }
 }
 
