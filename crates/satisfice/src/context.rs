@@ -72,6 +72,12 @@ pub trait Context<S: Real> {
         None
     }
 
+    /// Whether the time of the slice has run out: nothing proposed from now on is evaluated, so that an engine need not go on with
+    /// costly work. `false` where no time limits the slice, which does then not depend on the clock.
+    fn is_out_of_time(&self) -> bool {
+        false
+    }
+
     /// Number of hits of the slice before this one, C_prev.
     fn previous_hits(&self) -> usize;
 
@@ -79,9 +85,14 @@ pub trait Context<S: Real> {
     fn previous_hit(&self, index: usize, position: &mut [S]) -> bool;
 }
 
-/// How many points an engine works on at a time, so that it looks at the clock in between: 256 in most spaces, fewer where
+/// How many points an engine proposes at most before the search reads the clock: 2^18 coordinates, which take some milliseconds.
+pub(crate) fn points_between_looks(dimension: usize) -> usize {
+    const COORDINATES: usize = 1 << 18;
+    (COORDINATES / dimension.max(1)).max(1)
+}
+
+/// How many points an engine works on at a time where it does more than to write them down: 256 in most spaces, fewer where
 /// each has more than a thousand coordinates.
 pub(crate) fn points_at_once(dimension: usize) -> usize {
-    const COORDINATES: usize = 1 << 18;
-    (COORDINATES / dimension.max(1)).clamp(1, 256)
+    points_between_looks(dimension).min(256)
 }

@@ -292,6 +292,9 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         let timed = made > 0 && self.evaluations_planned().is_none();
         timed.then(|| self.ledger.clock.seen().as_secs_f64() / made as f64)
     }
+    fn is_out_of_time(&self) -> bool {
+        self.ledger.is_out_of_time()
+    }
     fn previous_hits(&self) -> usize {
         self.previous.len()
     }

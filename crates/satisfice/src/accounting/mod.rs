@@ -162,10 +162,15 @@ impl<T> Ledger<T> {
         self.stop.is_some() || self.interruption().is_some()
     }
 
+    /// Whether the time is over, so far as the alarm says.
+    pub(crate) fn is_out_of_time(&self) -> bool {
+        self.alarm.as_ref().is_some_and(Alarm::has_rung)
+    }
+
     /// What ends the slice from outside.
     #[inline]
     fn interruption(&self) -> Option<StopReason> {
-        if self.alarm.as_ref().is_some_and(Alarm::has_rung) {
+        if self.is_out_of_time() {
             return Some(StopReason::Time);
         }
         let cancel = self.budget.cancel.as_ref();
@@ -182,6 +187,19 @@ impl<T> Ledger<T> {
                 self.stop = Some(StopReason::Time);
             }
         }
+    }
+
+    /// Ends the slice because whoever evaluates has given up: for want of time if that is over, even before the alarm has said so.
+    pub(crate) fn give_up(&mut self) {
+        let out_of_time = self
+            .budget
+            .time
+            .is_some_and(|limit| self.clock.elapsed() >= limit);
+        self.stop.get_or_insert(if out_of_time {
+            StopReason::Time
+        } else {
+            StopReason::Cancelled
+        });
     }
 
     /// Checks the limits after evaluations that happened elsewhere.

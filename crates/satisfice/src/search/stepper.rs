@@ -247,7 +247,7 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
                     return Err(error);
                 }
                 slice.ledger.evaluated_elsewhere(fitness.len());
-                slice.ledger.stop.get_or_insert(StopReason::Cancelled);
+                slice.ledger.give_up();
             }
             None if fitness.is_empty() => {}
             None => {

@@ -1,7 +1,7 @@
 //! Uniform random sampling: the baseline.
 
 use crate::batch::{Batch, Outcome};
-use crate::context::Context;
+use crate::context::{Context, points_between_looks};
 use crate::engine::compiled::both_scalars;
 use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
@@ -49,8 +49,9 @@ impl<S: Real> Engine<S> for UniformSampler {
     fn begin(&mut self, _context: &dyn Context<S>) {}
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
-        for _ in 0..self.batch {
-            out.push_with(|position| rng.position(context.space(), position));
+        let space = context.space();
+        for _ in 0..self.batch.min(points_between_looks(space.dimension())) {
+            out.push_with(|position| rng.position(space, position));
         }
         Ask::More
     }

@@ -268,7 +268,7 @@ impl<S: Real> Engine<S> for Sources<S> {
             return self.enumerate(context, rng, out);
         }
         let mut rejected = 0;
-        while out.len() < self.batch && rejected < REJECTED {
+        while out.len() < self.batch && rejected < REJECTED && !context.is_out_of_time() {
             let (tag, left) = self.next_source(rng);
             let before = out.len();
             let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));

@@ -123,9 +123,9 @@ impl<S: Real> NichingSwarm<S> {
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         self.swarm.propose_start(context, rng, out);
         let dimension = context.space().dimension();
-        self.velocities
-            .resize(self.swarm.particles() * dimension, S::zero());
-        for velocity in self.velocities.chunks_mut(dimension) {
+        let drawn = self.velocities.len();
+        self.velocities.resize(drawn + out.len() * dimension, S::zero());
+        for velocity in self.velocities[drawn..].chunks_mut(dimension) {
             draw_velocity(self.coefficients.v_max, context, rng, velocity);
         }
     }

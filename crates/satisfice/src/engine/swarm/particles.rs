@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::collections::BTreeSet;
 
 use crate::batch::{Batch, Outcome};
-use crate::context::Context;
+use crate::context::{Context, points_between_looks};
 use crate::engine::{Origin, Steps};
 use crate::error::Error;
 use crate::scalar::{Real, copy_row};
@@ -25,7 +25,8 @@ pub(super) enum Attractor {
 pub(super) struct SwarmRules {
     /// N.
     pub(super) particles: usize,
-    /// Particles that move between two updates of the attractor.
+    /// Particles that move between two updates of the attractor; fewer where a point has thousands of coordinates, so that the clock
+    /// is read in between.
     pub(super) batch: usize,
     pub(super) attractor: Attractor,
     /// Whether hits are deleted from the space.
@@ -110,11 +111,14 @@ impl<S: Real> Swarm<S> {
         self.deletes
     }
 
-    /// N random members of C_prev without replacement, or all of them and then uniform points.
+    /// The next start points, as many as are proposed at a time: random members of C_prev, none of them twice, or all of them and
+    /// then uniform points.
     pub(super) fn propose_start(&self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
-        let hits = context.previous_hits();
-        for i in 0..self.particles {
-            let all_fit = hits <= self.particles;
+        let (particles, hits) = (self.particles, context.previous_hits());
+        let first = self.fitness.len();
+        let last = particles.min(first + points_between_looks(self.dimension));
+        let all_fit = hits <= particles;
+        for i in first..last {
             out.push_with(|position| {
                 let encoded = all_fit && i < hits && context.previous_hit(i, position);
                 if !encoded {
@@ -122,11 +126,13 @@ impl<S: Real> Swarm<S> {
                 }
             });
         }
-        if hits > self.particles {
+        if !all_fit {
+            // Each part of the swarm draws from its own share of the hits, which has more members than the part.
+            let share = share(hits, first, particles)..share(hits, last, particles);
             // Drawing again on a repetition costs N ln N draws at worst.
             let mut drawn = BTreeSet::new();
-            while drawn.len() < self.particles {
-                let index = rng.below(hits);
+            while drawn.len() < last - first {
+                let index = share.start + rng.below(share.len());
                 if drawn.insert(index) {
                     // Where the problem does not encode, the uniform point stays.
                     let _ = context.previous_hit(index, out.point_mut(drawn.len() - 1));
@@ -150,7 +156,8 @@ impl<S: Real> Swarm<S> {
     /// The particles that move now.
     #[inline]
     pub(super) fn due(&self) -> Range<usize> {
-        self.turn..self.particles.min(self.turn.saturating_add(self.batch))
+        let most = self.batch.min(points_between_looks(self.dimension));
+        self.turn..self.particles.min(self.turn + most)
     }
 
     /// Where coordinates of particle `i` stand in a flat list.
@@ -227,11 +234,11 @@ impl<S: Real> Swarm<S> {
                 self.remember(batch.point(i));
             }
         } else {
-            self.started = true;
             self.positions.extend(batch.points().flatten());
-            self.bests.extend_from_slice(&self.positions);
+            self.bests.extend(batch.points().flatten());
             self.fitness
                 .extend(outcomes.iter().map(|outcome| outcome.fitness()));
+            self.started = self.fitness.len() >= self.particles;
             self.find_leader();
         }
     }
@@ -318,22 +325,22 @@ impl<S: Real> Swarm<S> {
             Err(Error::State(format!("{what} has {length} numbers")))
         }
     }
-    /// The same for rows that are drawn with the first proposals: they are there before those are told.
+
+    /// The same for rows that are drawn with the start points: those of a batch are there before it is told.
     ///
     /// # Errors
     /// [`Error::State`] if the list has another length.
     pub(super) fn fits_rows_drawn(&self, what: &str, length: usize) -> Result<(), Error> {
-        if !self.started && length == 0 {
-            return Ok(());
-        }
-        self.fits(what, length, self.particles)
+        let rows = length / self.dimension.max(1);
+        self.fits(what, length, rows.clamp(self.fitness.len(), self.particles))
     }
-    /// Says whether a restored list of one row of coordinates a particle has its length.
+
+    /// Says whether a restored list of one row of coordinates a particle that has been told has its length.
     ///
     /// # Errors
     /// [`Error::State`] if it has not.
     pub(super) fn fits_rows(&self, what: &str, length: usize) -> Result<(), Error> {
-        self.fits(what, length, if self.started { self.particles } else { 0 })
+        self.fits(what, length, self.fitness.len())
     }
 
     fn check(&self) -> Result<(), Error> {
@@ -344,8 +351,13 @@ impl<S: Real> Swarm<S> {
             self.latest_hit.len(),
             usize::from(!self.latest_hit.is_empty()),
         )?;
-        let particles = if self.started { self.particles } else { 0 };
-        if self.fitness.len() == particles && self.leader < self.particles && self.turn < self.particles {
+        let told = self.fitness.len();
+        let all = told == self.particles;
+        if told <= self.particles
+            && self.started == all
+            && self.leader < self.particles
+            && self.turn < self.particles
+        {
             Ok(())
         } else {
             Err(Error::State(format!(
@@ -354,6 +366,12 @@ impl<S: Real> Swarm<S> {
             )))
         }
     }
+}
+
+/// Where the share of particle `i` of some hits begins.
+#[expect(clippy::cast_possible_truncation, reason = "at most the number of hits")]
+fn share(hits: usize, i: usize, particles: usize) -> usize {
+    (hits as u128 * i as u128 / particles.max(1) as u128) as usize
 }
 
 impl<S: Real> Part for Swarm<S> {

@@ -69,7 +69,7 @@ impl<S: Real> VelocitySwarm<S> {
 
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         self.swarm.propose_start(context, rng, out);
-        for _ in 0..self.swarm.particles() {
+        for _ in 0..out.len() {
             for &limit in &self.limits {
                 self.velocities.push(limit * S::of(2.0 * rng.uniform() - 1.0));
             }
