@@ -2,7 +2,7 @@
 //! move.
 
 use super::body::{BodyId, Motion};
-use super::body_tree::Change;
+use super::body_tree::{BodyTree, Change};
 use super::pairs::{NONE, Status};
 use super::state::State;
 use super::{World, unknown};
@@ -237,14 +237,14 @@ impl World {
             let placement = state.placement();
             let extent = state.mesh.extent();
             let new = extent.posed(&placement);
-            let wanted = inflate(&new, half);
-            if !self.tree.holds(slot, &wanted) {
+            // a ball that fitted fills the box about as well as the body does
+            if state.fits || !self.tree.holds(slot, &inflate(&new, half)) {
                 let from = Placement::from(from);
                 let motion = extent.motion(&from, &placement);
-                let fat = fattened(&wanted, from.apply(extent.centre()), &new, motion);
+                let fat = fattened(&new, half, from.apply(extent.centre()), motion);
                 let fat = self.tree.place(&fat);
                 // at once: the body may be far away in memory later
-                state.room = self.tree.room(&fat, extent, half);
+                give_room(&self.tree, state, &fat, half);
                 changes.push(Change::to(slot, fat));
             }
         }
@@ -263,17 +263,10 @@ impl World {
         let new = state.bounds();
         let wanted = inflate(&new, half);
         if !self.tree.holds(slot, &wanted) {
-            let fat = fattened(&wanted, from, &new, motion);
+            let fat = fattened(&new, half, from, motion);
             changes.push(Change::to(slot, self.tree.place(&fat)));
         }
         true
-    }
-
-    /// Tells a body how far it may go in a box.
-    fn give_room(&mut self, slot: u32, bounds: &Box32, half: f64) {
-        if let Some(state) = self.states[slot as usize].as_mut() {
-            state.room = self.tree.room(bounds, state.mesh.extent(), half);
-        }
     }
 
     /// Adds the bodies whose partners must be found again.
@@ -284,7 +277,9 @@ impl World {
         let half = self.half_threshold();
         for body in std::mem::take(&mut self.unpaired) {
             let bounds = self.tree.place(&inflate(&self.state(body).bounds(), half));
-            self.give_room(body, &bounds, half);
+            if let Some(state) = self.states[body as usize].as_mut() {
+                give_room(&self.tree, state, &bounds, half);
+            }
             changes.push(Change {
                 is_recheck: self.tree.contains(body),
                 ..Change::to(body, bounds)
@@ -312,8 +307,10 @@ impl World {
         };
         let changes = boxes.iter().map(change).collect();
         self.tree.build(&boxes);
-        for &(slot, _) in &boxes {
-            self.give_room(slot, &self.tree.box_of(slot), half);
+        for (slot, state) in (0..).zip(&mut self.states) {
+            if let Some(state) = state {
+                give_room(&self.tree, state, &self.tree.box_of(slot), half);
+            }
         }
         changes
     }
@@ -418,10 +415,17 @@ fn middle(bounds: &Aabb) -> Point {
     std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0)
 }
 
-/// A box that will hold a body for some frames if it continues as from a box around `from` to `new`, and for about one if it turns.
-fn fattened(wanted: &Aabb, from: Point, new: &Aabb, motion: f64) -> Aabb {
+/// Tells a body how far it may go in a box.
+fn give_room(tree: &BodyTree, state: &mut State, bounds: &Box32, half: f64) {
+    state.room = tree.room(bounds, state.mesh.extent(), half);
+    state.fits = tree.is_within(&state.room, state.centre());
+}
+
+/// A box that will hold a body, and `half` around it, for some frames if it continues as from a box around `from` to `new`, and for about
+/// one if it turns.
+fn fattened(new: &Aabb, half: f64, from: Point, motion: f64) -> Aabb {
     let (most, to) = (MOST * new.size(), middle(new));
-    let mut fat = inflate(wanted, motion.min(most));
+    let mut fat = inflate(new, (half + motion.min(most)).next_up());
     for k in 0..3 {
         let way = (FRAMES * (to[k] - from[k])).clamp(-most, most);
         fat.min[k] = (fat.min[k] + way.min(0.0)).max(f64::MIN);

@@ -24,8 +24,10 @@ pub(super) struct State {
     is_turned: bool,
     /// Whether the placement is the identity.
     rests: bool,
-    /// Where the centre of a rigid body may go so that its box in the tree still holds it.
+    /// Where the centre of a rigid body may go so that its box in the tree still holds it, however it turns.
     pub(super) room: Box32,
+    /// Whether the centre was there when the box was chosen.
+    pub(super) fits: bool,
     /// The centre of the mesh, rotated.
     offset: Point,
     /// The frame in which it moved last.
@@ -55,6 +57,7 @@ impl State {
             is_turned: false,
             rests: false,
             room: Box32::EMPTY,
+            fits: false,
             offset: [0.0; 3],
             moved_at: 0,
             place: (&body.placement).into(),
