@@ -217,14 +217,14 @@ fn models() {
         variables: 2,
         clauses: vec![vec![1], vec![2], vec![-1, -2]],
     };
-    assert_eq!(agrees(&Sat::new(formula).unwrap()), 0);
+    assert_eq!(agrees(&Sat::new(&formula).unwrap()), 0);
     let empty = Formula {
         variables: 1,
         clauses: vec![vec![]],
     };
-    assert_eq!(agrees(&Sat::new(empty).unwrap()), 0);
+    assert_eq!(agrees(&Sat::new(&empty).unwrap()), 0);
     assert!(
-        Sat::new(Formula {
+        Sat::new(&Formula {
             variables: 1,
             clauses: vec![vec![2]]
         })
@@ -241,7 +241,10 @@ fn dimacs_files() {
     std::fs::write(&path, format!("c generated\n{}", formula.dimacs())).unwrap();
     assert_eq!(Formula::read_dimacs(path.to_str().unwrap()).unwrap(), formula);
     let read = problem::<Sat>(&[("file", path.to_str().unwrap())]);
-    assert_eq!(read.reference_hits(), Sat::new(formula).unwrap().reference_hits());
+    assert_eq!(
+        read.reference_hits(),
+        Sat::new(&formula).unwrap().reference_hits()
+    );
 
     let path = folder.join("triangle.col");
     std::fs::write(&path, "c a triangle\np edge 3 3\ne 1 2\ne 2 3\ne 3 1\n").unwrap();

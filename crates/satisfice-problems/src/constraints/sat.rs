@@ -94,7 +94,7 @@ impl Formula {
 /// use satisfice::SatisficingProblem;
 /// use satisfice_problems::{Formula, Sat};
 /// // (x1 or not x2) and (x2 or x3)
-/// let problem = Sat::new(Formula { variables: 3, clauses: vec![vec![1, -2], vec![2, 3]] })?;
+/// let problem = Sat::new(&Formula { variables: 3, clauses: vec![vec![1, -2], vec![2, 3]] })?;
 /// assert_eq!(problem.fitness(&vec![1, 1, 0]), 0.0);
 /// assert_eq!(problem.fitness(&vec![0, 1, 0]), 1.0);
 /// # Ok::<(), satisfice::Error>(())
@@ -116,11 +116,11 @@ impl Sat {
     ///
     /// # Errors
     /// [`Error::NoAxis`] without variables, [`Error::Parameter`] for a literal of no variable.
-    pub fn new(formula: Formula) -> Result<Self, Error> {
+    pub fn new(formula: &Formula) -> Result<Self, Error> {
         Self::described([("variables", formula.variables.to_string())], formula)
     }
 
-    fn described<const N: usize>(parameters: [(&str, String); N], formula: Formula) -> Result<Self, Error> {
+    fn described<const N: usize>(parameters: [(&str, String); N], formula: &Formula) -> Result<Self, Error> {
         let outside = |literal: &&i32| !(1..=formula.variables).contains(&(literal.unsigned_abs() as usize));
         if let Some(literal) = formula.clauses.iter().flatten().find(outside) {
             let allowed = format!("from 1 to {}, or its negative", formula.variables);
@@ -194,7 +194,7 @@ impl Catalogued for Sat {
     const SUMMARY: &'static str = "models of a random 3-SAT formula near the threshold, or of a DIMACS file";
     const SOURCE: &'static str = "Mitchell, Selman, Levesque 1992 (AAAI); counts by backtracking";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::integer("variables", "number of variables, n", 20, 3, 10_000),
+        Parameter::integer("variables", "number of variables, n", 20, 3, 100_000),
         Parameter::real(
             "ratio",
             "clauses per variable; half of all formulas are satisfiable near 4.267",
@@ -213,7 +213,7 @@ impl Catalogued for Sat {
     fn from_params(params: &Params) -> Result<Self, Error> {
         let file = params.text("file");
         if !file.is_empty() {
-            return Self::described([("file", file.to_owned())], Formula::read_dimacs(file)?);
+            return Self::described([("file", file.to_owned())], &Formula::read_dimacs(file)?);
         }
         let (variables, seed) = (params.count("variables"), params.count("formula-seed"));
         let clauses = (params.real("ratio") * variables as f64).round() as usize;
@@ -222,7 +222,7 @@ impl Catalogued for Sat {
             ("ratio", params.real("ratio").to_string()),
             ("formula-seed", seed.to_string()),
         ];
-        Self::described(parameters, Formula::random(variables, clauses, seed as u64)?)
+        Self::described(parameters, &Formula::random(variables, clauses, seed as u64)?)
     }
 
     fn reference_hits(&self) -> Option<u64> {

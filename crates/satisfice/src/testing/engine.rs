@@ -61,8 +61,8 @@ const EXPENSIVE_RUN: u64 = 150;
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;
 
-/// Runs the suite on an engine of the registry with these parameters, in `f32` and in `f64`. Takes seconds without
-/// optimisation.
+/// Runs the suite on an engine of the registry with these parameters, in `f32` and in `f64`, on a thread each. Takes seconds
+/// without optimisation.
 ///
 /// # Errors
 /// As [`EngineSpec::configure`].
@@ -72,17 +72,21 @@ pub fn check_spec(spec: &EngineSpec, settings: &[(&str, &str)]) -> Result<Vec<Vi
     } else {
         RUN
     };
+    let settings = || settings.iter().copied();
+    let single = spec.configure::<f32>(settings())?;
+    let double = spec.configure::<f64>(settings())?;
+    let (single, double) = std::thread::scope(|scope| {
+        let of_single = || check_in(&single, run);
+        let beside = std::thread::Builder::new().spawn_scoped(scope, of_single);
+        let double = check_in(&double, run);
+        match beside.map(std::thread::ScopedJoinHandle::join) {
+            Ok(Ok(single)) => (single, double),
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            Err(_) => (of_single(), double), // no thread can be started here
+        }
+    });
     let mut violations = Vec::new();
-    for (scalar, found) in [
-        (
-            "f32",
-            check_in::<f32>(&spec.configure(settings.iter().copied())?, run)?,
-        ),
-        (
-            "f64",
-            check_in::<f64>(&spec.configure(settings.iter().copied())?, run)?,
-        ),
-    ] {
+    for (scalar, found) in [("f32", single?), ("f64", double?)] {
         violations.extend(found.into_iter().map(|mut violation| {
             violation.case = format!("{} in {scalar}, {}", spec.name, violation.case);
             violation

@@ -369,7 +369,6 @@ impl<S: Real> Swarm<S> {
 }
 
 /// Where the share of particle `i` of some hits begins.
-#[expect(clippy::cast_possible_truncation, reason = "at most the number of hits")]
 fn share(hits: usize, i: usize, particles: usize) -> usize {
     (hits as u128 * i as u128 / particles.max(1) as u128) as usize
 }
