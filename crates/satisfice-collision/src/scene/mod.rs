@@ -103,6 +103,8 @@ pub struct World {
     dirty: Vec<u32>,
     /// Whether one of them may have been removed since, or be listed twice.
     has_removed_dirty: bool,
+    /// Whether one of them may have contacts of this frame or the last one.
+    has_known_dirty: bool,
     /// Counts the frames in which something changed.
     frame: u64,
     /// Whether contacts are measured between frames, which needs to know where bodies came from.
@@ -153,6 +155,7 @@ impl World {
             unpaired: Vec::new(),
             dirty: Vec::new(),
             has_removed_dirty: false,
+            has_known_dirty: false,
             frame: 0,
             predicts: false,
             came_from: Vec::new(),

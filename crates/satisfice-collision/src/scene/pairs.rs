@@ -215,11 +215,13 @@ fn sides(bodies: [u32; 2]) -> usize {
 }
 
 impl Record {
-    /// One of the bodies has moved.
-    pub(super) fn has_moved(&mut self) {
+    /// One of the bodies has moved. Returns whether the contacts are those of the last frame now.
+    #[inline]
+    pub(super) fn has_moved(&mut self) -> bool {
         if self.status == Status::Current {
             self.status = Status::Behind;
         }
+        self.status == Status::Behind
     }
 
     /// Notes whether a new grid found few pairs; `None` changes nothing.

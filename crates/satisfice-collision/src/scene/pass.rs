@@ -239,6 +239,7 @@ impl World {
             let before = std::mem::replace(&mut known.pairs, pairs);
             known.slack = None;
             known.is_dirty = !link.is_done;
+            self.has_known_dirty |= !link.is_done;
             known.status = if link.is_done {
                 Status::Current
             } else {

@@ -167,7 +167,10 @@ impl World {
         }
         self.changing();
         self.frame += 1;
-        for at in 0..self.dirty.len() {
+        // not for records of which nothing is known, which pile up while nobody asks for contacts
+        let is_known = std::mem::take(&mut self.has_known_dirty);
+        let known = if is_known { self.dirty.len() } else { 0 };
+        for at in 0..known {
             let record = self.dirty[at];
             let known = &mut self.pairs[record];
             if matches!(known.status, Status::Behind | Status::Partial) {
@@ -328,7 +331,7 @@ impl World {
             let record = &mut self.pairs[id];
             let [a, b] = record.bodies.map(|slot| slot as usize);
             if has_moved[a] || has_moved[b] {
-                record.has_moved();
+                self.has_known_dirty |= record.has_moved();
                 if !std::mem::replace(&mut record.is_dirty, true) {
                     self.dirty.push(id);
                 }
@@ -346,7 +349,7 @@ impl World {
             let record = member / 2;
             member = self.pairs.next(member);
             let known = &mut self.pairs[record];
-            known.has_moved();
+            self.has_known_dirty |= known.has_moved();
             if !std::mem::replace(&mut known.is_dirty, true) {
                 self.dirty.push(record);
             }

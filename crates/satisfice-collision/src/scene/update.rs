@@ -240,6 +240,7 @@ impl World {
         known.slack = None;
         if cut {
             known.status = Status::Partial;
+            self.has_known_dirty = true;
         } else {
             known.status = Status::Current;
             known.is_dirty = false;
