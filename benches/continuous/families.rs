@@ -149,7 +149,11 @@ impl Source {
             _ => ((|x| x) as fn(f64) -> f64, false),
         };
         let [x, y] = [self.number(), self.number()];
-        let [a, b] = [self.below(512), self.below(512)].map(|n| (n + 1) as f64 / 64.0);
+        let [mut a, b] = [self.below(512), self.below(512)].map(|n| (n + 1) as f64 / 64.0);
+        if x + a == 0.0 {
+            // one step beside 0 is 0 at a small scale
+            a += 1.0 / 64.0;
+        }
         let mut height = || self.number() / 16.0;
         let side = beside(x + a);
         let query = if height() < 0.0 {

@@ -49,7 +49,7 @@ fn main() {
 }
 
 const INTRODUCTION: &str = "One thread unless a row says otherwise. A time a query is the mean over the queries of a row; the largest is the \
-    least of three runs of the slowest query. Other times are medians of runs in turns. *Integers* counts the queries that floating point \
+    least of five runs of the slowest query, in processor time. Other times are medians of runs in turns. *Integers* counts the queries that floating point \
     leaves open. Written by `cargo bench --bench continuous`.";
 
 /// Measures a part of the report.
