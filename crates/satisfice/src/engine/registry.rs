@@ -99,6 +99,7 @@ engines! {
     BoundedSwarms,
     BranchAndBound,
     Surrogate,
+    QuadraticDescent,
 }
 
 /// Every engine, in the order of the docs.

@@ -11,6 +11,7 @@ mod local;
 mod points;
 mod pool;
 mod process;
+mod quadratic;
 mod reach;
 mod record;
 mod region;
@@ -21,5 +22,6 @@ mod target;
 mod units;
 
 pub use gaussian_process::GaussianProcess;
+pub use quadratic::QuadraticDescent;
 pub(super) use surrogate::ModelledSearch;
 pub use surrogate::Surrogate;

@@ -9,7 +9,7 @@ use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
 use crate::engine::local::RestartedCmaEs;
 use crate::engine::local::flood::{Flood, Order};
-use crate::engine::model::{ModelledSearch, Surrogate};
+use crate::engine::model::{ModelledSearch, QuadraticDescent, Surrogate};
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
@@ -21,6 +21,8 @@ use crate::state::{Part, Reader, State};
 const MODELLED: u64 = 500;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
+/// Descents by quadratic models are used where evaluations are limited, or where one takes so many seconds: they think for half of that.
+const QUADRATIC: f64 = 2e-5;
 /// Weight of the model until it is known to predict too little. From then on it is bounded like all that finds nothing, even where nothing
 /// else has found anything: its proposals cost a hundred times the time of others.
 const MODEL_WEIGHT: f64 = 40.0;
@@ -48,6 +50,8 @@ enum Kind {
     Regions,
     /// A Gaussian process.
     Model,
+    /// Restarted descents by quadratic models.
+    Quadratic,
 }
 
 /// The model, or another engine.
@@ -169,6 +173,13 @@ impl<S: Real> Guest<S> {
                 }
                 .build(),
             ),
+            Kind::Quadratic => Member::Other(
+                QuadraticDescent {
+                    searches: sizes.searches,
+                    ..QuadraticDescent::default()
+                }
+                .build(),
+            ),
             Kind::Model => Member::Model(Box::new(ModelledSearch::new(Surrogate {
                 candidates: sizes.candidates,
                 ..Surrogate::default()
@@ -201,10 +212,17 @@ impl<S: Real> Guests<S> {
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
         self.guests.clear();
-        for kind in [Kind::Cma, Kind::Flood, Kind::Regions, Kind::Model] {
+        for kind in [
+            Kind::Cma,
+            Kind::Flood,
+            Kind::Regions,
+            Kind::Model,
+            Kind::Quadratic,
+        ] {
             let is_of_use = match kind {
                 Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
                 Kind::Flood => continuous,
+                Kind::Quadratic => continuous && context.evaluations_planned().is_some(),
                 Kind::Regions => context.lower_bound(&space.region()).is_some(),
                 Kind::Model => context
                     .evaluations_planned()
@@ -222,17 +240,24 @@ impl<S: Real> Guests<S> {
         self.guests.push(guest);
     }
 
-    /// Opens the model where F turns out to be expensive.
+    /// Opens the model, and descents by quadratic models, where F turns out to be expensive.
     pub(super) fn look_at_price(&mut self, context: &dyn Context<S>) {
-        let expensive = context
-            .seconds_an_evaluation()
-            .is_some_and(|seconds| seconds > EXPENSIVE);
-        if expensive
+        let Some(seconds) = context.seconds_an_evaluation() else {
+            return;
+        };
+        let axes = context.space().axes();
+        let is_there = |kind: Kind| self.guests.iter().any(|guest| guest.kind == kind);
+        let opens_model = seconds > EXPENSIVE
             && context.evaluations() <= MODELLED
-            && context.space().dimension() <= MODEL_AXES
-            && self.guests.iter().all(|guest| guest.kind != Kind::Model)
-        {
+            && axes.len() <= MODEL_AXES
+            && !is_there(Kind::Model);
+        let opens_quadratic =
+            seconds > QUADRATIC && axes.iter().any(|axis| !axis.is_integer()) && !is_there(Kind::Quadratic);
+        if opens_model {
             self.open(Kind::Model, context);
+        }
+        if opens_quadratic {
+            self.open(Kind::Quadratic, context);
         }
     }
 
@@ -250,7 +275,7 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn role(&self, index: usize) -> Role {
         match self.guests[index].kind {
-            Kind::Cma => Role::Explores,
+            Kind::Cma | Kind::Quadratic => Role::Explores,
             Kind::Flood => Role::Exploits,
             Kind::Regions | Kind::Model => Role::Apart,
         }
@@ -278,7 +303,8 @@ impl<S: Real> Guests<S> {
             }
             let is_worth_trying = guest.arm.is_worth_trying(all, trial);
             let weight = match (guest.kind, &guest.engine) {
-                (Kind::Cma, _) => Some(2.0),
+                (Kind::Cma, _) => is_worth_trying.then_some(2.0),
+                (Kind::Quadratic, _) => is_worth_trying.then_some(4.0),
                 (Kind::Flood, _) => is_worth_trying.then_some(1.0),
                 (Kind::Regions, _) => is_worth_trying.then_some(0.3),
                 (Kind::Model, Member::Model(model)) => match model.is_useful() {

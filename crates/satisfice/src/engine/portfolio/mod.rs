@@ -61,7 +61,9 @@ engine_choice! {
 engine_settings! {
     /// A portfolio of sources of candidates, which compete for evaluations by their yield:
     ///
-    /// - restarted descents over neighbours and compass steps, and (1+1)-CMA-ES with recombination of hits on continuous axes;
+    /// - restarted descents over neighbours and compass steps, and on continuous axes (1+1)-CMA-ES with recombination of hits;
+    /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or one takes more than
+    ///   20 microseconds;
     /// - a Gaussian process where F is expensive: where at most 500 evaluations are planned, or where an evaluation takes more than
     ///   5 ms and only time is limited;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
@@ -75,8 +77,8 @@ engine_settings! {
     ///   hits.
     ///
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
-    /// share until something hits. Any other source that finds nothing takes at most 4 % of the evaluations, and all of these together
-    /// 18 %; so does the model, once it is known to predict less than a quarter of the variance of F, and then it costs no more time. All of them
+    /// share until something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together
+    /// 18 %, except for descents on a lattice and uniform points; so does the model, once it is known to predict less than a quarter of the variance of F, and then it costs no more time. All of them
     /// learn the hits of the others. No parameter depends on the problem.
     ///
     /// ```
@@ -109,8 +111,8 @@ engine_settings! {
 
 impl EngineConfig for Portfolio {
     const NAME: &'static str = "portfolio";
-    const SUMMARY: &'static str = "descents, CMA-ES, a model of expensive F, regions, flood fill, recombined hits and swarms that compete for evaluations by their yield";
-    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012";
+    const SUMMARY: &'static str = "descents, CMA-ES, quadratic models, a model of expensive F, regions, flood fill, recombined hits and swarms that compete for evaluations by their yield";
+    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Powell 2004, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012";
 
     /// Whether a space is enumerated depends on how much the budget has left.
     fn is_scheduled(&self) -> bool {

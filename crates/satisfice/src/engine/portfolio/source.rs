@@ -51,7 +51,7 @@ impl Source {
 }
 
 /// The names of all sources, in their order; whole engines last, in theirs.
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     "uniform",
     "swarms",
     "climbers",
@@ -66,6 +66,7 @@ const NAMES: [&str; 14] = [
     "flood fill",
     "regions",
     "model",
+    "quadratic descents",
 ];
 
 /// What each source has proposed and found since the slice began.

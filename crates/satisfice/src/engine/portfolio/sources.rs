@@ -144,9 +144,11 @@ impl<S: Real> Sources<S> {
             }
         };
         offer(self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
-        offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
         let trial = Trial::new(self.planned, self.barren());
         let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
+        if self.visited.is_some() || is_worth(DESCENT) {
+            offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
+        }
         if uses(Omitted::Swarms) && is_worth(1) {
             offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
         }
