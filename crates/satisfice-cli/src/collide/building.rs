@@ -9,12 +9,18 @@ use crate::message;
 
 /// How often to look at the limit.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
+/// Features below this number take less than ten milliseconds, and need no thread, whose memory would be reserved beside them.
+const QUICK: usize = 1 << 14;
 
-/// What `build` returns, or `None` and a message if the limit is reached before.
+/// What `build` returns for so many features, or `None` and a message if the limit is reached before.
 pub(super) fn within_limit<T: Send + 'static>(
+    features: usize,
     is_reached: impl Fn() -> bool,
     build: impl FnOnce() -> T + Send + 'static,
 ) -> anyhow::Result<Option<T>> {
+    if features < QUICK {
+        return Ok(Some(build()));
+    }
     let (sender, receiver) = channel();
     std::thread::Builder::new()
         .name("satisfice-trees".to_owned())

@@ -143,6 +143,7 @@ impl Exact<'_> {
     ) -> anyhow::Result<Option<scene::World>> {
         let (world, pool, method) = (Arc::clone(world), pool.cloned(), self.method);
         let built = building::within_limit(
+            world.features(),
             || limit.is_reached(),
             move || -> anyhow::Result<scene::World> {
                 let mut scene = world.scene(method)?;

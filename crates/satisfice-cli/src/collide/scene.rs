@@ -247,6 +247,17 @@ impl World {
             .filter(move |&[a, b]| (a != b || self.request.within) && (a <= b || kind_a != kind_b))
     }
 
+    /// The number of features over which there are trees.
+    pub(super) fn features(&self) -> usize {
+        let (kind_a, kind_b) = self.kinds();
+        let second = (kind_b != kind_a).then_some(kind_b);
+        let kinds = || [kind_a].into_iter().chain(second);
+        let bodies = self.bodies.iter();
+        bodies
+            .map(|body| kinds().map(|kind| kind.count(&body.mesh)).sum::<usize>())
+            .sum()
+    }
+
     /// The bodies without a feature of this kind.
     pub(super) fn without(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
         let bodies = self.bodies.iter().enumerate();

@@ -66,7 +66,7 @@ impl Search<'_> {
         let start = now();
         let (step, kinds) = (Arc::clone(&frames.step), frames.kinds.clone());
         let build = move || kinds.into_iter().try_for_each(|kind| step.build_trees(kind));
-        let built = building::within_limit(|| self.is_over(start), build)?;
+        let built = building::within_limit(frames.vertices(), || self.is_over(start), build)?;
         let found = match built.transpose()? {
             None => self.nothing(frames),
             Some(()) if frames.request.first => pool.install(|| self.first(frames, start))?,

@@ -122,6 +122,11 @@ impl Frames {
         })
     }
 
+    /// The number of vertices of all bodies.
+    pub(super) fn vertices(&self) -> usize {
+        self.ends.iter().map(|end| end.vertices().len()).sum()
+    }
+
     /// What a report repeats.
     pub(super) fn settings(&self) -> Settings {
         let mut settings = Settings::default();
