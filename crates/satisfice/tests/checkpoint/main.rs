@@ -49,6 +49,7 @@ fn space(name: &str) -> Space<f64> {
     match name {
         "lattice" => Space::lattice(3, 12),
         "square" => Space::cube(2, -2.0, 2.0),
+        "wide" => Space::cube(10_000, -2.0, 2.0),
         _ => Space::new([Axis::integer(-3, 3), Axis::continuous(-2.0, 2.0)]),
     }
     .unwrap()
@@ -61,7 +62,11 @@ fn problem<'a>(
     fatal: u64,
     cancel: &'a Cancel,
 ) -> impl SatisficingProblem<Scalar = f64, Solution = Located<f64>> + 'a {
-    let (middle, width) = if name == "lattice" { (5.5, 0.4) } else { (0.1, 0.1) };
+    let (middle, width) = match name {
+        "lattice" => (5.5, 0.4),
+        "wide" => (0.1, 1e9), // everything hits
+        _ => (0.1, 0.1),
+    };
     from_fn(space(name), width, move |x: &[f64]| {
         if calls.fetch_add(1, Ordering::Relaxed) + 1 == fatal {
             cancel.cancel();
@@ -146,9 +151,9 @@ fn interrupted_at(
     entry: &EngineSpec,
     name: &str,
     probes: f64,
+    budget: &Budget,
     fatal: u64,
-    expected: &[String],
-    ends: &[u64],
+    (expected, ends): (&[String], &[u64]),
 ) -> bool {
     let mut cut_short = false;
     let case = format!("{} on {name}, interrupted at call {fatal}", entry.name);
@@ -161,13 +166,13 @@ fn interrupted_at(
             search
                 .run_with(
                     &problem,
-                    &part_of_a_long_run().and_until(&cancel),
+                    &budget.clone().and_until(&cancel),
                     RunOptions::new()
                         .checkpoints(Duration::MAX, &mut |saved: &Saved| kept = Some(saved.clone())),
                 )
                 .unwrap()
         } else {
-            search.run(&problem, &part_of_a_long_run()).unwrap()
+            search.run(&problem, budget).unwrap()
         };
         if report.stop_reason == StopReason::Cancelled {
             cut_short = true;
@@ -192,17 +197,34 @@ fn interrupted_at(
 }
 
 fn after_an_interrupt_anywhere(name: &str, probes: f64) {
+    let budget = part_of_a_long_run();
     for entry in quick() {
-        let (expected, _, ends) = uninterrupted(entry, name, probes, &part_of_a_long_run());
+        let (expected, _, ends) = uninterrupted(entry, name, probes, &budget);
         let (first, second) = (ends[0], ends[1]);
         let anywhere = [1, 2, 3, 17, 29, 30, 31, 63, 64, 65, 128, first - 1, first];
         let later = [1, 2, 5, 33, 64, 65, 100, second - first].map(|calls| first + calls);
         let cut_short = anywhere
             .into_iter()
             .chain(later)
-            .filter(|&fatal| interrupted_at(entry, name, probes, fatal, &expected, &ends));
+            .filter(|&fatal| interrupted_at(entry, name, probes, &budget, fatal, (&expected, &ends)));
         // Not where the last evaluation of a slice ends it anyway.
         assert!(cut_short.count() >= 18, "{} on {name}", entry.name);
+    }
+}
+
+/// With so many axes 26 particles are proposed at a time: a swarm of 30 or 40 starts in two parts, from C_prev in later slices.
+#[test]
+fn after_an_interrupt_between_the_parts_of_a_swarm() {
+    let budget = Budget::evaluations(42);
+    for name in ["pso", "spso-2011", "niching-pso-dbscan"] {
+        let entry = engine::find(name).unwrap();
+        let (expected, _, ends) = uninterrupted(entry, "wide", 0.0, &budget);
+        for fatal in [28, ends[0] + 28] {
+            assert!(
+                interrupted_at(entry, "wide", 0.0, &budget, fatal, (&expected, &ends)),
+                "{name}"
+            );
+        }
     }
 }
 
