@@ -20,6 +20,33 @@ fn placed(mesh: &Mesh, at: [f64; 3]) -> Mesh {
     Placement::from_translation(at).unwrap().place(mesh).unwrap()
 }
 
+/// A scene of two triangles: in each of the animations, one falls from z = 1 through the other one to z = -1 in two seconds.
+fn fall(folder: &Path, name: &str, animations: &[&str]) {
+    let triangle = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let places = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0];
+    let numbers: Vec<f32> = [&triangle[..], &[0.0, 2.0], &places].concat();
+    let bytes: Vec<u8> = numbers.iter().flat_map(|c| c.to_le_bytes()).collect();
+    fs::write(folder.join("falling.bin"), bytes).unwrap();
+    let channel = json!({ "sampler": 0, "target": { "node": 1, "path": "translation" } });
+    let animations = animations.iter().map(
+        |name| json!({ "name": name, "channels": [channel], "samplers": [{ "input": 1, "output": 2 }] }),
+    );
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "nodes": [{ "name": "floor", "mesh": 0 }, { "name": "lid", "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "animations": animations.collect::<Vec<_>>(),
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+            { "bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 2, "type": "SCALAR" },
+            { "bufferView": 0, "byteOffset": 44, "componentType": 5126, "count": 2, "type": "VEC3" },
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 68 }],
+        "buffers": [{ "byteLength": 68, "uri": "falling.bin" }],
+    });
+    fs::write(folder.join(name), document.to_string()).unwrap();
+}
+
 /// A ball that falls through a sheet at z = 0, and files that do not fit.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -218,8 +245,57 @@ fn impacts_are_written_as_csv_and_told() {
 }
 
 #[test]
+fn two_times_of_an_animation_are_a_step() {
+    let folder = folder();
+    fall(folder.path(), "scene.gltf", &["fall"]);
+    fs::write(
+        folder.path().join("below.obj"),
+        "v 0 0 -0.25\nv 1 0 -0.25\nv 0 1 -0.25\nf 1 2 3\n",
+    )
+    .unwrap();
+    for (call, time) in [
+        ("scene.gltf --from 0.5s --to 1.5s --threshold 0", 0.5),
+        ("--from 500ms --to 2s scene.gltf --threshold 0", 1.0 / 3.0),
+        (
+            "scene.gltf --from 0 --to 2s --threshold 0.25 --animation fall",
+            0.375,
+        ),
+        (
+            "scene.gltf below.obj --from 1.25s --to 2s --threshold 0 --at lid:0,0,0.125",
+            1.0 / 6.0,
+        ),
+        // Backwards, from below.
+        ("scene.gltf --from 1.5s --to 0.5s --threshold 0", 0.5),
+    ] {
+        let report = report(&folder, &format!("collide {call} --first"));
+        let [low, high] = bounds(&report["first_impact"]["time"]);
+        assert!(
+            low <= time + 1e-9 && time - 1e-9 <= high && high - low <= 1e-6,
+            "{call}: {low} {high}"
+        );
+        assert_eq!(report["bodies"][1]["name"], "lid", "{call}");
+    }
+    let call = "collide scene.gltf --from 0.5s --to 1.5s --threshold 0";
+    let done = satisfice_in(folder.path(), call);
+    assert!(
+        done.stdout
+            .contains("  step          from 0.5 s to 1.5 s of the animation\n")
+            && done.stdout.contains("  bodies        floor - lid\n"),
+        "{}",
+        done.stdout
+    );
+    let free = satisfice_in(
+        folder.path(),
+        "collide scene.gltf --from 0s --to 0.875s --threshold 0.125 --json -",
+    );
+    assert_eq!(free.code, 1, "it ends at a distance of 0.125: {}", free.stdout);
+}
+
+#[test]
 fn mistakes_about_motions_are_told_in_one_line() {
     let folder = folder();
+    fall(folder.path(), "scene.gltf", &["fall"]);
+    fall(folder.path(), "two.gltf", &["fall", "plunge"]);
     let lines: Vec<String> = [
         "collide --from ball0.obj sheet.obj --threshold 0",
         "collide ball0.obj --from ball0.obj --to ball1.obj --threshold 0",
@@ -239,6 +315,13 @@ fn mistakes_about_motions_are_told_in_one_line() {
         "collide --from tet.obj --to tet.obj --self --threshold 0 --method random",
         "collide --from tet.obj --to tet.obj --self --threshold 0 --out tet.obj",
         "collide --from - --to - --format obj --self --threshold 0",
+        "collide scene.gltf --from 0s --to 2.1s --threshold 0",
+        "collide scene.gltf --from 0s --to 1 --threshold 0",
+        "collide scene.gltf --from 0s --to scene.gltf --threshold 0",
+        "collide scene.gltf --from 0s --to 1s --animation walk --threshold 0",
+        "collide two.gltf --from 0s --to 1s --threshold 0",
+        "collide tet.obj ball0.obj --from 0s --to 1s --threshold 0",
+        "collide --from tet.obj --to tet.obj --animation walk --self --threshold 0",
     ]
     .iter()
     .map(|arguments| {

@@ -32,6 +32,8 @@ Examples:
       What touches while every vertex moves along a straight line from the one frame to the other, the earliest impact first.
   satisfice collide --from robot0.glb wall.stl --to robot1.glb wall.stl --threshold 0.01 --first --time 10ms
       The earliest time at which two bodies are closer than 0.01, with bounds; proved, or what is known after 10 ms.
+  satisfice collide robot.glb hall.stl --from 0.5s --to 0.6s --threshold 0.01 --pairs edge-edge
+      The same between two times of a glTF animation; choose small steps, since vertices move straight from one time to the other.
   curl example.com/scan.ply.gz | satisfice collide - tool.stl --format ply --at tool:0,0,12.5,90,0,0 --threshold 0.2
       A mesh from standard input, and another one turned about x and lifted.
 
@@ -45,17 +47,23 @@ then their higher vertex. `Touch` means: surfaces closer than the threshold;
 a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.")]
 pub(crate) struct CollideArguments {
     /// Files of meshes or scenes: .obj, .ply, .stl, .off, .gltf, .glb, .json or .toml; `-` is standard input.
-    #[arg(value_name = "MESH", required_unless_present = "from", conflicts_with = "from", value_hint = ValueHint::FilePath)]
+    #[arg(value_name = "MESH", required_unless_present = "from", value_hint = ValueHint::FilePath)]
     pub(crate) meshes: Vec<PathBuf>,
 
-    /// The bodies at the start of a step: find what comes near while they move. May be repeated or take several files.
-    #[arg(long, value_name = "MESH", num_args = 1.., requires = "to", value_hint = ValueHint::FilePath)]
+    /// The bodies at the start of a step: find what comes near while they move. May be repeated or take several files. Or, for
+    /// MESHes with glTF animations, a time from their start, e.g. 0.5s; MESHes without one rest.
+    #[arg(long, value_name = "MESH|TIME", num_args = 1.., requires = "to", value_hint = ValueHint::FilePath)]
     pub(crate) from: Vec<PathBuf>,
 
     /// The same bodies, in the same order, at the end of the step. Every vertex moves along a straight line at constant speed;
-    /// times are parts of the step, from 0 to 1.
-    #[arg(long, value_name = "MESH", num_args = 1.., requires = "from", value_hint = ValueHint::FilePath)]
+    /// times are parts of the step, from 0 to 1. Or a time of the animations, at most that of their last key.
+    #[arg(long, value_name = "MESH|TIME", num_args = 1.., requires = "from", value_hint = ValueHint::FilePath)]
     pub(crate) to: Vec<PathBuf>,
+
+    /// Play this animation, by its name, or its number from 0 if it has none. May be repeated [default: all of the files; two that
+    /// set the same property of a node are an error].
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pub(crate) animation: Vec<String>,
 
     /// The format of standard input: obj, ply, stl, off, gltf, json or toml.
     #[arg(long, value_name = "FORMAT")]

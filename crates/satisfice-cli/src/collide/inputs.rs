@@ -1,14 +1,18 @@
 //! The bodies named on the command line: files, scenes, standard input, their placements, and welding.
 
+use std::io::StdinLock;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
-use satisfice_collision::Mesh;
-use satisfice_collision::io::{self, Format, PlacedMesh};
+use satisfice_collision::io::{self, AnimatedScene, Format, PlacedMesh};
+use satisfice_collision::{Error, Mesh};
 use serde::{Deserialize, Serialize};
 
 use super::weld;
+
+/// What a mesh from standard input is called.
+const STDIN: &str = "stdin";
 
 /// Where the bodies come from.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -80,17 +84,60 @@ impl Inputs {
 
     /// Reads all bodies, in the order of the command line and of their files.
     pub(super) fn read(&self) -> anyhow::Result<Vec<NamedBody>> {
+        let files = self.each(
+            |path| io::read_scene(path),
+            |stream, format| io::read_scene_from(stream, format, STDIN, "."),
+        )?;
+        self.bodies(files)
+    }
+
+    /// Reads the files with the animations of these names; all without a name.
+    pub(super) fn scenes(&self, animations: &[&str]) -> anyhow::Result<Vec<(PathBuf, AnimatedScene)>> {
+        self.each(
+            |path| AnimatedScene::read(path, animations),
+            |stream, format| AnimatedScene::read_from(stream, format, STDIN, ".", animations),
+        )
+    }
+
+    /// All bodies of the scenes at a time.
+    pub(super) fn at_time(
+        &self,
+        scenes: &[(PathBuf, AnimatedScene)],
+        seconds: f64,
+    ) -> anyhow::Result<Vec<NamedBody>> {
+        let bodies = |(path, scene): &(PathBuf, AnimatedScene)| {
+            let bodies = scene.at(seconds).with_context(|| path.display().to_string())?;
+            Ok((path.clone(), bodies))
+        };
+        self.bodies(scenes.iter().map(bodies).collect::<anyhow::Result<_>>()?)
+    }
+
+    /// What is read of each path, or of standard input.
+    fn each<T>(
+        &self,
+        file: impl Fn(&Path) -> Result<T, Error>,
+        stdin: impl Fn(StdinLock<'static>, Format) -> Result<T, Error>,
+    ) -> anyhow::Result<Vec<(PathBuf, T)>> {
         self.check()?;
         let mut files = Vec::new();
         for path in &self.paths {
-            let bodies = if Self::is_stdin(path) {
+            let read = if Self::is_stdin(path) {
                 let format = Format::named(self.format.as_deref().unwrap_or_default())?;
-                io::read_scene_from(std::io::stdin().lock(), format, "stdin", ".")?
+                stdin(std::io::stdin().lock(), format)?
             } else {
-                io::read_scene(path)?
+                file(path)?
             };
-            files.extend(bodies.into_iter().map(|body| (path.clone(), body)));
+            files.push((path.clone(), read));
         }
+        Ok(files)
+    }
+
+    /// The bodies of all files in their places.
+    fn bodies(&self, files: Vec<(PathBuf, Vec<PlacedMesh>)>) -> anyhow::Result<Vec<NamedBody>> {
+        let mut files: Vec<(PathBuf, PlacedMesh)> = files
+            .into_iter()
+            .flat_map(|(path, bodies)| bodies.into_iter().map(move |body| (path.clone(), body)))
+            .collect();
         let stems: Vec<String> = files.iter().map(|(_, body)| body.name.clone()).collect();
         for (path, body) in &mut files {
             // A mesh is called like its file, a body of a scene as the scene calls it.

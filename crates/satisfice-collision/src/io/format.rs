@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::scene::PlacedMesh;
+use super::animated::{Frames, Play};
 use super::source::Folder;
 use crate::error::Error;
 use crate::mesh::Mesh;
@@ -23,13 +23,16 @@ pub struct Format {
     pub(super) reader: Reader,
 }
 
+/// Reads a scene, whose files are relative to the folder.
+type SceneReader = fn(&[u8], &Folder, Play<'_>) -> Result<Box<dyn Frames>, Error>;
+
 /// How the bytes of a file are read.
 #[derive(Clone, Copy)]
 pub(super) enum Reader {
     /// One body.
     Mesh(fn(&[u8]) -> Result<Mesh, Error>),
-    /// Several bodies, which may name further files in the folder.
-    Scene(fn(&[u8], &Folder) -> Result<Vec<PlacedMesh>, Error>),
+    /// Several bodies, which may name further files in the folder, and animations.
+    Scene(SceneReader),
 }
 
 impl Format {

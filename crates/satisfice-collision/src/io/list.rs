@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use super::animated::{AnimatedScene, Frames, Play};
 use super::format::{Format, Reader};
 use super::scene::PlacedMesh;
 use super::source::Folder;
@@ -55,12 +56,12 @@ fn one() -> f64 {
     1.0
 }
 
-fn json(bytes: &[u8], folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
+fn json(bytes: &[u8], folder: &Folder, play: Play<'_>) -> Result<Box<dyn Frames>, Error> {
     let list = serde_json::from_slice(without_mark(NAME, bytes)?);
-    bodies(&list.map_err(|error| Error::malformed(NAME, error))?, folder)
+    files(list.map_err(|error| Error::malformed(NAME, error))?, folder, play)
 }
 
-fn toml(bytes: &[u8], folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
+fn toml(bytes: &[u8], folder: &Folder, play: Play<'_>) -> Result<Box<dyn Frames>, Error> {
     let text = std::str::from_utf8(without_mark(NAME, bytes)?);
     let text = text.map_err(|error| Error::malformed(NAME, error))?;
     let list = ::toml::from_str(text).map_err(|error| {
@@ -68,25 +69,68 @@ fn toml(bytes: &[u8], folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
         let line = 1 + text.bytes().take(before).filter(|&byte| byte == b'\n').count();
         Error::malformed(NAME, error.message()).at_line(line)
     })?;
-    bodies(&list, folder)
+    files(list, folder, play)
 }
 
-fn bodies(list: &MeshList, folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
-    let mut files: BTreeMap<PathBuf, Vec<PlacedMesh>> = BTreeMap::new();
-    let mut instances = Instances::default();
-    let mut bodies = Vec::new();
-    for (index, entry) in list.bodies.iter().enumerate() {
+fn files(list: MeshList, folder: &Folder, play: Play<'_>) -> Result<Box<dyn Frames>, Error> {
+    let mut files: Vec<(PathBuf, AnimatedScene)> = Vec::new();
+    let mut known: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    let mut entries = Vec::new();
+    for entry in list.bodies {
         let path = folder.join(&entry.mesh);
-        if !files.contains_key(&path) {
-            files.insert(path.clone(), parts(&path)?);
-        }
-        let parts = &files[&path];
-        for part in parts {
-            let body = entry.place(part, parts.len() == 1, &mut instances);
-            bodies.push(body.map_err(|error| error.in_body(format!("body {index}")))?);
-        }
+        let file = match known.get(&path) {
+            Some(&file) => file,
+            None => {
+                let scene = scene(&path, play)?;
+                known.insert(path.clone(), files.len());
+                files.push((path, scene));
+                files.len() - 1
+            }
+        };
+        entries.push((entry, file));
     }
-    Ok(bodies)
+    Ok(Box::new(Listed { entries, files }))
+}
+
+/// The files of a list, and where its entries place them.
+struct Listed {
+    /// With the number of the file.
+    entries: Vec<(ListedMesh, usize)>,
+    files: Vec<(PathBuf, AnimatedScene)>,
+}
+
+impl Frames for Listed {
+    fn animations(&self) -> Vec<String> {
+        self.files
+            .iter()
+            .flat_map(|(_, scene)| scene.animations())
+            .collect()
+    }
+
+    fn end(&self) -> Option<f64> {
+        self.files
+            .iter()
+            .filter_map(|(_, scene)| scene.end())
+            .reduce(f64::max)
+    }
+
+    fn at(&self, seconds: Option<f64>) -> Result<Vec<PlacedMesh>, Error> {
+        let parts = |(path, scene): &(PathBuf, AnimatedScene)| {
+            let parts = seconds.map_or_else(|| scene.at_rest(), |seconds| scene.at(seconds));
+            parts.map_err(|error| error.in_file(path))
+        };
+        let files: Vec<Vec<PlacedMesh>> = self.files.iter().map(parts).collect::<Result<_, _>>()?;
+        let mut instances = Instances::default();
+        let mut bodies = Vec::new();
+        for (index, (entry, file)) in self.entries.iter().enumerate() {
+            let parts = &files[*file];
+            for part in parts {
+                let body = entry.place(part, parts.len() == 1, &mut instances);
+                bodies.push(body.map_err(|error| error.in_body(format!("body {index}")))?);
+            }
+        }
+        Ok(bodies)
+    }
 }
 
 impl ListedMesh {
@@ -113,11 +157,11 @@ impl ListedMesh {
     }
 }
 
-/// The bodies of one file of the list, which is not a list itself.
-fn parts(path: &std::path::Path) -> Result<Vec<PlacedMesh>, Error> {
+/// One file of the list, which is not a list itself.
+fn scene(path: &std::path::Path, play: Play<'_>) -> Result<AnimatedScene, Error> {
     let format = Format::of_path(path)?;
     if format == JSON || format == TOML {
         return Err(Error::unsupported(NAME, "a list within a list is not supported").in_file(path));
     }
-    super::read_scene(path)
+    AnimatedScene::playing(path, play)
 }

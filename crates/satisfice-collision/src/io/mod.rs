@@ -1,8 +1,10 @@
 //! Files of meshes and scenes. A file is read whole or refused with the reason and, in text, the line.
 //!
-//! [`read`] takes one body, [`read_scene`] all of a scene with names and placements; [`Format::ALL`] lists the formats.
+//! [`read`] takes one body, [`read_scene`] all of a scene with names and placements, [`AnimatedScene`] plays animations;
+//! [`Format::ALL`] lists the formats.
 //! Files may be compressed by gzip. Coordinates are `f64`. A new format is a file here and a line in `registry.rs`.
 
+mod animated;
 mod faces;
 mod format;
 mod gltf;
@@ -22,6 +24,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use animated::AnimatedScene;
 pub use format::Format;
 pub use scene::PlacedMesh;
 pub use write::{save_obj, write_obj};
@@ -29,6 +32,7 @@ pub use write::{save_obj, write_obj};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::placement::Placement;
+use animated::{Frames, Play};
 use format::Reader;
 use source::Folder;
 
@@ -63,10 +67,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 /// ```
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Vec<PlacedMesh>, Error> {
     let path = path.as_ref();
-    let format = Format::of_path(path)?;
-    let bytes = source::file(path)?;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    bodies(format, &bytes, &Folder::of(path), &name).map_err(|error| error.in_file(path))
+    let scene = AnimatedScene::playing(path, Play::Nothing)?;
+    scene.at_rest().map_err(|error| error.in_file(path))
 }
 
 /// Reads the bodies of a scene from a stream, e.g. from standard input. Names of further files inside are relative to
@@ -124,16 +126,24 @@ fn mesh(format: Format, bytes: &[u8], folder: &Folder) -> Result<Mesh, Error> {
 }
 
 fn bodies(format: Format, bytes: &[u8], folder: &Folder, name: &str) -> Result<Vec<PlacedMesh>, Error> {
-    let mut bodies = match format.reader {
-        Reader::Mesh(parse) => vec![PlacedMesh {
+    AnimatedScene::of(frames(format, bytes, folder, name, Play::Nothing)?).at_rest()
+}
+
+fn frames(
+    format: Format,
+    bytes: &[u8],
+    folder: &Folder,
+    name: &str,
+    play: Play<'_>,
+) -> Result<Box<dyn Frames>, Error> {
+    match format.reader {
+        Reader::Mesh(parse) => Ok(Box::new(PlacedMesh {
             name: name.to_owned(),
             mesh: Arc::new(parse(bytes)?),
             placement: Placement::IDENTITY,
-        }],
-        Reader::Scene(parse) => parse(bytes, folder)?,
-    };
-    scene::make_names_unique(&mut bodies);
-    Ok(bodies)
+        })),
+        Reader::Scene(parse) => parse(bytes, folder, play),
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::report::{ImpactLine, MotionReport};
 /// follow if a file holds several.
 pub(super) fn write(report: &MotionReport<'_>, out: &mut dyn Write) -> io::Result<()> {
     let bodies = &report.frames.bodies;
-    let names = bodies.len() > report.frames.request.from.paths.len();
+    let names = bodies.len() > report.frames.request.ends.files()[0];
     write!(
         out,
         "kind,a_body,a_feature,b_body,b_feature,time_low,time_high,at_start,ax,ay,az,bx,by,bz,nx,ny,nz"

@@ -1,6 +1,5 @@
 //! The bodies at both ends of a step.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
@@ -8,15 +7,15 @@ use satisfice_catalogue::Settings;
 use satisfice_collision::Mesh;
 use satisfice_collision::continuous::{Separation, Step};
 use satisfice_collision::distance::PairKind;
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::super::inputs::{Inputs, NamedBody};
+use super::super::inputs::NamedBody;
+use super::ends::Ends;
 
 /// What makes a step.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionRequest {
-    pub(super) from: Inputs,
-    pub(super) to: Inputs,
+    pub(super) ends: Ends,
     /// The kind of pairs; without one, all in which surfaces, wires and points first meet.
     pub(super) pairs: Option<PairKind>,
     /// 0 asks for touching.
@@ -45,11 +44,7 @@ pub(super) struct Frames {
 impl Frames {
     pub(super) fn read(request: MotionRequest) -> anyhow::Result<Self> {
         let separation = Separation::new(request.threshold)?;
-        if request.from.reads_stdin() && request.to.reads_stdin() {
-            bail!("standard input can be read once only: name files for --from or for --to");
-        }
-        let bodies = request.from.read().context("--from")?;
-        let ends = request.to.read().context("--to")?;
+        let [bodies, ends] = request.ends.read()?;
         check_partners(&request, &bodies, &ends)?;
         if bodies.len() < 2 && !request.within {
             bail!("one body has no partner: name a second mesh, or look for pairs within it by --self");
@@ -89,30 +84,10 @@ impl Frames {
                 .cloned()
                 .with_context(|| format!("it has no parameter `{name}`"))
         };
-        let at: Vec<_> = settings
-            .get("at")
-            .cloned()
-            .map(serde_json::from_value)
-            .transpose()
-            .context("`at` is no list of placements")?
-            .unwrap_or_default();
-        let inputs = |name: &str| -> anyhow::Result<Inputs> {
-            Ok(Inputs {
-                paths: serde_json::from_value(value(name)?)
-                    .with_context(|| format!("`{name}` is no list of files"))?,
-                at: at.clone(),
-                ..Inputs::default()
-            })
-        };
-        let (from, to) = (inputs("from")?, inputs("to")?);
-        if from.reads_stdin() || to.reads_stdin() {
-            bail!("a mesh was read from standard input, which cannot be read again");
-        }
         let pairs = value("pairs")?;
         let pairs = pairs.as_str().context("`pairs` is no text")?;
         Self::read(MotionRequest {
-            from,
-            to,
+            ends: Ends::of_settings(settings)?,
             pairs: (pairs != "all").then(|| pairs.parse()).transpose()?,
             threshold: value("threshold")?.as_f64().context("`threshold` is no number")?,
             within: value("self")?
@@ -130,15 +105,7 @@ impl Frames {
     /// What a report repeats.
     pub(super) fn settings(&self) -> Settings {
         let mut settings = Settings::default();
-        let files = |paths: &[PathBuf]| -> Vec<Value> {
-            paths.iter().map(|path| path.to_string_lossy().into()).collect()
-        };
-        settings.set("from", files(&self.request.from.paths));
-        settings.set("to", files(&self.request.to.paths));
-        if !self.request.from.at.is_empty() {
-            let at = self.request.from.at.iter().map(|at| json!(at));
-            settings.set("at", at.collect::<Vec<Value>>());
-        }
+        self.request.ends.describe(&mut settings);
         settings.set("pairs", self.request.pairs.map_or("all", PairKind::name));
         settings.set("threshold", self.request.threshold);
         settings.set("self", self.request.within);
@@ -178,11 +145,11 @@ impl Frames {
 /// Every body needs a partner of the same topology.
 fn check_partners(request: &MotionRequest, from: &[NamedBody], to: &[NamedBody]) -> anyhow::Result<()> {
     if from.len() != to.len() {
-        let files = |inputs: &Inputs| inputs.paths.len();
+        let [from_files, to_files] = request.ends.files();
         bail!(
             "--from has {} and --to has {}: name every body at both ends of the step, in the same order",
-            bodies(from.len(), files(&request.from)),
-            bodies(to.len(), files(&request.to))
+            bodies(from.len(), from_files),
+            bodies(to.len(), to_files)
         );
     }
     if from.is_empty() {

@@ -2,6 +2,7 @@
 
 mod answer;
 mod csv;
+mod ends;
 mod frames;
 mod page;
 mod report;
@@ -15,10 +16,10 @@ use satisfice_catalogue::json;
 
 use super::arguments::{CollideArguments, Find};
 use super::files::Files;
-use super::inputs::Inputs;
 use crate::output::{self, Steps};
 use crate::{interrupt, message};
 use answer::Search;
+use ends::Ends;
 use frames::{Frames, MotionRequest};
 use report::MotionReport;
 pub(super) use verify::{is_of_motion, verify};
@@ -29,15 +30,8 @@ const TOLERANCE: f64 = 1e-6;
 pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     check(arguments)?;
     crate::page::check(arguments.page.as_deref())?;
-    let inputs = |paths: &[_]| Inputs {
-        paths: paths.to_vec(),
-        format: arguments.format.clone(),
-        at: arguments.at.clone(),
-        weld: None,
-    };
     let frames = Frames::read(MotionRequest {
-        from: inputs(&arguments.from),
-        to: inputs(&arguments.to),
+        ends: Ends::of_arguments(arguments)?,
         pairs: arguments.pairs.map(Into::into),
         threshold: arguments.threshold(),
         within: arguments.within,
@@ -46,7 +40,7 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
     let mut files = Files::open(arguments)?;
     if frames.is_at_rest() {
         message::say(format_args!(
-            "warning: no vertex moves: --from and --to hold the same coordinates"
+            "warning: no vertex moves: the coordinates are the same at --from and --to"
         ));
     }
     let cancel = interrupt::listen()?;

@@ -23,6 +23,10 @@ pub(super) fn summary(report: &MotionReport<'_>) -> String {
             false => kinds.join(" and "),
         }
     ));
+    if let Some(times) = report.frames.request.ends.times() {
+        let [from, to] = times.seconds.map(shown::exact);
+        lines.line("step", &format!("from {from} s to {to} s of the animation"));
+    }
     if !report.frames.request.first {
         lines.line("pairs", &count(report));
         lines.line("completeness", completeness(report));

@@ -38,22 +38,21 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    /// The positions that accessor `index` holds.
-    pub(super) fn positions(&mut self, index: usize) -> Result<Vec<[f64; 3]>, Error> {
-        let accessor = self.accessor(index, "VEC3")?;
+    /// The vectors that accessor `index` holds: positions, or times (of length 1) and values of keys.
+    pub(super) fn vectors<const N: usize>(&mut self, index: usize) -> Result<Vec<[f64; N]>, Error> {
+        let accessor = self.accessor(index, ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1])?;
         let component = Component::of(accessor.component_type)?;
         if component == Component::U32 {
             return Err(malformed(format!(
-                "accessor {index}: positions are not of type 5125"
+                "accessor {index}: numbers of type 5125 are no positions and no keys"
             )));
         }
-        let bytes = self.elements(accessor, 3 * component.size())?;
+        let bytes = self.elements(accessor, N * component.size())?;
         let coordinates = bytes
             .chunks_exact(component.size())
             .map(|bytes| component.real(bytes, accessor.normalized));
         let coordinates: Vec<f64> = coordinates.collect();
-        let points = coordinates.chunks_exact(3).map(|p| [p[0], p[1], p[2]]);
-        Ok(points.collect())
+        Ok(coordinates.as_chunks().0.to_vec())
     }
 
     /// The vertex numbers that accessor `index` holds.

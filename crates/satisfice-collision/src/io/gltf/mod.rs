@@ -1,5 +1,6 @@
-//! glTF 2.0: the nodes of a scene that have meshes, as bodies at rest.
+//! glTF 2.0: the nodes of a scene that have meshes, as bodies, and the animations that move them.
 
+mod animation;
 mod buffers;
 mod document;
 mod nodes;
@@ -7,9 +8,11 @@ mod shapes;
 
 use std::sync::Arc;
 
+use animation::Motion;
 use buffers::Buffers;
-use document::Document;
+use document::{Document, NodeObject};
 
+use super::animated::{Frames, Play};
 use super::format::{Format, Reader};
 use super::scene::PlacedMesh;
 use super::source::Folder;
@@ -35,7 +38,7 @@ const HARMLESS: [&str; 6] = [
 pub(super) const FORMAT: Format = Format {
     name: "gltf",
     extensions: &["gltf", "glb"],
-    summary: "glTF 2.0: nodes with meshes become bodies; instances share a mesh; animations are not played",
+    summary: "glTF 2.0: nodes with meshes become bodies; instances share a mesh; animations move them",
     reader: Reader::Scene(parse),
 };
 
@@ -43,29 +46,29 @@ fn malformed(reason: impl std::fmt::Display) -> Error {
     Error::malformed(NAME, reason)
 }
 
-fn parse(bytes: &[u8], folder: &Folder) -> Result<Vec<PlacedMesh>, Error> {
+fn parse(bytes: &[u8], folder: &Folder, play: Play<'_>) -> Result<Box<dyn Frames>, Error> {
     let (text, binary) = if bytes.starts_with(MAGIC) {
         let (text, binary) = container(bytes)?;
         (text, binary)
     } else {
         (without_mark(NAME, bytes)?, None)
     };
-    let document: Document = serde_json::from_slice(text).map_err(malformed)?;
+    let mut document: Document = serde_json::from_slice(text).map_err(malformed)?;
     check(&document)?;
-    let mut scene = Scene {
-        document: &document,
-        buffers: Buffers::new(&document, folder, binary),
-        meshes: document.meshes.iter().map(|_| None).collect(),
-        instances: Instances::default(),
-        bodies: Vec::new(),
-    };
-    for (node, transform) in nodes::placed(&document)? {
-        let name = nodes::name(&document, node);
-        scene
-            .add(node, name.clone(), &transform)
-            .map_err(|error| error.in_body(name))?;
+    let mut buffers = Buffers::new(&document, folder, binary);
+    let mut meshes: Vec<Option<Option<Arc<Mesh>>>> = document.meshes.iter().map(|_| None).collect();
+    for index in nodes::with_meshes(&document)? {
+        read_mesh(&document, &document.nodes[index], &mut buffers, &mut meshes)
+            .map_err(|error| error.in_body(nodes::name(&document, index)))?;
     }
-    Ok(scene.bodies)
+    let motion = Motion::read(&document, &mut buffers, play)?;
+    // They may hold the data of the file as text.
+    document.buffers.clear();
+    Ok(Box::new(Scene {
+        document,
+        meshes: meshes.into_iter().map(Option::flatten).collect(),
+        motion,
+    }))
 }
 
 /// The JSON and the binary chunk of a `.glb` file.
@@ -132,61 +135,78 @@ fn check(document: &Document) -> Result<(), Error> {
     }
 }
 
-struct Scene<'a> {
-    document: &'a Document,
-    buffers: Buffers<'a>,
-    /// Meshes read so far; inside, `None` for a mesh without vertices.
-    meshes: Vec<Option<Option<Arc<Mesh>>>>,
-    instances: Instances,
-    bodies: Vec<PlacedMesh>,
+/// Reads the mesh of a node if it has not been read for another one: `None` inside for a mesh without vertices.
+fn read_mesh(
+    document: &Document,
+    node: &NodeObject,
+    buffers: &mut Buffers<'_>,
+    meshes: &mut [Option<Option<Arc<Mesh>>>],
+) -> Result<(), Error> {
+    let Some(index) = node.mesh else {
+        return Ok(());
+    };
+    let mesh = document.meshes.get(index);
+    let mesh = mesh.ok_or_else(|| malformed(format!("there is no mesh {index}")))?;
+    if node.skin.is_some() {
+        return Err(Error::unsupported(
+            NAME,
+            "skins are not supported; apply the pose before the export",
+        ));
+    }
+    if node
+        .weights
+        .iter()
+        .chain(&mesh.weights)
+        .any(|weight| *weight != 0.0)
+    {
+        return Err(Error::unsupported(
+            NAME,
+            "morph targets are not supported; apply them before the export",
+        ));
+    }
+    if meshes[index].is_none() {
+        meshes[index] = Some(shapes::body(mesh, buffers)?.map(Arc::new));
+    }
+    Ok(())
 }
 
-impl Scene<'_> {
-    fn add(
-        &mut self,
-        node: usize,
-        name: String,
-        transform: &super::transform::Transform,
-    ) -> Result<(), Error> {
-        let node = &self.document.nodes[node];
-        let Some(index) = node.mesh else {
-            return Ok(());
-        };
-        let mesh = self.document.meshes.get(index);
-        let mesh = mesh.ok_or_else(|| malformed(format!("there is no mesh {index}")))?;
-        if node.skin.is_some() {
-            return Err(Error::unsupported(
-                NAME,
-                "skins are not supported; apply the pose before the export",
-            ));
-        }
-        if node
-            .weights
-            .iter()
-            .chain(&mesh.weights)
-            .any(|weight| *weight != 0.0)
-        {
-            return Err(Error::unsupported(
-                NAME,
-                "morph targets are not supported; apply them before the export",
-            ));
-        }
-        let shape = match &self.meshes[index] {
-            Some(known) => known.clone(),
-            None => {
-                let read = shapes::body(mesh, &mut self.buffers)?.map(Arc::new);
-                self.meshes[index] = Some(read.clone());
-                read
-            }
-        };
-        if let Some(shape) = shape {
-            let (mesh, placement) = self.instances.instance(&shape, transform)?;
-            self.bodies.push(PlacedMesh {
+struct Scene {
+    document: Document,
+    /// `None` for those that the scene does not use, and those without vertices.
+    meshes: Vec<Option<Arc<Mesh>>>,
+    motion: Motion,
+}
+
+impl Frames for Scene {
+    fn animations(&self) -> Vec<String> {
+        (0..self.document.animations.len())
+            .map(|index| animation::name(&self.document, index))
+            .collect()
+    }
+
+    fn end(&self) -> Option<f64> {
+        self.motion.end
+    }
+
+    fn at(&self, seconds: Option<f64>) -> Result<Vec<PlacedMesh>, Error> {
+        let moment = seconds.map(|seconds| (&self.motion, seconds));
+        let mut instances = Instances::default();
+        let mut bodies = Vec::new();
+        for (index, transform) in nodes::placed(&self.document, moment)? {
+            let mesh = self.document.nodes[index].mesh;
+            let Some(shape) = mesh.and_then(|mesh| self.meshes[mesh].as_ref()) else {
+                continue;
+            };
+            let name = nodes::name(&self.document, index);
+            let (mesh, placement) = instances
+                .instance(shape, &transform)
+                .map_err(|error| error.in_body(name.clone()))?;
+            bodies.push(PlacedMesh {
                 name,
                 mesh,
                 placement,
             });
         }
-        Ok(())
+        Ok(bodies)
     }
 }

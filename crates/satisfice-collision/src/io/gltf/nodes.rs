@@ -1,5 +1,6 @@
 //! The nodes of a glTF document: which are in the scene, and where.
 
+use super::animation::{Motion, NodeTracks};
 use super::document::{Document, NodeObject};
 use super::malformed;
 use crate::error::Error;
@@ -9,7 +10,26 @@ use crate::io::transform::Transform;
 const MOST_NODES: usize = 500_000;
 
 /// Every node of the scene that has a mesh, with its place in the scene, in the order of a depth-first walk.
-pub(super) fn placed(document: &Document) -> Result<Vec<(usize, Transform)>, Error> {
+pub(super) fn placed(
+    document: &Document,
+    moment: Option<(&Motion, f64)>,
+) -> Result<Vec<(usize, Transform)>, Error> {
+    walk(document, |index, node| {
+        let tracks = moment.and_then(|(motion, time)| Some((motion.of_node(index)?, time)));
+        local(node, tracks)
+    })
+}
+
+/// Every node of the scene that has a mesh, in the same order.
+pub(super) fn with_meshes(document: &Document) -> Result<Vec<usize>, Error> {
+    let nodes = walk(document, |_, _| Ok(Transform::IDENTITY))?;
+    Ok(nodes.into_iter().map(|(index, _)| index).collect())
+}
+
+fn walk(
+    document: &Document,
+    local: impl Fn(usize, &NodeObject) -> Result<Transform, Error>,
+) -> Result<Vec<(usize, Transform)>, Error> {
     let nodes = &document.nodes;
     if nodes.len() > MOST_NODES {
         let what = format!("{} nodes; at most {MOST_NODES} are read", nodes.len());
@@ -23,7 +43,7 @@ pub(super) fn placed(document: &Document) -> Result<Vec<(usize, Transform)>, Err
     }
     while let Some((index, parent)) = open.pop() {
         let node = nodes.get(index).ok_or_else(|| no_node(index))?;
-        let transform = local(node)
+        let transform = local(index, node)
             .and_then(|local| local.then(&parent))
             .map_err(|error| error.in_body(name(document, index)))?;
         if node.mesh.is_some() {
@@ -105,17 +125,24 @@ fn no_node(index: usize) -> Error {
     malformed(format!("there is no node {index}"))
 }
 
-fn local(node: &NodeObject) -> Result<Transform, Error> {
+/// The place of a node relative to its parent; the tracks of an animation replace parts of it.
+fn local(node: &NodeObject, tracks: Option<(&NodeTracks, f64)>) -> Result<Transform, Error> {
     let Some(m) = node.matrix else {
-        let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        let translation = tracks.and_then(|(tracks, time)| tracks.translation(time));
+        let rotation = tracks.and_then(|(tracks, time)| tracks.rotation(time));
+        let scale = tracks.and_then(|(tracks, time)| tracks.scale(time));
+        let [x, y, z, w] = rotation.or(node.rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
         return Transform::new(
-            node.scale.unwrap_or([1.0; 3]),
+            scale.or(node.scale).unwrap_or([1.0; 3]),
             [w, x, y, z],
-            node.translation.unwrap_or_default(),
+            translation.or(node.translation).unwrap_or_default(),
         );
     };
     if node.translation.is_some() || node.rotation.is_some() || node.scale.is_some() {
         return Err(malformed("a node has both a matrix and parts of one"));
+    }
+    if tracks.is_some() {
+        return Err(malformed("an animation moves a node that has a matrix"));
     }
     if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
         return Err(malformed("the last row of a matrix is not 0, 0, 0, 1"));

@@ -22,7 +22,7 @@ pub(super) fn body(mesh: &document::MeshObject, buffers: &mut Buffers<'_>) -> Re
         let (first, count) = match known.iter().find(|(a, ..)| *a == accessor) {
             Some(&(_, first, count)) => (first, count),
             None => {
-                let positions = buffers.positions(accessor)?;
+                let positions = buffers.vectors::<3>(accessor)?;
                 known.push((accessor, vertices.len(), positions.len()));
                 vertices.extend_from_slice(&positions);
                 (vertices.len() - positions.len(), positions.len())

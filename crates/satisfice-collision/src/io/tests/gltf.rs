@@ -25,7 +25,7 @@ fn data() -> Vec<u8> {
     clippy::needless_pass_by_value,
     reason = "every caller makes the nodes on the spot"
 )]
-fn document(nodes: Value) -> Value {
+pub(super) fn document(nodes: Value) -> Value {
     let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(data()));
     json!({
         "asset": { "version": "2.0" },
@@ -56,7 +56,7 @@ pub(super) fn glb(text: &str, binary: &[u8]) -> Vec<u8> {
     file
 }
 
-fn scene(document: &Value) -> Vec<PlacedMesh> {
+pub(super) fn scene(document: &Value) -> Vec<PlacedMesh> {
     read_scene_from(document.to_string().as_bytes(), GLTF, "", ".").unwrap()
 }
 
@@ -68,7 +68,7 @@ fn say(document: &Value) -> String {
     error.strip_prefix("-: ").unwrap().to_owned()
 }
 
-fn near(a: [f64; 3], b: [f64; 3]) -> bool {
+pub(super) fn near(a: [f64; 3], b: [f64; 3]) -> bool {
     (0..3).all(|k| (a[k] - b[k]).abs() < 1e-12)
 }
 

@@ -1,6 +1,7 @@
 //! Tests of the readers: files by name, and bytes without meaning, which give an error or a mesh, never a panic.
 #![allow(clippy::unwrap_used)]
 
+mod animation;
 mod gltf;
 mod list;
 mod obj;
@@ -121,6 +122,7 @@ fn samples() -> Vec<(Format, Vec<u8>)> {
         ),
         (GLTF, gltf::two_triangles().into_bytes()),
         (GLTF, gltf::glb(&gltf::two_triangles(), b"")),
+        (GLTF, animation::turning().into_bytes()),
     ];
     for encoding in ENCODINGS {
         for double in [true, false] {
@@ -144,7 +146,7 @@ proptest! {
 
     #[test]
     fn damaged_files_do_no_harm(
-        which in 0_usize..12,
+        which in 0_usize..13,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         digits in any::<bool>(),
         cut in any::<prop::sample::Index>(),
@@ -159,6 +161,7 @@ proptest! {
         let k = at.index(bytes.len());
         bytes.splice(k..k, inserted.bytes());
         let _ = parse(format, &bytes);
+        let _ = AnimatedScene::read_from(&bytes[..], format, "", ".", &[]).and_then(|scene| scene.at(0.5));
         let _ = parse(format, &bytes[..cut.index(bytes.len())]);
     }
 }

@@ -1,0 +1,171 @@
+//! Scenes whose bodies move with time.
+
+use std::fmt;
+use std::io::Read;
+use std::path::Path;
+
+use super::scene::{PlacedMesh, make_names_unique};
+use super::source::{self, Folder};
+use super::{Format, frames};
+use crate::error::Error;
+
+/// A scene file with its animations, read once and asked for any number of times.
+///
+/// Animations of glTF nodes are played: translation, rotation and scale, linear, in steps or along cubic splines. Bodies
+/// without one rest, as do those of all other formats. A list of meshes plays the animations of its files.
+///
+/// Animations that move different things are played together, since many programs write one for each object. Two that set the
+/// same property of a node are an error: choose one of them by its name. An animation without a name is called by its
+/// number, from 0.
+///
+/// ```no_run
+/// use satisfice_collision::io::AnimatedScene;
+/// let robot = AnimatedScene::read("robot.glb", &["wave"])?;
+/// let (from, to) = (robot.at(0.5)?, robot.at(0.6)?);
+/// assert_eq!(from[0].name, to[0].name);
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
+pub struct AnimatedScene(Box<dyn Frames>);
+
+/// The bodies of a file at any time.
+pub(super) trait Frames: Send + Sync {
+    /// The names of all animations of the file.
+    fn animations(&self) -> Vec<String>;
+
+    /// When the last of those that are played ends, in seconds.
+    fn end(&self) -> Option<f64>;
+
+    /// The bodies at a time in seconds; without one, as the file places them.
+    fn at(&self, seconds: Option<f64>) -> Result<Vec<PlacedMesh>, Error>;
+}
+
+/// Which animations of a file are read.
+#[derive(Clone, Copy)]
+pub(super) enum Play<'a> {
+    Nothing,
+    All,
+    Named(&'a [&'a str]),
+}
+
+impl Play<'_> {
+    pub(super) fn has(self, name: &str) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::All => true,
+            Self::Named(names) => names.contains(&name),
+        }
+    }
+}
+
+impl AnimatedScene {
+    /// Reads a scene and the animations of these names; all without a name. Names that the file does not have are passed
+    /// over, so that several files can be asked for the same names; [`AnimatedScene::animations`] tells which it has.
+    ///
+    /// # Errors
+    /// Those of [`read_scene`](super::read_scene); [`Error::Malformed`] for an animation whose keys are missing, not finite or
+    /// not in order; [`Error::Unsupported`] for morph targets, and for two animations that set the same property of a node.
+    pub fn read(path: impl AsRef<Path>, animations: &[&str]) -> Result<Self, Error> {
+        Self::playing(path.as_ref(), play(animations))
+    }
+
+    /// The same from a stream, as [`read_scene_from`](super::read_scene_from) reads one.
+    ///
+    /// # Errors
+    /// As [`AnimatedScene::read`].
+    pub fn read_from(
+        stream: impl Read,
+        format: Format,
+        name: &str,
+        folder: impl AsRef<Path>,
+        animations: &[&str],
+    ) -> Result<Self, Error> {
+        let bytes = source::stream(stream)?;
+        frames(
+            format,
+            &bytes,
+            &Folder::new(folder.as_ref()),
+            name,
+            play(animations),
+        )
+        .map(Self)
+        .map_err(|error| error.in_file("-".as_ref()))
+    }
+
+    pub(super) fn of(frames: Box<dyn Frames>) -> Self {
+        Self(frames)
+    }
+
+    pub(super) fn playing(path: &Path, play: Play<'_>) -> Result<Self, Error> {
+        let format = Format::of_path(path)?;
+        let bytes = source::file(path)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        frames(format, &bytes, &Folder::of(path), &name, play)
+            .map(Self)
+            .map_err(|error| error.in_file(path))
+    }
+
+    /// The names of all animations of the file, those that are not played included, in the order of the file.
+    #[must_use]
+    pub fn animations(&self) -> Vec<String> {
+        self.0.animations()
+    }
+
+    /// The time of the last key of all animations that are played, in seconds; `None` if none is.
+    #[must_use]
+    pub fn end(&self) -> Option<f64> {
+        self.0.end()
+    }
+
+    /// The bodies `seconds` after the start, in the same order and with the same names at every time. Before its first key and
+    /// behind its last one a property keeps their values, as glTF wants it.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a time that is not finite and, in an [`Error::InBody`], for a body that an animation flattens.
+    pub fn at(&self, seconds: f64) -> Result<Vec<PlacedMesh>, Error> {
+        if !seconds.is_finite() {
+            return Err(Error::parameter("seconds", seconds, "a finite number of seconds"));
+        }
+        self.bodies(Some(seconds))
+    }
+
+    pub(super) fn at_rest(&self) -> Result<Vec<PlacedMesh>, Error> {
+        self.bodies(None)
+    }
+
+    fn bodies(&self, seconds: Option<f64>) -> Result<Vec<PlacedMesh>, Error> {
+        let mut bodies = self.0.at(seconds)?;
+        make_names_unique(&mut bodies);
+        Ok(bodies)
+    }
+}
+
+fn play<'a>(animations: &'a [&'a str]) -> Play<'a> {
+    match animations.is_empty() {
+        true => Play::All,
+        false => Play::Named(animations),
+    }
+}
+
+impl fmt::Debug for AnimatedScene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnimatedScene")
+            .field("animations", &self.animations())
+            .field("end", &self.end())
+            .finish_non_exhaustive()
+    }
+}
+
+/// The body of a file of one mesh rests.
+impl Frames for PlacedMesh {
+    fn animations(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn end(&self) -> Option<f64> {
+        None
+    }
+
+    fn at(&self, _: Option<f64>) -> Result<Vec<PlacedMesh>, Error> {
+        Ok(vec![self.clone()])
+    }
+}
