@@ -52,8 +52,14 @@ fn every_family_is_decided_right_and_measured_to_one_ulp() {
                 let truth = squared_distance(a, b);
                 let near = proximity(kind, a, b);
                 let error = truth.error_in_ulp(near.distance);
+                // Two points have a square without division, so that the root is rounded once.
+                let most = if kind == PairKind::VertexVertex {
+                    0.5001
+                } else {
+                    1.0
+                };
                 assert!(
-                    error <= 1.0,
+                    error <= most,
                     "{}: {kind} {a:?} {b:?}: {near:?} off by {error} ulp",
                     family.name
                 );

@@ -26,11 +26,12 @@ const SPAN_ERROR: f64 = 1024.0 * UNIT_SQUARED;
 
 /// The sum of two doubles, the second below half a unit in the last place of the first.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct DoubleDouble(f64, f64);
+pub(super) struct DoubleDouble(pub(super) f64, pub(super) f64);
 
 type DoubleVector = [DoubleDouble; 3];
 
-fn two_sum(x: f64, y: f64) -> DoubleDouble {
+#[inline(always)]
+pub(super) fn two_sum(x: f64, y: f64) -> DoubleDouble {
     let sum = x + y;
     let from_y = sum - x;
     let from_x = sum - from_y;
@@ -43,7 +44,8 @@ fn fast_two_sum(x: f64, y: f64) -> DoubleDouble {
 }
 
 /// Dekker's product. Without a fused multiply-add in the target, `f64::mul_add` would be a library call.
-fn two_product(x: f64, y: f64) -> DoubleDouble {
+#[inline(always)]
+pub(super) fn two_product(x: f64, y: f64) -> DoubleDouble {
     let split = |x: f64| {
         let c = 134_217_729.0 * x;
         let high = c - (c - x);
