@@ -1,15 +1,17 @@
 //! Worlds of many bodies: time a frame and memory, against parry3d's `Bvh` over the boxes of the bodies.
 //!
 //! `cargo bench --bench world` runs everything and writes `docs/results/worlds.md`; started as a test it runs 300 bodies for three
-//! frames and writes nothing. A word after `--` runs the scenes whose names contain it, a number those of that many bodies, and
-//! writes nothing.
+//! frames and writes nothing. A word after `--` runs the scenes whose names contain it, a number those of that many bodies, `first`
+//! the first frames, and writes nothing.
 
+mod first;
 #[path = "../machine.rs"]
 mod machine;
 mod measure;
 mod peers;
 mod scenes;
 
+use first::{FirstRow, first_frame};
 use measure::{Row, measure};
 use scenes::Scene;
 
@@ -43,6 +45,22 @@ fn main() {
             }
         }
     }
+    if words.is_empty() || words == ["first"] {
+        let bodies = if full { 10_000 } else { 300 };
+        report.line("");
+        report.line(&format!("## First frame of {bodies} bodies"));
+        report.line("");
+        report.line(FIRST);
+        report.line("");
+        report.line(FirstRow::HEADING);
+        // the lattices differ in what moves later
+        for scene in Scene::all(bodies).iter().filter(|scene| scene.triangles) {
+            let is_again = scene.name.starts_with("lattice") && scene.every > 0;
+            if !is_again {
+                report.line(&first_frame(scene).to_string());
+            }
+        }
+    }
     if full && words.is_empty() {
         report.save();
     }
@@ -65,6 +83,10 @@ has it, for what moves. *ratio with them*: *parry boxes* and the faster one of p
 left, divided by the kept pairs.
 
 Written by `cargo bench --bench world`.";
+
+const FIRST: &str = "Everything from bodies to contacts: `World::add` of all and `World::update`, beside the boxes, `Bvh::from_iter` and its pairs, \
+and for each pair `Bvh::leaf_pairs` of two trees over the triangles and `query::distance` of those whose boxes meet, in `f32`. Trees over triangles are built \
+within the time, one a mesh. *ratio*: parry divided by world. Alone: `cargo bench --bench world -- first`.";
 
 /// What is printed, and kept for the file.
 #[derive(Default)]

@@ -72,13 +72,13 @@ impl fmt::Display for Row {
 }
 
 /// Processor time of this thread in milliseconds: other work on the machine does not count.
-fn time<R>(run: impl FnOnce() -> R) -> (f64, R) {
+pub(crate) fn time<R>(run: impl FnOnce() -> R) -> (f64, R) {
     let start = ThreadTime::now();
     let result = run();
     (start.elapsed().as_secs_f64() * 1e3, result)
 }
 
-fn median(times: &mut [f64]) -> f64 {
+pub(crate) fn median(times: &mut [f64]) -> f64 {
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
 }
@@ -89,12 +89,23 @@ fn find_pairs(world: &mut World) {
     assert!(world.bodies_in(&nowhere).expect("a box").is_empty());
 }
 
-struct Meshes {
+pub(crate) struct Meshes {
     ball: SharedMesh,
     huge: SharedMesh,
 }
 
-fn build(scene: &Scene, meshes: &Meshes) -> (World, Vec<BodyId>) {
+impl Meshes {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let ball = |radius| generate::icosphere(radius, 1).expect("a sphere");
+        Self {
+            ball: ball(RADIUS).into(),
+            huge: ball(scene.huge.unwrap_or(1.0)).into(),
+        }
+    }
+}
+
+/// A world of the bodies of a scene, before its first frame.
+pub(crate) fn add(scene: &Scene, meshes: &Meshes) -> (World, Vec<BodyId>) {
     let mut world = World::new(
         PairKind::TriangleTriangle,
         Threshold::new(0.01).expect("positive"),
@@ -109,24 +120,27 @@ fn build(scene: &Scene, meshes: &Meshes) -> (World, Vec<BodyId>) {
         world.add(Body::rigid(mesh.clone()).at(at)).expect("a body")
     });
     let bodies = bodies.collect();
+    (world, bodies)
+}
+
+fn build(scene: &Scene, meshes: &Meshes) -> (World, Vec<BodyId>) {
+    let (mut world, bodies) = add(scene, meshes);
     find_pairs(&mut world);
     (world, bodies)
 }
 
+/// The boxes that parry3d is given.
+pub(crate) fn boxes_of(scene: &Scene, centres: &[[f64; 3]]) -> Vec<parry3d::bounding_volume::Aabb> {
+    let numbered = centres.iter().enumerate();
+    numbered
+        .map(|(body, &centre)| peers::bounds(centre, scene.radius(body)))
+        .collect()
+}
+
 pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
-    let ball = |radius| generate::icosphere(radius, 1).expect("a sphere");
-    let meshes = Meshes {
-        ball: ball(RADIUS).into(),
-        huge: ball(scene.huge.unwrap_or(1.0)).into(),
-    };
+    let meshes = Meshes::new(scene);
     let mut centres = scene.centres.clone();
-    let boxes_of = |centres: &[[f64; 3]]| -> Vec<_> {
-        let numbered = centres.iter().enumerate();
-        numbered
-            .map(|(body, &centre)| peers::bounds(centre, scene.radius(body)))
-            .collect()
-    };
-    let mut boxes = boxes_of(&centres);
+    let mut boxes = boxes_of(scene, &centres);
     let mut new: Vec<f64> = (0..3).map(|_| time(|| build(scene, &meshes)).0).collect();
     let (mut world, bodies) = build(scene, &meshes);
     if scene.triangles {

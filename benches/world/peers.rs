@@ -1,10 +1,12 @@
-//! parry3d's `Bvh` over the boxes of the bodies, and a table of the pairs, as rapier3d's broad phase keeps them.
+//! parry3d's `Bvh` over the boxes of the bodies and over the triangles of a mesh, and a table of the pairs, as rapier3d's broad phase keeps them.
 
 use foldhash::fast::FixedState;
 use hashbrown::HashMap;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Rotation, Vector};
-use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
+use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
+use parry3d::shape::{Shape, Triangle};
+use satisfice_collision::Mesh;
 
 /// By how much kept boxes are wider, as rapier3d has it for bodies of this size.
 const MARGIN: f32 = 0.02;
@@ -40,10 +42,59 @@ pub(crate) fn posed(local: impl Fn(usize) -> Aabb, poses: &[Pose], moved: &[usiz
 
 /// A new tree and its pairs.
 pub(crate) fn anew(boxes: &[Aabb]) -> usize {
-    let tree = Bvh::from_iter(BvhBuildStrategy::Binned, boxes.iter().copied().enumerate());
     let mut pairs = 0;
-    tree.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), &mut |_, _| pairs += 1);
+    each_pair(boxes, &mut |_, _| pairs += 1);
     pairs
+}
+
+/// The same as a list.
+pub(crate) fn pairs(boxes: &[Aabb]) -> Vec<(u32, u32)> {
+    let mut pairs = Vec::new();
+    each_pair(boxes, &mut |a, b| pairs.push((a, b)));
+    pairs
+}
+
+fn each_pair(boxes: &[Aabb], visit: &mut impl FnMut(u32, u32)) {
+    let tree = Bvh::from_iter(BvhBuildStrategy::Binned, boxes.iter().copied().enumerate());
+    tree.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), visit);
+}
+
+/// The triangles of a mesh and a tree over them.
+pub(crate) struct Triangles {
+    shapes: Vec<Triangle>,
+    tree: Bvh,
+}
+
+impl Triangles {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let corner = |p: [f64; 3]| Vector::new(p[0] as f32, p[1] as f32, p[2] as f32);
+        let shape = |t: usize| {
+            let [p, q, r] = mesh.triangle(t).map(corner);
+            Triangle::new(p, q, r)
+        };
+        let shapes: Vec<Triangle> = (0..mesh.triangles().len()).map(shape).collect();
+        let boxes = shapes.iter().map(|t| t.compute_aabb(&Pose::IDENTITY));
+        let tree = Bvh::from_iter(BvhBuildStrategy::Binned, boxes.enumerate());
+        Self { shapes, tree }
+    }
+
+    /// How many pairs of triangles are closer than `delta`, where the other body is `apart` from here.
+    pub(crate) fn near(&self, other: &Self, apart: [f64; 3], delta: f32) -> usize {
+        let [x, y, z] = apart.map(|c| c as f32);
+        let apart = Vector::new(x, y, z);
+        let (here, there) = (Pose::IDENTITY, Pose::from_parts(apart, Rotation::IDENTITY));
+        let margin = Vector::splat(delta);
+        let meet = |a: &BvhNode, b: &BvhNode| {
+            let (low, high) = (b.mins() + apart - margin, b.maxs() + apart + margin);
+            a.mins().cmple(high).all() && a.maxs().cmpge(low).all()
+        };
+        let within = |&(i, j): &(u32, u32)| {
+            let (p, q) = (&self.shapes[i as usize], &other.shapes[j as usize]);
+            let distance = parry3d::query::distance(&here, p, &there, q);
+            distance.expect("two triangles").distance < delta
+        };
+        self.tree.leaf_pairs(&other.tree, meet).filter(within).count()
+    }
 }
 
 /// A tree that follows the motion, and the pairs of bodies whose boxes meet with the frame in which they were last seen.
