@@ -10,6 +10,8 @@ mod deadline;
 mod deforming;
 #[path = "../machine.rs"]
 mod machine;
+#[path = "../page.rs"]
+mod page;
 mod peers;
 mod plain_grid;
 mod points;

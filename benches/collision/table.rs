@@ -203,13 +203,7 @@ impl Report {
 
     /// Writes the report.
     pub(crate) fn save(&self) {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results");
-        let path = folder.join("collision.md");
-        let written = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, &self.text));
-        match written {
-            Ok(()) => println!("written to docs/results/collision.md"),
-            Err(error) => eprintln!("cannot write {}: {error}", path.display()),
-        }
+        crate::page::save("collision.md", &self.text);
     }
 }
 

@@ -7,6 +7,8 @@
 
 #[path = "../machine.rs"]
 mod machine;
+#[path = "../page.rs"]
+mod page;
 
 mod data;
 mod deadline;
@@ -74,11 +76,7 @@ impl Report {
     }
 
     fn save(&self) {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/continuous.md");
-        match std::fs::write(&path, &self.text) {
-            Ok(()) => println!("written to docs/results/continuous.md"),
-            Err(error) => eprintln!("cannot write {}: {error}", path.display()),
-        }
+        page::save("continuous.md", &self.text);
     }
 }
 

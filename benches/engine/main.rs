@@ -8,6 +8,8 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod loops;
+#[path = "../page.rs"]
+mod page;
 mod peers;
 mod problems;
 mod ratios;

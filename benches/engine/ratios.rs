@@ -170,11 +170,7 @@ pub(crate) fn run(full: bool) {
     }
     overshoots(&mut table, full);
     if full {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/engine.md");
-        match std::fs::write(&path, &table.text) {
-            Ok(()) => println!("\nwritten to docs/results/engine.md"),
-            Err(error) => eprintln!("cannot write {}: {error}", path.display()),
-        }
+        crate::page::save("engine.md", &table.text);
     }
 }
 

@@ -8,6 +8,8 @@ mod first;
 #[path = "../machine.rs"]
 mod machine;
 mod measure;
+#[path = "../page.rs"]
+mod page;
 mod peers;
 mod scenes;
 
@@ -102,10 +104,6 @@ impl Report {
     }
 
     fn save(&self) {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/worlds.md");
-        match std::fs::write(&path, &self.text) {
-            Ok(()) => println!("written to docs/results/worlds.md"),
-            Err(error) => eprintln!("cannot write {}: {error}", path.display()),
-        }
+        page::save("worlds.md", &self.text);
     }
 }
