@@ -117,14 +117,16 @@ impl<S: Real> ModelledSearch<S> {
         self.skill.is_useful()
     }
 
-    /// The next point of the design that is new.
+    /// The next point of the design that is new. Misses of others count for its points.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let axes = self.units.len();
         if self.shift.is_empty() {
             self.shift.extend((0..axes).map(|_| rng.uniform()));
         }
         let mut x = Vec::new();
-        while self.started < (2 * axes + 2).min(4 * axes) {
+        let hits = self.record.hits.len() + self.record.duplicates.len();
+        let misses = self.record.len().saturating_sub(hits);
+        while self.started.max(misses) < (2 * axes + 2).min(4 * axes) {
             x.clear();
             x.extend(low_discrepancy::point(self.started as u64, &self.shift));
             self.started += 1;

@@ -14,6 +14,8 @@ const PRIOR_HITS: f64 = 0.15;
 /// Share of all evaluations that a source which has found nothing may take, and that all of these may take together.
 const BARREN_SHARE: f64 = 0.04;
 const BARREN_SHARES: f64 = 0.18;
+/// Share that all of them may take together beside a model of F, in which every evaluation that is not the model's is one that teaches less.
+const SHARE_BESIDE_MODEL: f64 = 0.06;
 /// Evaluations that it may take for a start: one for each so many that are planned, up to so many.
 const PLANNED: f64 = 50.0;
 const BARREN_START: f64 = 8.0;
@@ -34,6 +36,8 @@ pub(super) struct Credit {
 pub(super) struct Trial {
     start: f64,
     share: f64,
+    /// Whether it is bounded even where no other has found anything.
+    always: bool,
 }
 
 impl Trial {
@@ -43,6 +47,16 @@ impl Trial {
         Self {
             start: start.clamp(1.0, BARREN_START),
             share: (BARREN_SHARES / barren.max(1) as f64).min(BARREN_SHARE),
+            always: false,
+        }
+    }
+
+    /// Beside a model of F, with so many sources that have found nothing: none takes an evaluation before its share is one.
+    pub(super) fn beside_model(barren: usize) -> Self {
+        Self {
+            start: -1.0,
+            share: SHARE_BESIDE_MODEL / barren.max(1) as f64,
+            always: true,
         }
     }
 }
@@ -65,7 +79,7 @@ impl Credit {
 
     /// Whether it has found anything, or has taken little of the evaluations of the search in all, or no other has found anything.
     pub(super) fn is_worth_trying(&self, all: &Self, trial: Trial) -> bool {
-        all.total_hits == 0 || self.is_within(all, trial)
+        (all.total_hits == 0 && !trial.always) || self.is_within(all, trial)
     }
 
     /// Whether it has found anything, or has taken little of the evaluations of the search in all.
@@ -238,5 +252,10 @@ mod tests {
         assert!(!evaluations(189).is_within(&evaluations(10_000), Trial::new(Some(10_000), 10)));
         assert!(evaluations(1).is_within(&evaluations(10), Trial::new(Some(50), 10)));
         assert!(!evaluations(2).is_within(&evaluations(10), Trial::new(Some(50), 10)));
+        // One of six beside a model: the first evaluation after a hundred, even where nothing hits.
+        let beside = Trial::beside_model(6);
+        assert!(!evaluations(0).is_worth_trying(&evaluations(99), beside));
+        assert!(evaluations(0).is_worth_trying(&evaluations(101), beside));
+        assert!(!evaluations(1).is_worth_trying(&evaluations(101), beside));
     }
 }

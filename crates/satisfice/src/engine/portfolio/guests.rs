@@ -1,6 +1,10 @@
 //! Whole engines as sources: each proposes a part of a batch, and learns the hits of all others.
 
+mod sizes;
+
 use core::ops::Range;
+
+use sizes::Sizes;
 
 use super::credit::{Credit, Trial};
 use super::source::{Role, Source, Tag};
@@ -14,6 +18,7 @@ use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
+use crate::space::{AxisKind, Space};
 use crate::state::{Part, Reader, State};
 
 /// A model of F is used where at most so many evaluations are planned, or where one takes so many seconds, and has found so many
@@ -26,16 +31,12 @@ const QUADRATIC: f64 = 2e-5;
 /// Weight of the model until it is known to predict too little. From then on it is bounded like all that finds nothing, even where nothing
 /// else has found anything: its proposals cost a hundred times the time of others.
 const MODEL_WEIGHT: f64 = 40.0;
-/// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
-const CANDIDATES: (usize, usize) = (256, 1024);
-const POINTS_OF_LEAST: u64 = 300;
+/// Its weight where descents find the first hit, which they may look for until they have taken this share of the evaluations planned.
+/// A model is as good as they are where hits are many, and knows of isolated ones only what descents tell it.
+const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
+const FIRST_SHARE: f64 = 0.5;
 /// Axes for which a matrix takes at most a few steps' worth of memory and time.
 const CMA_AXES: usize = 200;
-/// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
-const MOST_SEARCHES: usize = 64;
-/// Regions that are split at once: one for so many evaluations planned, and so many at most.
-const EVALUATIONS_OF_A_REGION: u64 = 64;
-const MOST_REGIONS: usize = 8;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
 const FLOOD_STEP: f64 = 1e-3;
 
@@ -91,49 +92,12 @@ struct Guest<S> {
     own: Range<usize>,
 }
 
-/// What depends on the budget.
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
-struct Sizes {
-    /// Searches of (1+1)-CMA-ES side by side.
-    searches: usize,
-    /// Candidates of the model.
-    candidates: usize,
-    /// Regions that are split at once.
-    regions: usize,
-}
-
-impl Sizes {
-    /// For so many evaluations at once, and so many in all, if that is known.
-    fn new(parallel: usize, planned: Option<u64>) -> Self {
-        let (least, most) = CANDIDATES;
-        let candidates = planned.map_or(least, |planned| {
-            let more = (POINTS_OF_LEAST / planned.clamp(1, POINTS_OF_LEAST)).pow(2);
-            least
-                .saturating_mul(usize::try_from(more).unwrap_or(most))
-                .min(most)
-        });
-        Self {
-            searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
-            candidates,
-            regions: planned.map_or(MOST_REGIONS, |planned| {
-                usize::try_from(planned / EVALUATIONS_OF_A_REGION)
-                    .unwrap_or(MOST_REGIONS)
-                    .clamp(1, MOST_REGIONS)
-            }),
-        }
-    }
-
-    fn are_possible(&self) -> bool {
-        (1..=MOST_SEARCHES).contains(&self.searches)
-            && (CANDIDATES.0..=CANDIDATES.1).contains(&self.candidates)
-            && (1..=MOST_REGIONS).contains(&self.regions)
-    }
-}
-
 /// The engines.
 pub(super) struct Guests<S> {
     guests: Vec<Guest<S>>,
     sizes: Sizes,
+    /// Whether all axes are continuous.
+    continuous: bool,
     /// What one of them is told or has proposed.
     part: Batch<S>,
     outcomes: Vec<Outcome<S>>,
@@ -200,6 +164,7 @@ impl<S: Real> Guests<S> {
         Self {
             guests: Vec::new(),
             sizes: Sizes::new(1, None),
+            continuous: false,
             part: Batch::new(1),
             outcomes: Vec::new(),
         }
@@ -209,6 +174,10 @@ impl<S: Real> Guests<S> {
     pub(super) fn begin(&mut self, context: &dyn Context<S>, without_recombination: bool) {
         let space = context.space();
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
+        self.continuous = space
+            .axes()
+            .iter()
+            .all(|axis| axis.kind() == AxisKind::Continuous);
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
         self.guests.clear();
@@ -222,7 +191,7 @@ impl<S: Real> Guests<S> {
             let is_of_use = match kind {
                 Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
                 Kind::Flood => continuous,
-                Kind::Quadratic => continuous && context.evaluations_planned().is_some(),
+                Kind::Quadratic => is_smooth(space) && context.evaluations_planned().is_some(),
                 Kind::Regions => context.lower_bound(&space.region()).is_some(),
                 Kind::Model => context
                     .evaluations_planned()
@@ -251,8 +220,7 @@ impl<S: Real> Guests<S> {
             && context.evaluations() <= MODELLED
             && axes.len() <= MODEL_AXES
             && !is_there(Kind::Model);
-        let opens_quadratic =
-            seconds > QUADRATIC && axes.iter().any(|axis| !axis.is_integer()) && !is_there(Kind::Quadratic);
+        let opens_quadratic = seconds > QUADRATIC && is_smooth(context.space()) && !is_there(Kind::Quadratic);
         if opens_model {
             self.open(Kind::Model, context);
         }
@@ -286,16 +254,39 @@ impl<S: Real> Guests<S> {
         Source::Guest as usize + self.guests[index].kind as usize
     }
 
+    /// Whether a model is open that may be of use.
+    pub(super) fn has_model(&self) -> bool {
+        self.guests.iter().any(|guest| match &guest.engine {
+            Member::Model(model) => guest.open && model.is_useful() != Some(false),
+            Member::Other(_) => false,
+        })
+    }
+
+    /// The engine that looks for the first hit beside a model, while it may, and its credit: descents by quadratic models, where all axes are
+    /// continuous.
+    pub(super) fn first(&self, all: &Credit, planned: Option<u64>) -> Option<(usize, &Credit)> {
+        let most = FIRST_SHARE * planned.unwrap_or(MODELLED) as f64;
+        if !self.continuous || !all.is_barren() || all.evaluations() as f64 >= most {
+            return None;
+        }
+        let mut guests = self.guests.iter().enumerate();
+        let (index, guest) =
+            guests.find(|(_, guest)| guest.kind == Kind::Quadratic && guest.open && guest.own.is_empty())?;
+        Some((index, &guest.arm))
+    }
+
     pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
         self.guests.iter().map(|guest| &guest.arm)
     }
 
-    /// Offers the credit of each that is worth trying and has no part of the batch yet, with its weight.
+    /// Offers the credit of each that is worth trying and has no part of the batch yet, with its weight; beside a model or not.
     pub(super) fn arms<'a>(
         &'a self,
         all: &'a Credit,
         trial: Trial,
+        modelled: bool,
     ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
+        let descends_first = modelled && self.continuous;
         let ready = self.guests.iter().enumerate();
         ready.filter_map(move |(index, guest)| {
             if !guest.open || !guest.own.is_empty() {
@@ -304,10 +295,11 @@ impl<S: Real> Guests<S> {
             let is_worth_trying = guest.arm.is_worth_trying(all, trial);
             let weight = match (guest.kind, &guest.engine) {
                 (Kind::Cma, _) => is_worth_trying.then_some(2.0),
-                (Kind::Quadratic, _) => is_worth_trying.then_some(4.0),
+                (Kind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
                 (Kind::Flood, _) => is_worth_trying.then_some(1.0),
                 (Kind::Regions, _) => is_worth_trying.then_some(0.3),
                 (Kind::Model, Member::Model(model)) => match model.is_useful() {
+                    None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
                     None | Some(true) => Some(MODEL_WEIGHT),
                     Some(false) => guest.arm.is_within(all, trial).then_some(1.0),
                 },
@@ -402,7 +394,7 @@ impl<S: Real> Guests<S> {
     }
 
     pub(super) fn save(&self, state: &mut State) {
-        (self.sizes, self.guests.len()).save(state);
+        (self.sizes, self.continuous, self.guests.len()).save(state);
         for guest in &self.guests {
             (guest.kind, guest.arm, guest.open).save(state);
             (guest.own.start, guest.own.end).save(state);
@@ -412,13 +404,14 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn restore(&mut self, dimension: usize, from: &mut Reader<'_>) -> Result<(), Error> {
         self.part = Batch::new(dimension);
-        let (sizes, count): (Sizes, usize) = from.read()?;
+        let (sizes, continuous, count): (Sizes, bool, usize) = from.read()?;
         if !sizes.are_possible() {
             return Err(Error::State(
                 "its engines are of a size that there is not".to_owned(),
             ));
         }
         self.sizes = sizes;
+        self.continuous = continuous;
         self.guests.clear();
         for _ in 0..count {
             let (kind, arm, open) = from.read()?;
@@ -446,6 +439,12 @@ impl<S: Real> Guests<S> {
     }
 }
 
+/// Whether F may be smooth along some axes. Keys of a permutation are not such: F is constant where their order is.
+fn is_smooth<S: Real>(space: &Space<S>) -> bool {
+    let has = |kind| space.axes().iter().any(|axis| axis.kind() == kind);
+    has(AxisKind::Continuous) && !has(AxisKind::Place)
+}
+
 /// The flood fill of the hits of others.
 #[derive(Debug)]
 struct FloodAlone<S>(Flood<S>);
@@ -470,29 +469,5 @@ impl<S: Real> Engine<S> for FloodAlone<S> {
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         self.0.restore(from)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The model takes four times the candidates at half the evaluations, regions are split one by one in a short search, and searches go
-    /// on side by side where evaluations do.
-    #[test]
-    fn short_searches_think_more_and_ask_for_less_at_once() {
-        let sizes = |parallel, planned| {
-            let sizes = Sizes::new(parallel, planned);
-            assert!(sizes.are_possible(), "{sizes:?}");
-            [sizes.searches, sizes.candidates, sizes.regions]
-        };
-        assert_eq!(sizes(1, None), [1, 256, 8]);
-        assert_eq!(sizes(1, Some(10_000)), [1, 256, 8]);
-        assert_eq!(sizes(1, Some(300)), [1, 256, 4]);
-        assert_eq!(sizes(1, Some(150)), [1, 1024, 2]);
-        assert_eq!(sizes(1, Some(50)), [1, 1024, 1]);
-        assert_eq!(sizes(1, Some(0)), [1, 1024, 1]);
-        assert_eq!(sizes(32, Some(u64::MAX)), [8, 256, 8]);
-        assert_eq!(sizes(usize::MAX, None), [64, 256, 8]);
     }
 }

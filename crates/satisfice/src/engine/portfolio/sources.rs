@@ -28,8 +28,10 @@ use crate::state::{Part, Reader, State};
 
 /// A batch is given up after so many choices of a source that gave no candidate.
 const REJECTED: usize = 100;
-/// Points of the first batch, at least: none of them could learn of the others.
+/// Points of the first batch, at least: none of them could learn of the others. A model takes them one by one.
 const FIRST: usize = 4;
+/// Evaluations of direct descents for each one of descents by quadratic models, until something hits beside a model: F need not be smooth.
+const DIRECT: f64 = 0.5;
 /// Batches grow by a point each so many evaluations, up to so many points: small ones learn sooner, large ones cost less time.
 const SLOW: usize = 2048;
 const LARGEST: usize = 32;
@@ -136,6 +138,15 @@ impl<S: Real> Sources<S> {
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
+        // What goes on at once beside the model is for the others.
+        let modelled = self.batch == 1 && self.guests.has_model();
+        if modelled && let Some((index, quadratic)) = self.guests.first(&self.whole, self.planned) {
+            let direct = self.arms[DESCENT].evaluations() as f64;
+            if direct < DIRECT * quadratic.evaluations() as f64 {
+                return (Source::Descent, 0);
+            }
+            return (Source::Guest, index);
+        }
         let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
             let worth = self.patches.worth(self.role(tag), yields);
@@ -143,10 +154,16 @@ impl<S: Real> Sources<S> {
                 best = (worth, tag);
             }
         };
-        offer(self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
-        let trial = Trial::new(self.planned, self.barren());
+        let trial = if modelled {
+            Trial::beside_model(self.barren())
+        } else {
+            Trial::new(self.planned, self.barren())
+        };
         let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
-        if self.visited.is_some() || is_worth(DESCENT) {
+        if !modelled || is_worth(0) {
+            offer(self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
+        }
+        if (self.visited.is_some() && !modelled) || is_worth(DESCENT) {
             offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
         }
         if uses(Omitted::Swarms) && is_worth(1) {
@@ -166,11 +183,12 @@ impl<S: Real> Sources<S> {
             offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
         }
         if uses(Omitted::Steps)
+            && (!modelled || is_worth(STEP))
             && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
         {
             offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
         }
-        if self.neighbourhoods.has_more() {
+        if self.neighbourhoods.has_more() && (!modelled || is_worth(NEIGHBOUR)) {
             offer(self.arms[NEIGHBOUR].draw(price, 2.0, rng), (Source::Neighbour, 0));
         }
         if uses(Omitted::NearMisses)
@@ -178,7 +196,7 @@ impl<S: Real> Sources<S> {
         {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
-        for (index, arm, weight) in self.guests.arms(&self.whole, trial) {
+        for (index, arm, weight) in self.guests.arms(&self.whole, trial, modelled) {
             offer(arm.draw(price, weight, rng), (Source::Guest, index));
         }
         best.1
@@ -253,7 +271,11 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.guests.begin_batch();
         // Fewer than wanted would let workers wait.
         let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
-        let first = if made == 0 { FIRST } else { 1 };
+        let first = if made == 0 && !self.guests.has_model() {
+            FIRST
+        } else {
+            1
+        };
         let wanted = self.asked_for.unwrap_or_else(|| context.parallel().max(first));
         self.batch = self
             .asked_for
