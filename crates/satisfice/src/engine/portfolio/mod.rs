@@ -91,7 +91,7 @@ engine_settings! {
     /// ```
     pub struct Portfolio {
         /// Candidates proposed at once. By default as many as go on at once by the word of the budget, 4 in the
-        /// first batch, and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
+        /// first batch (one where a model of F is at work), and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
         pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.
         pub swarms: usize = 6, 1..=1000;
