@@ -18,7 +18,7 @@ use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::{AxisKind, Space};
+use crate::space::AxisKind;
 use crate::state::{Part, Reader, State};
 
 /// A model of F is used where at most so many evaluations are planned, or where one takes so many seconds, and has found so many
@@ -96,7 +96,7 @@ struct Guest<S> {
 pub(super) struct Guests<S> {
     guests: Vec<Guest<S>>,
     sizes: Sizes,
-    /// Whether all axes are continuous.
+    /// Whether all axes are continuous, and F may be smooth along them.
     continuous: bool,
     /// What one of them is told or has proposed.
     part: Batch<S>,
@@ -174,10 +174,11 @@ impl<S: Real> Guests<S> {
     pub(super) fn begin(&mut self, context: &dyn Context<S>, without_recombination: bool) {
         let space = context.space();
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
-        self.continuous = space
+        let all = space
             .axes()
             .iter()
             .all(|axis| axis.kind() == AxisKind::Continuous);
+        self.continuous = all && is_smooth(context);
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
         self.guests.clear();
@@ -191,7 +192,7 @@ impl<S: Real> Guests<S> {
             let is_of_use = match kind {
                 Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
                 Kind::Flood => continuous,
-                Kind::Quadratic => is_smooth(space) && context.evaluations_planned().is_some(),
+                Kind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
                 Kind::Regions => context.lower_bound(&space.region()).is_some(),
                 Kind::Model => context
                     .evaluations_planned()
@@ -220,7 +221,7 @@ impl<S: Real> Guests<S> {
             && context.evaluations() <= MODELLED
             && axes.len() <= MODEL_AXES
             && !is_there(Kind::Model);
-        let opens_quadratic = seconds > QUADRATIC && is_smooth(context.space()) && !is_there(Kind::Quadratic);
+        let opens_quadratic = seconds > QUADRATIC && is_smooth(context) && !is_there(Kind::Quadratic);
         if opens_model {
             self.open(Kind::Model, context);
         }
@@ -439,10 +440,11 @@ impl<S: Real> Guests<S> {
     }
 }
 
-/// Whether F may be smooth along some axes. Keys of a permutation are not such: F is constant where their order is.
-fn is_smooth<S: Real>(space: &Space<S>) -> bool {
-    let has = |kind| space.axes().iter().any(|axis| axis.kind() == kind);
-    has(AxisKind::Continuous) && !has(AxisKind::Place)
+/// Whether F may be smooth along some axes. Keys of a permutation are not such: F is constant where their order is. Nor are the axes of a
+/// problem that names neighbours: it may have keys of its own.
+fn is_smooth<S: Real>(context: &dyn Context<S>) -> bool {
+    let has = |kind| context.space().axes().iter().any(|axis| axis.kind() == kind);
+    has(AxisKind::Continuous) && !has(AxisKind::Place) && !context.offers_neighbours()
 }
 
 /// The flood fill of the hits of others.
