@@ -98,7 +98,9 @@ impl Error {
     /// An [`Error::Unknown`] with the nearest of the known names, by Damerau-Levenshtein distance.
     #[must_use]
     pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
-        let known: Vec<String> = known.into_iter().map(str::to_owned).collect();
+        let mut listed = std::collections::BTreeSet::new();
+        let known = known.into_iter().filter(|name| listed.insert(*name));
+        let known: Vec<String> = known.map(str::to_owned).collect();
         let lower = name.to_lowercase();
         let nearest = known
             .iter()
@@ -156,5 +158,11 @@ mod tests {
             };
             assert_eq!(nearest.as_deref(), wanted, "{name}");
         }
+    }
+
+    #[test]
+    fn each_known_name_is_listed_once() {
+        let error = Error::unknown("problem", "zzzzzz", ["puma", "arm", "puma", "arm"]);
+        assert_eq!(error.to_string(), "unknown problem `zzzzzz`; known: puma, arm");
     }
 }

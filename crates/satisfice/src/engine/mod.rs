@@ -153,6 +153,11 @@ pub trait Steps<S> {
 
     /// As [`Context::elapsed_share`].
     fn elapsed_share(&self) -> f64;
+
+    /// As [`Context::is_out_of_time`].
+    fn is_out_of_time(&self) -> bool {
+        false
+    }
 }
 
 /// Who proposed a batch that an engine is told of.

@@ -47,4 +47,8 @@ impl<P: SatisficingProblem + ?Sized> Steps<P::Scalar> for SingleSteps<'_, P> {
     fn elapsed_share(&self) -> f64 {
         self.ledger.share()
     }
+
+    fn is_out_of_time(&self) -> bool {
+        self.ledger.is_out_of_time()
+    }
 }

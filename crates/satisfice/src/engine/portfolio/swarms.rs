@@ -153,7 +153,7 @@ impl<S: Real> SubSwarm<S> {
         let row = self.turn * dimension..(self.turn + 1) * dimension;
         if self.unborn == 0 {
             if self.turn == 0 {
-                mean_best(&self.bests, &mut self.mean);
+                mean_best(&self.bests, &mut self.mean, || false);
             }
             let by_fitness =
                 |&a: &usize, &b: &usize| self.best_fitness[a].f64().total_cmp(&self.best_fitness[b].f64());

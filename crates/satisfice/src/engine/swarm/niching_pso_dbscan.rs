@@ -1,7 +1,7 @@
 //! The paper's rival: a particle swarm whose niches are found by clustering. A reconstruction.
 
 use super::dbscan::{Memory, OUTLIER, dbscan};
-use super::particles::{Attractor, Swarm, SwarmRules};
+use super::particles::{Attractor, Swarm, SwarmRules, set_room_aside};
 use super::pso::constriction;
 use super::velocity::Coefficients;
 use crate::batch::{Batch, Outcome};
@@ -137,6 +137,9 @@ impl<S: Real> NichingSwarm<S> {
         if self.sweeps.is_multiple_of(self.period) {
             let swarm = &self.swarm;
             let distance = |i: usize, j: usize| {
+                if context.is_out_of_time() {
+                    return f64::INFINITY;
+                }
                 let pairs = swarm.best(i).iter().zip(swarm.best(j));
                 let square = axes.iter().zip(pairs).fold(0.0, |sum, (axis, (&p, &q))| {
                     let width = axis.width().f64();
@@ -215,8 +218,10 @@ impl<S: Real> NichingSwarm<S> {
 
 impl<S: Real> Engine<S> for NichingSwarm<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
-        self.swarm.begin(context.space().dimension());
+        let dimension = context.space().dimension();
+        self.swarm.begin(dimension);
         self.velocities.clear();
+        set_room_aside(&mut self.velocities, self.swarm.particles(), dimension);
         self.niches.clear();
         self.scattered.clear();
         self.sweeps = 0;
@@ -229,6 +234,9 @@ impl<S: Real> Engine<S> for NichingSwarm<S> {
         }
         if self.swarm.begins_sweep() {
             self.begin_sweep(context);
+            if context.is_out_of_time() {
+                return Ask::More; // niches may not have been found to the end
+            }
         }
         for (place, i) in self.swarm.due().enumerate() {
             let row = self.swarm.row(i);

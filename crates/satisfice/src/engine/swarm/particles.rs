@@ -81,7 +81,7 @@ impl<S: Real> Swarm<S> {
         }
     }
 
-    /// Forgets everything; the next particles are those of [`Swarm::propose_start`].
+    /// Forgets everything; the next particles are those of [`Swarm::propose_start`]. Sets room aside for all of them.
     pub(super) fn begin(&mut self, dimension: usize) {
         self.dimension = dimension;
         for list in [
@@ -95,6 +95,8 @@ impl<S: Real> Swarm<S> {
         self.leader = 0;
         self.turn = 0;
         self.started = false;
+        set_room_aside(&mut self.positions, self.particles, dimension);
+        set_room_aside(&mut self.bests, self.particles, dimension);
     }
 
     /// Whether the start points have been told.
@@ -234,8 +236,8 @@ impl<S: Real> Swarm<S> {
                 self.remember(batch.point(i));
             }
         } else {
-            self.positions.extend(batch.points().flatten());
-            self.bests.extend(batch.points().flatten());
+            self.positions.extend_from_slice(batch.positions());
+            self.bests.extend_from_slice(batch.positions());
             self.fitness
                 .extend(outcomes.iter().map(|outcome| outcome.fitness()));
             self.started = self.fitness.len() >= self.particles;
@@ -368,6 +370,12 @@ impl<S: Real> Swarm<S> {
     }
 }
 
+/// Sets room aside for so many rows, which start particles fill one after the other: a list of many coordinates that grows is copied
+/// for milliseconds. Memory is taken up when it is written. If there is not so much, the list grows after all.
+pub(super) fn set_room_aside<S>(list: &mut Vec<S>, rows: usize, dimension: usize) {
+    let _ = list.try_reserve_exact(rows.saturating_mul(dimension));
+}
+
 /// Where the share of particle `i` of some hits begins.
 fn share(hits: usize, i: usize, particles: usize) -> usize {
     (hits as u128 * i as u128 / particles.max(1) as u128) as usize
@@ -375,4 +383,37 @@ fn share(hits: usize, i: usize, particles: usize) -> usize {
 
 impl<S: Real> Part for Swarm<S> {
     crate::saved_fields!(dimension, positions, bests, fitness, leader, latest_hit, turn, started; check);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A list that grows is copied: that took milliseconds after a deadline.
+    #[test]
+    fn start_points_are_told_without_moving_those_before() {
+        let mut swarm: Swarm<f64> = Swarm::new(SwarmRules {
+            particles: 30,
+            batch: 1,
+            attractor: Attractor::Best,
+            deletes: false,
+        });
+        let dimension = 1000;
+        swarm.begin(dimension);
+        let places = [swarm.positions.as_ptr(), swarm.bests.as_ptr()];
+        for fitness in 0..30 {
+            let mut batch = Batch::new(dimension);
+            batch.push(&vec![0.5; dimension]);
+            swarm.tell(&batch, &[Outcome::Miss(f64::from(fitness))], Origin::Engine);
+        }
+        assert!(swarm.has_started());
+        assert_eq!(places, [swarm.positions.as_ptr(), swarm.bests.as_ptr()]);
+    }
+
+    #[test]
+    fn room_that_there_is_not_is_no_error() {
+        let mut list: Vec<f64> = Vec::new();
+        set_room_aside(&mut list, usize::MAX, 2);
+        assert_eq!(list.capacity(), 0);
+    }
 }

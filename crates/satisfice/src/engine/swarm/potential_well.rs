@@ -34,17 +34,28 @@ pub(crate) fn draw<S: Real>(rng: &mut SearchRng, alpha: S, x: S, best: S, attrac
     }
 }
 
-/// Writes the mean of all rows of `bests`, each of the length of `mean`.
-pub(crate) fn mean_best<S: Real>(bests: &[S], mean: &mut [S]) {
+/// Coordinates summed between two questions whether to stop: some microseconds.
+const SUMMED_AT_ONCE: usize = 1 << 14;
+
+/// Writes the mean of all rows of `bests`, each of the length of `mean`. Of many coordinates that takes milliseconds, so that it is asked
+/// on the way whether to stop. Returns whether it came to the end.
+pub(crate) fn mean_best<S: Real>(bests: &[S], mean: &mut [S], stops: impl Fn() -> bool) -> bool {
     let dimension = mean.len();
     // Multiplied before it is summed: a sum of bests near the largest number would overflow.
     let weight = S::of(dimension as f64) / S::of(bests.len() as f64);
     mean.fill(S::zero());
-    for best in bests.chunks_exact(dimension) {
-        for (m, &p) in mean.iter_mut().zip(best) {
-            *m = *m + p * weight;
+    let rows = (SUMMED_AT_ONCE / dimension).max(1);
+    for (place, some) in bests.chunks(rows * dimension).enumerate() {
+        if place > 0 && stops() {
+            return false;
+        }
+        for best in some.chunks_exact(dimension) {
+            for (m, &p) in mean.iter_mut().zip(best) {
+                *m = *m + p * weight;
+            }
         }
     }
+    true
 }
 
 #[cfg(test)]
@@ -90,11 +101,21 @@ mod tests {
     #[test]
     fn the_mean_of_bests_near_the_largest_number_does_not_overflow() {
         let mut mean = [0.0];
-        mean_best(&[f64::MAX; 30], &mut mean);
+        assert!(mean_best(&[f64::MAX; 30], &mut mean, || false));
         approx::assert_relative_eq!(mean[0], f64::MAX, max_relative = 1e-14);
         let mut mean = [0.0, 0.0];
-        mean_best(&[1.0, 10.0, 2.0, 20.0, 6.0, 60.0], &mut mean);
+        assert!(mean_best(&[1.0, 10.0, 2.0, 20.0, 6.0, 60.0], &mut mean, || true));
         approx::assert_relative_eq!(mean[..], [3.0, 30.0][..], max_relative = 1e-15);
+    }
+
+    #[test]
+    fn the_mean_of_many_coordinates_ends_when_it_is_told_to() {
+        let asked = core::cell::Cell::new(0);
+        let stops = || asked.replace(asked.get() + 1) == 2;
+        let (bests, mut mean) = (vec![1.0; 100 * SUMMED_AT_ONCE], vec![0.0; SUMMED_AT_ONCE]);
+        assert!(!mean_best(&bests, &mut mean, stops));
+        assert_eq!(asked.get(), 3);
+        approx::assert_relative_eq!(mean[0], 0.03, max_relative = 1e-14); // three rows of a hundred
     }
 
     /// Eq. 2 with the same draws: phi P + (1 - phi) G ± alpha |m - X| ln(1/u).

@@ -55,8 +55,8 @@ impl<S: Real> Engine<S> for QuantumSwarm<S> {
             swarm.propose_start(context, rng, out);
             return Ask::More;
         }
-        if swarm.begins_sweep() {
-            mean_best(swarm.bests(), &mut self.mean);
+        if swarm.begins_sweep() && !mean_best(swarm.bests(), &mut self.mean, || context.is_out_of_time()) {
+            return Ask::More;
         }
         let alpha = self.alpha.at(|| context.elapsed_share());
         for i in swarm.due() {
@@ -72,8 +72,10 @@ impl<S: Real> Engine<S> for QuantumSwarm<S> {
             return false;
         }
         loop {
-            if self.swarm.begins_sweep() {
-                mean_best(self.swarm.bests(), &mut self.mean);
+            if self.swarm.begins_sweep()
+                && !mean_best(self.swarm.bests(), &mut self.mean, || steps.is_out_of_time())
+            {
+                return true;
             }
             let alpha = self.alpha.at(|| steps.elapsed_share());
             let mean = &self.mean;

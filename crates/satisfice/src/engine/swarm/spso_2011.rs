@@ -1,7 +1,7 @@
 //! Standard PSO 2011: rotation-invariant moves, a random topology that changes when it does not help.
 
 use super::informants::Informants;
-use super::particles::{Attractor, Swarm, SwarmRules};
+use super::particles::{Attractor, Swarm, SwarmRules, set_room_aside};
 use super::velocity::drop_subnormals;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -90,9 +90,9 @@ impl<S: Real> Spso2011Swarm<S> {
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         self.swarm.propose_start(context, rng, out);
         for position in out.points() {
-            for (axis, &x) in context.space().axes().iter().zip(position) {
-                self.velocities.push(axis.at(rng.uniform()) - x);
-            }
+            let axes = context.space().axes().iter().zip(position);
+            self.velocities
+                .extend(axes.map(|(axis, &x)| axis.at(rng.uniform()) - x));
         }
     }
 
@@ -140,6 +140,7 @@ impl<S: Real> Engine<S> for Spso2011Swarm<S> {
         self.swarm.begin(dimension);
         self.informants.clear();
         self.velocities.clear();
+        set_room_aside(&mut self.velocities, self.swarm.particles(), dimension);
         self.least_before = S::infinity();
         self.direction.clear();
         self.direction.resize(dimension, S::zero());

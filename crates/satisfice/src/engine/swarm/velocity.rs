@@ -1,6 +1,6 @@
 //! The machinery of particle swarms with velocities.
 
-use super::particles::{Swarm, SwarmRules};
+use super::particles::{Swarm, SwarmRules, set_room_aside};
 use super::schedule::Schedule;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -70,9 +70,9 @@ impl<S: Real> VelocitySwarm<S> {
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
         self.swarm.propose_start(context, rng, out);
         for _ in 0..out.len() {
-            for &limit in &self.limits {
-                self.velocities.push(limit * S::of(2.0 * rng.uniform() - 1.0));
-            }
+            let draws = self.limits.iter();
+            self.velocities
+                .extend(draws.map(|&limit| limit * S::of(2.0 * rng.uniform() - 1.0)));
         }
     }
 
@@ -86,6 +86,11 @@ impl<S: Real> Engine<S> for VelocitySwarm<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
         self.swarm.begin(context.space().dimension());
         self.velocities.clear();
+        set_room_aside(
+            &mut self.velocities,
+            self.swarm.particles(),
+            context.space().dimension(),
+        );
         self.measure(context);
     }
 
