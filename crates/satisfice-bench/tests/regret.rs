@@ -170,6 +170,24 @@ fn a_selection_goes_on_with_a_larger_one() {
 }
 
 #[test]
+fn engines_without_the_one_that_is_compared_are_refused_with_what_to_do() {
+    let only = |engines: &[&str]| {
+        let selection = Selection {
+            engines: engines.iter().map(ToString::to_string).collect(),
+            ..Selection::default()
+        };
+        selection
+            .apply(Suite::parse("mine", SUITE).unwrap())
+            .and_then(|suite| Plan::new(suite, &Catalogue::bundled()))
+    };
+    assert_eq!(
+        only(&["walk", "descent"]).err().unwrap().to_string(),
+        "mine: this suite compares random with other engines: choose it too, `--engines random,walk,descent`"
+    );
+    assert!(only(&["walk", "random"]).is_ok());
+}
+
+#[test]
 fn names_that_are_not_in_the_suite_are_refused() {
     for (from, to, hint) in [
         (

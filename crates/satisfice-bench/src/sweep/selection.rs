@@ -26,7 +26,8 @@ impl Selection {
     /// The part of a suite that is selected.
     ///
     /// # Errors
-    /// [`Error::Run`] for a problem that is not in the suite, with the nearest; [`Error::Suite`] for a budget that is not.
+    /// [`Error::Run`] for a problem that is not in the suite, with the nearest; [`Error::Suite`] for a budget that is not, and for engines
+    /// without the one that the suite compares with the others.
     pub fn apply(&self, mut suite: Suite) -> Result<Suite, Error> {
         self.check(&suite)?;
         for part in &mut suite.parts {
@@ -47,6 +48,18 @@ impl Selection {
     }
 
     fn check(&self, suite: &Suite) -> Result<(), Error> {
+        if let Some(regret) = &suite.regret {
+            let name = regret.engine.split(' ').next().unwrap_or(&regret.engine);
+            if !self.engines.is_empty() && !self.engines.iter().any(|engine| engine == name) {
+                return Err(Error::Suite {
+                    place: suite.name.clone(),
+                    what: format!(
+                        "this suite compares {name} with other engines: choose it too, `--engines {name},{}`",
+                        self.engines.join(",")
+                    ),
+                });
+            }
+        }
         let problems = || suite.parts.iter().flat_map(|part| &part.problems);
         for name in &self.problems {
             if !problems().any(|choice| choice.name == *name) {
