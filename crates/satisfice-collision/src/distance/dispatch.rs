@@ -50,6 +50,17 @@ impl Question for FindProximity {
     }
 }
 
+struct FindDistance;
+
+impl Question for FindDistance {
+    type Answer = f64;
+
+    #[inline(always)]
+    fn ask<P: FeaturePair>(self, a: &P::A, b: &P::B) -> f64 {
+        P::distance(a, b)
+    }
+}
+
 struct Measure;
 
 impl Question for Measure {
@@ -89,6 +100,19 @@ pub fn within(a: &Shape, b: &Shape, threshold: Threshold) -> bool {
 pub fn proximity(a: &Shape, b: &Shape) -> Proximity {
     let (proximity, swapped) = ask(FindProximity, a, b);
     if swapped { proximity.swapped() } else { proximity }
+}
+
+/// The distance of two features: that of their [`proximity`], without the closest points.
+///
+/// ```
+/// use satisfice_collision::{Shape, distance};
+/// let (vertex, edge) = (Shape::Vertex([0.0, 3.0, 4.0]), Shape::Edge([[0.0; 3], [1.0, 0.0, 0.0]]));
+/// assert_eq!(distance::distance(&vertex, &edge), 5.0);
+/// ```
+#[inline]
+#[must_use]
+pub fn distance(a: &Shape, b: &Shape) -> f64 {
+    ask(FindDistance, a, b).0
 }
 
 /// The distance of two features within a relative error of [`ACCURACY`](super::ACCURACY), faster than a proximity; 0 exactly

@@ -103,6 +103,12 @@ pub trait FeaturePair {
     /// Distance and closest points.
     fn proximity(a: &Self::A, b: &Self::B) -> Proximity;
 
+    /// The distance of the proximity.
+    #[inline]
+    fn distance(a: &Self::A, b: &Self::B) -> f64 {
+        Self::proximity(a, b).distance
+    }
+
     /// The distance within a relative error of [`ACCURACY`](super::ACCURACY), faster than a proximity.
     fn measure(a: &Self::A, b: &Self::B) -> f64;
 

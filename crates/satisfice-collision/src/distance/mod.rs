@@ -51,7 +51,7 @@ pub mod vertex_triangle;
 pub mod vertex_vertex;
 
 pub use batch::TriangleBatch;
-pub use dispatch::{decide, measure, proximity, within};
+pub use dispatch::{decide, distance, measure, proximity, within};
 pub use edge_edge::EdgeEdge;
 pub use edge_triangle::EdgeTriangle;
 pub use kind::{FeaturePair, PairKind};

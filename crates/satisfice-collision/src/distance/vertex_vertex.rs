@@ -112,6 +112,11 @@ impl FeaturePair for VertexVertex {
         proximity(a, b)
     }
 
+    #[inline]
+    fn distance(a: &Point, b: &Point) -> f64 {
+        distance(a, b).unwrap_or_else(|| resolve::proximity::<1, 1>(&[*a], &[*b]).distance)
+    }
+
     fn measure(a: &Point, b: &Point) -> f64 {
         measure::hulls(&[*a], &[*b])
     }
@@ -142,6 +147,7 @@ mod tests {
                 resolve::proximity::<1, 1>(&[a], &[b]),
                 "{a:?} {b:?}"
             );
+            assert_eq!(VertexVertex::distance(&a, &b), proximity(&a, &b).distance);
         }
     }
 

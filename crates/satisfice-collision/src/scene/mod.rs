@@ -54,7 +54,7 @@ pub use skips::Skips;
 
 use crate::broad::{Method, Pair};
 use crate::distance::{self, PairKind, Proximity, Threshold};
-use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement};
+use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement, Shape};
 use body_tree::BodyTree;
 use changes::Log;
 use membership::Membership;
@@ -276,6 +276,22 @@ impl World {
     /// # Errors
     /// [`Error::Parameter`] if a body or a feature does not exist.
     pub fn proximity(&self, contact: Contact) -> Result<Proximity, Error> {
+        let [a, b] = self.shapes(contact)?;
+        Ok(distance::proximity(&a, &b))
+    }
+
+    /// The distance of a contact, or of any pair of features, in the last frame: that of the [`proximity`](Self::proximity), faster.
+    ///
+    /// # Errors
+    /// As [`World::proximity`].
+    pub fn contact_distance(&self, contact: Contact) -> Result<f64, Error> {
+        let [a, b] = self.shapes(contact)?;
+        Ok(distance::distance(&a, &b))
+    }
+
+    /// Both features in the world.
+    #[inline]
+    fn shapes(&self, contact: Contact) -> Result<[Shape; 2], Error> {
         let (kind_a, kind_b) = self.feature_kinds();
         for (body, kind, feature) in [
             (contact.body_a, kind_a, contact.a),
@@ -289,13 +305,10 @@ impl World {
                 ));
             }
         }
-        Ok(self.proximity_of(
-            [contact.body_a.slot, contact.body_b.slot],
-            Pair {
-                a: contact.a,
-                b: contact.b,
-            },
-        ))
+        Ok([
+            self.state(contact.body_a.slot).shape(kind_a, contact.a),
+            self.state(contact.body_b.slot).shape(kind_b, contact.b),
+        ])
     }
 
     /// Distance and closest points; the features exist.

@@ -103,17 +103,22 @@ pub(super) fn measure(
     witnesses: bool,
     guard: &Guard,
 ) -> Result<Measured, satisfice_collision::Error> {
-    let mut measured = Measured::default();
+    let mut measured = Measured {
+        distances: Vec::with_capacity(contacts.len()),
+        ..Measured::default()
+    };
     let until = guard.measuring_until();
     for (number, &contact) in contacts.iter().enumerate() {
         if number % LOOK_AFTER == 0 && guard.stops_at(until) {
             break;
         }
-        let proximity = world.proximity(contact)?;
-        measured.distances.push(proximity.distance);
         if witnesses {
+            let proximity = world.proximity(contact)?;
+            measured.distances.push(proximity.distance);
             measured.points_a.push(proximity.point_a);
             measured.points_b.push(proximity.point_b);
+        } else {
+            measured.distances.push(world.contact_distance(contact)?);
         }
     }
     Ok(measured)
