@@ -199,12 +199,16 @@ def test_dask(tmp_path):
     distributed = pytest.importorskip("distributed")
     with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path) as client:
         client.upload_file(str(Path(__file__).with_name("evaluations.py")))
-        report = alone(workers=client.get_executor(), ordered=True)
-        assert same(report, alone())
+        for workers in [client, client.get_executor()]:
+            assert same(alone(workers=workers, ordered=True), alone())
+        assert alone(workers=client).evaluations == 300
+        with pytest.raises(ArithmeticError, match="diverged"):
+            satisfice.find(evaluations.fails, SQUARE, **RING, workers=client)
         processes = client.run(__import__("os").getpid)
         search = satisfice.Search(SQUARE, **RING, ordered=True)
         import threading
 
         victim = next(iter(processes.values()))
         threading.Timer(0.5, __import__("os").kill, (victim, 9)).start()
-        assert same(search.run(evaluations.slow, executor=client.get_executor(), in_flight=4), alone())
+        assert same(search.run(evaluations.slow, executor=client), alone())
+        assert search.counts["taken"] == search.counts["asked"] and victim not in client.run(__import__("os").getpid).values()

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import collections
-import concurrent.futures as futures
 import contextlib
 import math
 import os
-import queue
 import time as clock
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -18,13 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _satisfice
 from ._arguments import question, run_arguments
+from ._drive import Drive
 from ._files import Keeper, write
-from ._workers import LOOK_EVERY, MOST_LOSSES, ExecutorLike, Given, Guarded, Own, check_pickle, is_killed, shaped
+from ._workers import ExecutorLike, Guarded, Own, check_pickle, shaped
 
 #: Points out at a time where nothing says how many workers there are.
 _IN_FLIGHT = 64
-#: Seconds of an evaluation that is short beside what it costs to wait for the next point.
-_SHORT = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,14 +201,15 @@ class Search:
             ``f(x) -> float`` with `x` of shape (d,). It is sent to the workers as these do it: processes need a function at
             the top level of a module.
         executor : Executor, optional
-            A `concurrent.futures.Executor` or anything with ``submit``: ``dask_client.get_executor()``,
+            A `concurrent.futures.Executor` or anything with ``submit``: a Dask client or its ``get_executor()``,
             `mpi4py.futures.MPIPoolExecutor`, ...
         workers : int or map-like, default 1
             Without `executor`: the number of processes, 1 for none but this one; one that dies is replaced, and what it had is evaluated again. Or a
             function such as ``pool.map``, which is given one batch after the other.
         in_flight : int, optional
             The number of points out at a time; by default the number of processes, twice as many if evaluations take less
-            than 0.1 s, and 64 for other workers.
+            than 0.1 s, and 64 for other workers. A Dask client says how many workers it has: by default each has one task and another one waiting,
+            of up to 8 points if these take less than 50 ms together.
         time : float, optional
             Stop after so many seconds; what is out then stays pending.
         catch : exception type or tuple of them
@@ -240,12 +237,15 @@ class Search:
             elif executor is None and not isinstance(workers, int):
                 self._map(f, workers, in_flight or _IN_FLIGHT, deadline, catch, keeper)
             elif executor is not None:
-                pool, _ = shaped(executor)
-                _Drive(self, f, pool, in_flight or _IN_FLIGHT, deadline, catch, keeper).run()
+                pool, known = shaped(executor)
+                if in_flight or not known or not pool.is_far:
+                    Drive(self, f, pool, in_flight or _IN_FLIGHT, deadline, catch, keeper).run()
+                else:
+                    Drive(self, f, pool, 2 * known, deadline, catch, keeper, workers=known).run()
             elif isinstance(workers, int):
                 check_pickle(f)
                 with Own(workers) as own:
-                    drive = _Drive(self, f, own, in_flight or workers, deadline, catch, keeper)
+                    drive = Drive(self, f, own, in_flight or workers, deadline, catch, keeper)
                     drive.prefetch = 0 if in_flight else workers
                     drive.run()
             if clock.monotonic() >= self._deadline:
@@ -295,100 +295,6 @@ class Search:
             self._search.fail(ticket)
         else:
             self.tell([ticket], [value])
-
-
-class _Drive:
-    """Keeps an executor busy."""
-
-    def __init__(
-        self,
-        search: Search,
-        f: Callable[[Any], Any],
-        pool: Given | Own,
-        in_flight: int,
-        deadline: float,
-        catch: tuple[type[BaseException], ...],
-        keeper: Keeper,
-    ) -> None:
-        self.search, self.pool, self.in_flight, self.deadline = search, pool, in_flight, deadline
-        self.keeper = keeper
-        #: So many more points are out if evaluations are so short that workers would wait for the next.
-        self.prefetch = 0
-        self.f = Guarded(f, catch)
-        self.done: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        #: Ticket, point, generation of the pool and start by future.
-        self.out: dict[Any, tuple[int, NDArray[np.float64], int, float]] = {}
-        pending = search.pending
-        self.waiting = list(zip(pending.tickets.tolist(), pending.x, strict=True))
-        self.known = set(pending.tickets.tolist())
-        #: Points that were out when a worker died. One at a time, so that it is seen which one kills its worker.
-        self.suspects: list[tuple[int, NDArray[np.float64]]] = []
-        self.losses: collections.Counter[int] = collections.Counter()
-
-    def run(self) -> None:
-        try:
-            while self._fill() and clock.monotonic() < self.deadline:
-                self.keeper.save_if_due()
-                try:
-                    future = self.done.get(timeout=LOOK_EVERY)
-                except queue.Empty:
-                    continue
-                if future in self.out:
-                    self._take(future)
-        finally:
-            for future in self.out:
-                future.cancel()
-
-    def _fill(self) -> bool:
-        """Give out as much as there is room for; whether anything is out."""
-        if self.suspects:
-            if not self.out:
-                self._submit(*self.suspects.pop())
-            return True
-        while self.waiting and len(self.out) < self.in_flight:
-            self._submit(*self.waiting.pop(0))
-        room = self.in_flight - len(self.out)
-        if room > 0:
-            batch = self.search.ask(room)
-            for ticket, x in zip(batch.tickets.tolist(), batch.x, strict=True):
-                if ticket not in self.known:  # what was pending when the search was loaded is asked again
-                    self._submit(ticket, x)
-        return bool(self.out)
-
-    def _submit(self, ticket: int, x: NDArray[np.float64]) -> None:
-        try:
-            future = self.pool.submit(self.f, x.copy())
-        except futures.BrokenExecutor as error:
-            self.pool.replace(error)
-            future = self.pool.submit(self.f, x.copy())
-        self.out[future] = (ticket, x, self.pool.generation, clock.monotonic())
-        future.add_done_callback(self.done.put)
-
-    def _take(self, future: Any) -> None:
-        alone = len(self.out) == 1
-        ticket, x, generation, begun = self.out.pop(future)
-        if self.prefetch and clock.monotonic() - begun < _SHORT:
-            self.in_flight, self.prefetch = self.in_flight + self.prefetch, 0
-        try:
-            value = future.result()
-        except (futures.BrokenExecutor, futures.CancelledError) as error:
-            if generation == self.pool.generation:
-                self.pool.replace(error)
-            self._lost(ticket, x, alone)
-        except Exception as error:
-            if not is_killed(error):
-                raise
-            self._lost(ticket, x, alone)
-        else:
-            self.search._take(ticket, value)
-
-    def _lost(self, ticket: int, x: NDArray[np.float64], alone: bool) -> None:
-        """Evaluate a point again that was lost with its worker, unless it has killed several."""
-        self.losses[ticket] += alone
-        if self.losses[ticket] >= MOST_LOSSES:
-            self.search._take(ticket, None)
-        else:
-            self.suspects.append((ticket, x))
 
 
 def _tickets(value: ArrayLike) -> NDArray[np.uint64]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import concurrent.futures as futures
 import pickle
 import signal
+import time as clock
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -41,6 +42,12 @@ class Guarded:
             kind = type(value).__name__
             raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
 
+    def all(self, points: list[NDArray[np.float64]]) -> tuple[list[float | None], float]:
+        """The values at some points, one after the other, and the seconds that they took."""
+        begun = clock.monotonic()
+        values = [self(x) for x in points]
+        return values, clock.monotonic() - begun
+
 
 def check_pickle(f: Callable[[Any], Any]) -> None:
     try:
@@ -58,10 +65,10 @@ def is_killed(error: BaseException) -> bool:
 
 
 def shaped(executor: Any) -> tuple[Given, int | None]:
-    """An executor of the user, or that of a Dask client, and how many workers it has, where that is known."""
+    """An executor of the user, or a Dask client, and how many workers it has, where that is known."""
     if hasattr(executor, "get_executor"):
         threads = executor.nthreads()
-        return Given(executor.get_executor()), sum(threads.values()) or None
+        return Dask(executor), sum(threads.values()) or None
     if not hasattr(executor, "submit"):
         raise TypeError(f"{executor!r} is no executor: it has no method submit")
     workers = getattr(executor, "_max_workers", None)
@@ -72,12 +79,44 @@ class Given:
     """An executor of the user. When it breaks, the search ends; it can go on with another one."""
 
     generation = 0
+    #: Whether it costs milliseconds to send a task.
+    is_far = False
 
     def __init__(self, executor: ExecutorLike) -> None:
         self.submit = executor.submit
 
+    def outcomes(self, done: list[Any]) -> list[Any]:
+        """What came of calls that are done: a result or an exception each."""
+        return [_outcome(future) for future in done]
+
     def replace(self, error: BaseException) -> None:
         raise error
+
+
+class Dask(Given):
+    """The workers of a Dask client. Results are fetched together: its executor asks for each by itself."""
+
+    is_far = True
+
+    def __init__(self, client: Any) -> None:
+        self.client = client
+
+    def submit(self, f: Callable[..., Any], /, *args: Any) -> Any:
+        return self.client.submit(f, *args, pure=False)
+
+    def outcomes(self, done: list[Any]) -> list[Any]:
+        whole = [future for future in done if future.status == "finished"]
+        found = dict(zip(whole, self.client.gather(whole, errors="skip"), strict=False)) if whole else {}
+        if len(found) < len(whole):
+            found = {}  # some were lost with their worker: which ones is seen one by one
+        return [found[future] if future in found else _outcome(future) for future in done]
+
+
+def _outcome(future: Any) -> Any:
+    try:
+        return future.result()
+    except Exception as error:
+        return error
 
 
 class Own:
@@ -109,6 +148,10 @@ class Own:
 
     def submit(self, f: Callable[..., Any], /, *args: Any) -> Any:
         return self.pool.submit(f, *args)
+
+    def outcomes(self, done: list[Any]) -> list[Any]:
+        """What came of calls that are done: a result or an exception each."""
+        return [_outcome(future) for future in done]
 
     def replace(self, error: BaseException) -> None:
         self._end()
