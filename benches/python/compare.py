@@ -205,6 +205,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument("--most", type=float, default=20.0, help="seconds after which a tool is stopped at equal evaluations")
     parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--only", choices=["evaluations", "seconds"], help="one of the two tables")
     arguments = parser.parse_args()
     versions = ", ".join(f"{tool} {version(package)}" for tool, package in PACKAGES.items())
     print("# Beside other tools of Python\n")
@@ -212,14 +213,16 @@ def main():
     print(f"Python {platform.python_version()}; {versions}.\n")
     for tool in TOOLS.values():  # what is imported or compiled at the first use is no part of a search
         hits(tool, PROBLEMS[0], 200, 30.0, 0)
-    print(f"## At {arguments.evaluations:,} evaluations\n")
-    print(
-        f"In parentheses: the calls of f, where they are fewer. A tool was stopped after {arguments.most:g} s; satisfice counts a point of a "
-        "known hit as an evaluation without calling f.\n"
-    )
-    table(arguments.evaluations, arguments.most, arguments.seeds)
-    print(f"\n## In {arguments.seconds:g} s\n\nIn parentheses: the calls of f.\n")
-    table(10**9, arguments.seconds, arguments.seeds)
+    if arguments.only != "seconds":
+        print(f"## At {arguments.evaluations:,} evaluations\n")
+        print(
+            f"In parentheses: the calls of f, where they are fewer. A tool was stopped after {arguments.most:g} s; satisfice counts a point of a "
+            "known hit as an evaluation without calling f.\n"
+        )
+        table(arguments.evaluations, arguments.most, arguments.seeds)
+    if arguments.only != "evaluations":
+        print(f"\n## In {arguments.seconds:g} s\n\nIn parentheses: the calls of f.\n")
+        table(10**9, arguments.seconds, arguments.seeds)
 
 
 if __name__ == "__main__":

@@ -163,8 +163,8 @@ impl Violations for Sat {
             value(variable).is_some_and(|value| value != wanted)
         };
         let falsified = |clause: &[i32]| match clause {
-            // All three are looked at: where none can be foreseen, a branch costs more than a literal.
-            [a, b, c] => is_false(a) & is_false(b) & is_false(c),
+            // Values cannot be foreseen, so that a branch costs more than a literal: all three are looked at. That variables have none can.
+            [a, b, c] => value(wanted(*a).0).is_some() && (is_false(a) & is_false(b) & is_false(c)),
             _ => clause.iter().all(is_false),
         };
         self.clauses
