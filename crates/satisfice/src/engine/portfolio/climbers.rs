@@ -1,4 +1,4 @@
-//! Local searches, several at a time, restarted when they stall, hit, or come back to a known hit.
+//! Several local searches side by side. Each restarts when it stalls, hits, or returns to a known hit.
 
 use super::moves::{Move, Moves};
 use super::visited::Visited;
@@ -10,9 +10,9 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::Saved;
 
-/// Evaluations without improvement, for each axis, after which the shortest run of the restart sequence ends.
+/// The shortest run of the restart sequence ends after this many evaluations per axis without improvement.
 const PATIENCE: u64 = 8;
-/// Likewise, this many times the number of neighbours.
+/// A run lasts at least this many times the number of neighbours without improvement.
 const NEIGHBOUR_PATIENCE: u64 = 2;
 /// A continuous search whose steps fall below this share of the axes has converged.
 const CONVERGED: f64 = 1e-9;
@@ -21,13 +21,13 @@ const CONVERGED: f64 = 1e-9;
 const FIRST_STEP: (f64, f64) = (0.01, 0.1);
 /// The first step from a near miss.
 const REFINING_STEP: f64 = 0.003;
-/// One search in so many starts at a near miss, where there is one.
+/// One search in `REFINED` starts at a near miss, if there is one.
 const REFINED: u64 = 2;
 
-/// A move to a point that was evaluated before, and so cannot be a new hit, is drawn again at most this often.
+/// A move to a point that was evaluated before cannot be a new hit. It is drawn again at most this many times.
 const DRAWS: usize = 4;
 
-/// One local search: keeps its best point, accepts what is no worse.
+/// One local search. It keeps its best point and accepts a point that is no worse.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Climber<S> {
     position: Vec<S>,
@@ -38,12 +38,12 @@ struct Climber<S> {
     mutation: Mutation,
     /// The neighbours not tried yet; `None` before they are counted.
     neighbours: Option<Untried>,
-    /// The last move, none from a start.
+    /// The last move; `None` at a start.
     last: Option<Move>,
 }
 
-/// Indices in an order drawn at random, each once, without a list of them: steps of a length that has no divisor in common
-/// with their number.
+/// Each index once, in a random order and without a list: by steps of a random length that has no divisor in common with the
+/// number of indices.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct Untried {
     count: usize,
@@ -150,7 +150,7 @@ impl<S: Real> Climbers<S> {
         Ok(())
     }
 
-    /// A new batch begins, for which so many of the climbers propose.
+    /// Begins a batch, for which this many climbers propose.
     pub(super) fn begin_batch(&mut self, active: usize) {
         self.proposed = 0;
         self.active = active.max(1);
@@ -168,7 +168,7 @@ impl<S: Real> Climbers<S> {
         }
     }
 
-    /// Proposes for the next climber and names it, unless every one has proposed in this batch.
+    /// Proposes a candidate of the next climber and returns its index; `None` if every climber has proposed in this batch.
     pub(super) fn propose(
         &mut self,
         context: &dyn Context<S>,
@@ -207,7 +207,7 @@ impl<S: Real> Climbers<S> {
         Some(index)
     }
 
-    /// Tells climber `index` what became of its candidate.
+    /// Tells climber `index` the outcome of its candidate.
     pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
         let climber = &mut self.climbers[index];
         let fitness = outcome.fitness();
@@ -215,7 +215,7 @@ impl<S: Real> Climbers<S> {
         if let Some(kind) = climber.last {
             self.moves.count(kind, improved);
         }
-        // The basin's hit is found, or was found before.
+        // The hit of this basin is found, now or before.
         if outcome.is_hit() || outcome == Outcome::Deleted {
             climber.running = false;
             return;
@@ -225,7 +225,7 @@ impl<S: Real> Climbers<S> {
             climber.mutation.adapt(fitness <= climber.fitness);
         }
         climber.stalled = if improved { 0 } else { climber.stalled + 1 };
-        // Moves to equal fitness cross plateaus.
+        // Moves to equal fitness lead across plateaus.
         if fitness <= climber.fitness {
             climber.position.copy_from_slice(position);
             climber.fitness = fitness;

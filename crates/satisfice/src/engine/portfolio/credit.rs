@@ -5,24 +5,24 @@ use rand_distr::{Distribution, Gamma};
 use super::source::Role;
 use crate::seed::SearchRng;
 
-/// Hits after which a past hit counts for 1/e, at the rate of the arm: yields change as a search goes on.
+/// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
 const MEMORY: f64 = 12.0;
 
-/// Prior of an arm, in hits. In evaluations it is as many as the search takes for these lately, so that an arm that was not
-/// tried is expected to be as good as the others.
+/// Prior of an arm, in hits. Its prior evaluations are what the whole search has lately needed for as many hits: an untried arm
+/// is expected to be as good as the others.
 const PRIOR_HITS: f64 = 0.15;
-/// Share of all evaluations that a source which has found nothing may take, and that all of these may take together.
+/// Largest share of all evaluations for one source without a hit, and for all such sources together.
 const BARREN_SHARE: f64 = 0.04;
 const BARREN_SHARES: f64 = 0.18;
-/// Share that all of them may take together beside a model of F, in which every evaluation that is not the model's is one that teaches less.
+/// Largest share for all of them together while a model of F is at work: the model learns less from their evaluations than from its own.
 const SHARE_BESIDE_MODEL: f64 = 0.06;
-/// Evaluations that it may take for a start: one for each so many that are planned, up to so many.
+/// A source without a hit may begin with one evaluation for every `PLANNED` planned ones, and `BARREN_START` at most.
 const PLANNED: f64 = 50.0;
 const BARREN_START: f64 = 8.0;
-/// Share of what is found from a hit that counts for the source which found the place.
+/// Share of the hits found from a place that is credited to the source which found the place.
 const PLACE_SHARE: f64 = 0.2;
 
-/// What one source has yielded lately, and in all.
+/// The recent and the total yield of one source.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Credit {
     hits: f64,
@@ -31,17 +31,17 @@ pub(super) struct Credit {
     total_evaluations: u64,
 }
 
-/// How many evaluations a source may take that has found nothing.
+/// How many evaluations a source without a hit may take.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trial {
     start: f64,
     share: f64,
-    /// Whether it is bounded even where no other has found anything.
+    /// Whether the bound holds even before any source has found a hit.
     always: bool,
 }
 
 impl Trial {
-    /// Of a search for which so many evaluations were planned, if that is known, and with so many sources that have found nothing.
+    /// For a search with `planned` evaluations, if that is known, and `barren` sources without a hit.
     pub(super) fn new(planned: Option<u64>, barren: usize) -> Self {
         let start = planned.map_or(BARREN_START, |planned| planned as f64 / PLANNED);
         Self {
@@ -51,7 +51,7 @@ impl Trial {
         }
     }
 
-    /// Beside a model of F, with so many sources that have found nothing: none takes an evaluation before its share is one.
+    /// For a search with a model of F and `barren` sources without a hit: a source waits until its share amounts to an evaluation.
     pub(super) fn beside_model(barren: usize) -> Self {
         Self {
             start: -1.0,
@@ -62,8 +62,8 @@ impl Trial {
 }
 
 impl Credit {
-    /// Counts one candidate. The past fades by the hits that are expected of a candidate: where they are rare, nothing else tells the
-    /// sources apart, and what has found nothing is not forgotten.
+    /// Counts one candidate. The past fades in proportion to the hits expected of it. Where hits are rare, little else tells the sources
+    /// apart, so misses are not forgotten.
     #[inline]
     pub(super) fn count(&mut self, hit: bool) {
         if self.hits > 0.0 {
@@ -77,34 +77,34 @@ impl Credit {
         self.total_hits += u64::from(hit);
     }
 
-    /// Whether it has found anything, or has taken little of the evaluations of the search in all, or no other has found anything.
+    /// Whether to try the source: it has a hit, or is within its share, or no source has a hit yet and the bound allows for that.
     pub(super) fn is_worth_trying(&self, all: &Self, trial: Trial) -> bool {
         (all.total_hits == 0 && !trial.always) || self.is_within(all, trial)
     }
 
-    /// Whether it has found anything, or has taken little of the evaluations of the search in all.
+    /// Whether the source has a hit, or has taken no more than its share of the evaluations of the whole search.
     pub(super) fn is_within(&self, all: &Self, trial: Trial) -> bool {
         let most = trial.start + trial.share * all.total_evaluations as f64;
         self.total_hits > 0 || self.total_evaluations as f64 <= most
     }
 
-    /// Whether it has found nothing.
+    /// Whether the source has no hit.
     pub(super) fn is_barren(&self) -> bool {
         self.total_hits == 0
     }
 
-    /// Evaluations that one hit takes lately, by all of a search.
+    /// Recent evaluations for each hit; of the whole search, where this is its credit.
     pub(super) fn price(&self) -> f64 {
         (self.evaluations + 10.0) / (self.hits + PRIOR_HITS)
     }
 
-    /// Evaluations of this source in all.
+    /// All evaluations of this source.
     pub(super) fn evaluations(&self) -> u64 {
         self.total_evaluations
     }
 
-    /// A draw from the posterior of this arm's yield, where a hit takes `price` evaluations of the search in all, and `weight` is how
-    /// much is expected of this arm before it was tried.
+    /// A draw from the posterior of this arm's yield. `price` is the number of evaluations for each hit of the whole search; `weight`
+    /// multiplies the yield expected before the arm is tried.
     pub(super) fn draw(&self, price: f64, weight: f64, rng: &mut SearchRng) -> f64 {
         draw(
             rng,
@@ -114,12 +114,12 @@ impl Credit {
     }
 }
 
-/// What a hit in a new place is worth: the hits that others have found from it, and what they took.
+/// The worth of a hit in a new place: the hits that other sources found from there, and the evaluations they needed.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Patches {
     /// Hits of the sources that look for new places.
     places: f64,
-    /// Hits and evaluations of those that go on from hits.
+    /// Hits and evaluations of the sources that go on from hits.
     hits: f64,
     evaluations: f64,
 }
@@ -136,8 +136,8 @@ impl Patches {
         }
     }
 
-    /// What a source that hits at this rate is worth: where it looks for new places, with what is found from its hits; of that only a
-    /// share counts, because what others find now from earlier hits is for certain.
+    /// The worth of a source with this rate of hits. A source that explores is also credited with a share of the hits found from its
+    /// places; only a share, because those that others find now from earlier hits are certain.
     pub(super) fn worth(&self, role: Role, rate: f64) -> f64 {
         if role != Role::Explores || self.places == 0.0 {
             return rate;

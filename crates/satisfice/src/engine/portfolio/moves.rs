@@ -4,7 +4,7 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
 
-/// The kinds of moves: so many on integer axes, then the two others.
+/// The number of kinds of moves on integer axes, and of all kinds.
 const LATTICE: usize = 6;
 const KINDS: usize = LATTICE + 2;
 /// Every kind keeps at least this much weight beside its rate of improvement.

@@ -1,10 +1,10 @@
-//! What just missed in the slice before: where a problem moves, most of its new hits were near misses.
+//! Near misses of the slice before: where a problem moves, most new hits were near misses.
 
 use crate::scalar::Real;
 
-/// At most so many are handed on to the next slice; while one runs, twice as many are kept.
+/// Most near misses that are handed on to the next slice; a running slice keeps up to twice as many.
 const MOST: usize = 8192;
-/// Past trials are halved at this number: the best are tried first, so that the yield falls all the time.
+/// Past trials are halved at this number: the best are tried first, so the yield falls steadily.
 const MEMORY: f64 = 128.0;
 
 /// Points that were evaluated and missed, with their fitness.
@@ -51,7 +51,7 @@ pub(super) struct NearMisses<S> {
     /// The next one of these.
     cursor: usize,
     now: Misses<S>,
-    /// What is not better than this is not kept.
+    /// Misses that are not better than this are not kept.
     bound: f64,
     trials: f64,
     hits: f64,
@@ -69,7 +69,7 @@ impl<S: Real> NearMisses<S> {
         }
     }
 
-    /// Begins a slice in which what the last one has left is tried again; `follows`: whether there was one.
+    /// Begins a slice that tries the near misses of the last one again. `follows`: whether there was one.
     pub(super) fn begin(&mut self, dimension: usize, follows: bool) {
         let mut left = core::mem::take(&mut self.now);
         if follows {
@@ -118,7 +118,7 @@ impl<S: Real> NearMisses<S> {
         }
     }
 
-    /// Keeps a miss of any source, if it is among the best.
+    /// Keeps a miss of any source if it is among the best.
     #[inline]
     pub(super) fn keep(&mut self, position: &[S], fitness: S) {
         let fitness = fitness.f64();

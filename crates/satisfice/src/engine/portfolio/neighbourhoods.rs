@@ -9,10 +9,10 @@ use crate::context::{Context, points_at_once};
 use crate::scalar::{Real, ordered};
 use crate::state::{Reader, Saved, State};
 
-/// Once so many candidates are known, only hits are expanded: some 60 MB at two axes.
+/// Once this many candidates are known, only hits are expanded: some 60 MB at two axes.
 const MOST: usize = 1 << 20;
 
-/// Coordinates of candidates, at most, so that many axes do not take all memory: 128 MB in double precision.
+/// Most coordinates of candidates, which bounds the memory of many axes: 128 MB in double precision.
 const MOST_COORDINATES: usize = 1 << 24;
 
 /// The count of an entry for an evaluated point whose neighbours are not entered yet: this bit, and how many
@@ -63,7 +63,7 @@ pub(super) struct Neighbourhoods<S> {
 }
 
 impl<S: Real> Neighbourhoods<S> {
-    /// Forgets all; from now on lazy or not.
+    /// Forgets everything, and sets whether to be lazy.
     pub(super) fn begin(&mut self, lazy: bool) {
         *self = Self {
             lazy,
@@ -123,7 +123,7 @@ impl<S: Real> Neighbourhoods<S> {
         }
     }
 
-    /// What is expected of a candidate without a neighbour, by a first one.
+    /// The prior of a candidate's fitness: the mean of all candidates so far, or the given one before there are any.
     fn prior(&self, fitness: f64) -> f64 {
         if self.count > 0.0 {
             self.sum / self.count

@@ -1,5 +1,4 @@
-//! Populations that adapt their covariance, for continuous spaces: local searches that look at a landscape's trend rather than at
-//! its ruggedness.
+//! Populations that adapt their covariance, for continuous spaces: local searches that follow the trend of a rugged landscape.
 //!
 //! Beyer, Sendhoff 2017, doi 10.1109/TEVC.2017.2680320 (MA-ES), with its default weights and learning rates.
 
@@ -12,13 +11,13 @@ use crate::seed::SearchRng;
 use crate::space::Space;
 use crate::state::Saved;
 
-/// Populations at a time, so that one has something to propose while others wait for outcomes.
+/// Populations side by side, so that one can propose while others wait for outcomes.
 const TOGETHER: usize = 3;
 /// The first step is drawn between these shares of the axes: large ones for the trend, small ones for narrow basins.
 const FIRST_STEP: (f64, f64) = (0.003, 0.3);
 /// A population whose steps fall below this share of the axes has converged.
 const CONVERGED: f64 = 1e-14;
-/// A population is hopeless where what is still lacking to delta is so many times what its members differ by.
+/// A population is hopeless when its distance to delta exceeds this many times the differences among its members.
 const HOPELESS: f64 = 1e4;
 /// Matrices have 320 kB at most.
 const MOST_AXES: usize = 200;
@@ -69,8 +68,8 @@ impl<S: Real> Populations<S> {
         }
     }
 
-    /// Populations are of use on continuous axes only, and not on so many that a matrix would take more than a few steps' worth
-    /// of memory and time.
+    /// Populations work on continuous axes only, and on at most [`MOST_AXES`], where a matrix takes no more memory and time than a
+    /// few steps.
     pub(super) fn begin(&mut self, context: &dyn Context<S>) {
         let axes = context.space().axes();
         let continuous = axes.len() <= MOST_AXES && axes.iter().all(|axis| !axis.is_integer());
@@ -103,7 +102,7 @@ impl<S: Real> Populations<S> {
         Ok(())
     }
 
-    /// Proposes a member of the next population that has one left in this generation, and says which.
+    /// Proposes a member of the next population that has one left in this generation, and returns its index.
     pub(super) fn propose(
         &mut self,
         context: &dyn Context<S>,
@@ -132,10 +131,10 @@ impl<S: Real> Populations<S> {
         Some(index * LARGEST + member)
     }
 
-    /// Tells what became of a member.
+    /// Tells the outcome of a member.
     pub(super) fn tell(&mut self, tag: usize, context: &dyn Context<S>, outcome: Outcome<S>) {
         let population = &mut self.populations[tag / LARGEST];
-        // Told after its end: others of its generation were in the same batch.
+        // The population has ended: others of its generation were in the same batch.
         if !population.running {
             return;
         }
@@ -161,7 +160,7 @@ impl<S: Real> Population<S> {
         !self.running || self.proposed < self.fitness.len()
     }
 
-    /// Begins anew, but for the mean.
+    /// Resets everything but the mean.
     fn start(&mut self, times: u64, context: &dyn Context<S>, rng: &mut SearchRng) {
         let space = context.space();
         let n = space.dimension();

@@ -1,4 +1,4 @@
-//! The lattice point by point: what a space is covered with that the budget has room for.
+//! The enumeration of a lattice that the budget has room for.
 
 use super::visited::Visited;
 use crate::context::Context;
@@ -6,7 +6,7 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
 
-/// Lattices of at most so many points are enumerated from the start.
+/// Lattices of at most this many points are enumerated from the start.
 const SMALL: u64 = 4096;
 
 /// Goes through all points of a lattice once, in its order, from a random point on, so that the lanes of a search begin at

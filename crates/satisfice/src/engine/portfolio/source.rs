@@ -28,19 +28,19 @@ pub(super) enum Source {
     Guest,
 }
 
-/// What a source does for the others.
+/// The part a source plays for the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     /// It looks for hits in new places.
     Explores,
     /// It goes on from hits.
     Exploits,
-    /// Neither: what it finds says nothing about places.
+    /// Neither: its hits say nothing about places.
     Apart,
 }
 
 impl Source {
-    /// The role of a source that is no [whole engine](Source::Guest).
+    /// The role of a source that is not a [whole engine](Source::Guest).
     pub(super) fn role(self) -> Role {
         match self {
             Self::Uniform | Self::Swarm | Self::Climber | Self::Member | Self::Descent => Role::Explores,
@@ -50,7 +50,7 @@ impl Source {
     }
 }
 
-/// The names of all sources, in their order; whole engines last, in theirs.
+/// The names of all sources in the order of [`Source`], then those of the whole engines in the order of their kinds.
 const NAMES: [&str; 15] = [
     "uniform",
     "swarms",
@@ -69,12 +69,12 @@ const NAMES: [&str; 15] = [
     "quadratic descents",
 ];
 
-/// What each source has proposed and found since the slice began.
+/// Candidates and hits of each source since the slice began.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Tally([[u64; 2]; NAMES.len()]);
 
 impl Tally {
-    /// Counts a candidate of the source with this place among the names.
+    /// Counts a candidate of the source at this index of [`NAMES`].
     pub(super) fn count<S: Real>(&mut self, place: usize, outcome: Outcome<S>) {
         let [proposed, hits] = &mut self.0[place];
         *proposed += u64::from(outcome != Outcome::NotEvaluated);
@@ -89,10 +89,10 @@ impl Tally {
     }
 }
 
-/// A candidate's source, and which swarm, climber, step or trial of it.
+/// A candidate's source, and the index of the swarm, climber, step, trial or engine within it.
 pub(super) type Tag = (Source, usize);
 
-/// Number of sources with an arm, and some of these.
+/// Number of sources that are arms of the bandit, and the indices of some.
 pub(super) const ARMS: usize = 9;
 pub(super) const TRIAL: usize = 3;
 pub(super) const CROSS: usize = 4;
@@ -101,7 +101,7 @@ pub(super) const DESCENT: usize = 6;
 pub(super) const STEP: usize = 7;
 pub(super) const NEIGHBOUR: usize = 8;
 
-/// The arm of a source; near misses and whole engines keep their own counts.
+/// The arm of a source. Near misses and whole engines count for themselves.
 pub(super) fn arm_of(source: Source) -> Option<usize> {
     match source {
         Source::Uniform => Some(0),

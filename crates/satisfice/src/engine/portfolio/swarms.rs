@@ -1,4 +1,4 @@
-//! Small swarms, each attracted by the latest hit of its own.
+//! Small swarms, each attracted by its own latest hit.
 
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
@@ -8,7 +8,7 @@ use crate::seed::SearchRng;
 use crate::space::Space;
 use crate::state::Saved;
 
-/// A move to a point that was evaluated before, and so cannot be a new hit, is drawn again at most this often.
+/// A move to a point that was evaluated before cannot be a new hit. It is drawn again at most this many times.
 const DRAWS: usize = 4;
 
 /// One swarm of a few particles.
@@ -22,16 +22,16 @@ struct SubSwarm<S> {
     has_hit: bool,
     /// The particle whose turn it is.
     turn: usize,
-    /// How many particles still have to be evaluated for the first time.
+    /// Particles that are still to be evaluated for the first time.
     unborn: usize,
     /// Evaluations since its last hit.
     stalled: usize,
 }
 
-/// K swarms of N particles that take turns. Sharing the latest hit between them would destroy their gain: each works in a
-/// region of its own, until it has stalled for too long and starts anew.
+/// K swarms of N particles that take turns. Each works in a region of its own until it stalls and starts anew; a shared latest
+/// hit would draw all of them to one region.
 ///
-/// Differs from the paper in: several swarms, alpha below 1, restarts, one particle of each swarm a batch.
+/// Unlike the paper: several swarms, alpha below 1, restarts, and one particle of each swarm per batch.
 #[derive(Debug, Clone)]
 pub(super) struct Swarms<S> {
     particles: usize,
@@ -88,12 +88,12 @@ impl<S: Real> Swarms<S> {
         Ok(())
     }
 
-    /// A new batch begins.
+    /// Begins a batch.
     pub(super) fn begin_batch(&mut self) {
         self.proposed = 0;
     }
 
-    /// Proposes for the next swarm and names it, unless every swarm has proposed in this batch.
+    /// Proposes a candidate of the next swarm and returns its index; `None` if every swarm has proposed in this batch.
     pub(super) fn propose(
         &mut self,
         space: &Space<S>,
@@ -111,7 +111,7 @@ impl<S: Real> Swarms<S> {
         Some(index)
     }
 
-    /// Tells swarm `index` what became of its particle.
+    /// Tells swarm `index` the outcome of its particle.
     pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
         let swarm = &mut self.swarms[index];
         swarm.tell(self.particles, position, outcome);

@@ -1,26 +1,25 @@
 //! Steps that have led from one hit to another, and their application to every hit.
 //!
-//! On a lattice the unit steps along each axis are among them from the start, so that a flood fill around a hit is the
-//! special case of well-tried short steps. Others are learned: the difference of two hits, applied to a third one, is worth a
-//! trial wherever hits repeat or lie on a manifold.
+//! On a lattice they include the unit steps along each axis from the start; a flood fill around a hit is the special case of
+//! these. Others are learned: where hits repeat or lie on a manifold, the difference of two hits is worth a trial from a third.
 
 use crate::scalar::Real;
 use crate::space::{Axis, Space};
 
-/// At most so many steps are kept, unit steps included, but always [`FEWEST`] learned ones.
+/// Most steps that are kept, unit steps included; [`FEWEST`] learned ones are kept in any case.
 const MOST: usize = 128;
 const FEWEST: usize = 16;
-/// Coordinates of learned steps, at most, where that leaves room for four: 8 MB.
+/// Most coordinates of learned steps, 8 MB, where that leaves room for four steps.
 const MOST_COORDINATES: usize = 1 << 20;
 /// Past trials of a step are halved at this number, so that its rate follows the search.
 const MEMORY: f64 = 400.0;
 
-/// A step and how it has fared.
+/// A step and its trials.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Step {
     trials: f64,
     hits: f64,
-    /// The next hit that it will be applied to.
+    /// The next hit to apply it to.
     cursor: usize,
 }
 
@@ -36,7 +35,7 @@ pub(super) struct Translations<S> {
 }
 
 impl<S: Real> Translations<S> {
-    /// The unit steps along the integer axes, hopeful: one hit in two trials.
+    /// The unit steps along the integer axes, each with a prior of one hit in two trials.
     pub(super) fn new(space: &Space<S>) -> Self {
         let units: Vec<usize> = (0..space.dimension())
             .filter(|&j| space.axes()[j].is_integer())
@@ -67,7 +66,7 @@ impl<S: Real> Translations<S> {
         ))
     }
 
-    /// A new list of hits begins.
+    /// Begins a new list of hits.
     pub(super) fn begin(&mut self) {
         for step in &mut self.steps {
             step.cursor = 0;
@@ -129,7 +128,7 @@ impl<S: Real> Translations<S> {
             .saturating_sub(units)
             .max(FEWEST)
             .min((MOST_COORDINATES / dimension).max(4));
-        // On continuous axes, steps between hits differ a little where they mean the same.
+        // On continuous axes, equal steps between inexact hits differ a little.
         let tolerance = |axis: &Axis<S>| {
             if axis.is_integer() {
                 S::of(0.5)

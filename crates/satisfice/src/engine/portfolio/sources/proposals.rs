@@ -1,4 +1,4 @@
-//! Candidates of one source after the other, and the enumeration of a lattice.
+//! The candidates of each source, and the enumeration of a lattice.
 
 use super::Sources;
 use crate::batch::{Batch, Outcome};
@@ -10,11 +10,11 @@ use crate::engine::portfolio::visited::Visited;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// Points of an enumeration that are proposed at once.
+/// Points that an enumeration proposes at once.
 pub(super) const SCANNED: usize = 256;
 
 impl<S: Real> Sources<S> {
-    /// Whether a position is inside and worth an evaluation: not proposed before, or not a known hit.
+    /// Whether a position is inside and worth an evaluation: on a lattice not proposed before, elsewhere not a known hit.
     pub(super) fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
         let space = context.space();
         let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
@@ -87,7 +87,7 @@ impl<S: Real> Sources<S> {
             }
             Source::Trial => {
                 if !self.draw_trial(rng) || !self.is_fresh(context) {
-                    // Counted like a miss, or an exhausted source would be asked forever.
+                    // Counts as a miss; otherwise an exhausted source would be asked forever.
                     self.arms[TRIAL].count(false);
                     return true;
                 }
@@ -132,8 +132,8 @@ impl<S: Real> Sources<S> {
         true
     }
 
-    /// Takes back the last proposal of a swarm, a climber or a descent if that point was visited before, and tells it that nothing came of
-    /// it, which counts like a miss.
+    /// Takes back the last proposal of a swarm, a climber or a descent if that point was visited before. Its source is told of a point
+    /// without a new hit, and a miss is counted.
     fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
         let space = context.space();
         let last = out.len() - 1;
@@ -156,7 +156,7 @@ impl<S: Real> Sources<S> {
         true
     }
 
-    /// Goes on through the lattice to the next point that is not visited; `false` at its end.
+    /// Writes the next point of the lattice that is not visited; `false` at its end.
     fn scan_on(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
         let Some(visited) = &mut self.visited else {
             return false;
