@@ -1,4 +1,4 @@
-//! Whole engines as sources: each proposes a part of a batch, and learns the hits of all others.
+//! Whole engines as sources: each proposes part of a batch, and is told the hits of all the others.
 
 mod sizes;
 
@@ -7,6 +7,7 @@ use core::ops::Range;
 use sizes::Sizes;
 
 use super::credit::{Credit, Trial};
+use super::progress::Seeker;
 use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -21,21 +22,22 @@ use crate::seed::SearchRng;
 use crate::space::AxisKind;
 use crate::state::{Part, Reader, State};
 
-/// A model of F is used where at most so many evaluations are planned, or where one takes so many seconds, and has found so many
-/// points or less; on spaces of at most so many axes.
+/// A model of F is at work where at most `MODELLED` evaluations are planned, or where an evaluation takes more than `EXPENSIVE` seconds and at
+/// most `MODELLED` have been made; on spaces of at most `MODEL_AXES` axes.
 const MODELLED: u64 = 500;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
-/// Descents by quadratic models are used where evaluations are limited, or where one takes so many seconds: they think for half of that.
+/// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
+/// about half as long.
 const QUADRATIC: f64 = 2e-5;
-/// Weight of the model until it is known to predict too little. From then on it is bounded like all that finds nothing, even where nothing
-/// else has found anything: its proposals cost a hundred times the time of others.
+/// Weight of the model until it turns out to predict too little. From then on it has the bound of a source without a hit, even before any
+/// source has found one: its proposals take a hundred times as long as those of others.
 const MODEL_WEIGHT: f64 = 40.0;
-/// Its weight where descents find the first hit, which they may look for until they have taken this share of the evaluations planned.
-/// A model is as good as they are where hits are many, and knows of isolated ones only what descents tell it.
+/// Weight of the model after the search for a first hit, in which descents take part and which ends after this share of the planned
+/// evaluations. Where hits are many, the model is as good as descents; of isolated hits it knows only what descents tell it.
 const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
 const FIRST_SHARE: f64 = 0.5;
-/// Axes for which a matrix takes at most a few steps' worth of memory and time.
+/// With at most this many axes, a matrix takes no more memory and time than a few steps.
 const CMA_AXES: usize = 200;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
 const FLOOD_STEP: f64 = 1e-3;
@@ -81,14 +83,14 @@ impl<S: Real> core::ops::DerefMut for Member<S> {
     }
 }
 
-/// An engine and how it has fared.
+/// An engine and its credit.
 struct Guest<S> {
     kind: Kind,
     engine: Member<S>,
     arm: Credit,
-    /// Whether it may still have something to propose.
+    /// Whether it may still propose something.
     open: bool,
-    /// Its part of the batch that is out.
+    /// Its part of the batch under evaluation.
     own: Range<usize>,
 }
 
@@ -98,7 +100,7 @@ pub(super) struct Guests<S> {
     sizes: Sizes,
     /// Whether all axes are continuous, and F may be smooth along them.
     continuous: bool,
-    /// What one of them is told or has proposed.
+    /// A buffer: what an engine has proposed, or is to be told.
     part: Batch<S>,
     outcomes: Vec<Outcome<S>>,
 }
@@ -109,13 +111,13 @@ impl<S> core::fmt::Debug for Guests<S> {
     }
 }
 
-/// What came of asking one of them.
+/// The result of asking an engine.
 pub(super) enum Answer {
-    /// Candidates, or work on bounds.
+    /// It proposed candidates, or worked on bounds.
     Worked,
-    /// The whole space is covered, with these candidates.
+    /// These candidates complete the cover of the space.
     Covered,
-    /// Nothing at the moment.
+    /// It has nothing to propose at the moment.
     Nothing,
 }
 
@@ -170,7 +172,7 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// A slice begins; without those that recombine hits, if that is wanted.
+    /// Begins a slice, on request without the engines that recombine hits.
     pub(super) fn begin(&mut self, context: &dyn Context<S>, without_recombination: bool) {
         let space = context.space();
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
@@ -210,7 +212,7 @@ impl<S: Real> Guests<S> {
         self.guests.push(guest);
     }
 
-    /// Opens the model, and descents by quadratic models, where F turns out to be expensive.
+    /// Opens the model and the descents by quadratic models once F turns out to be expensive enough for them.
     pub(super) fn look_at_price(&mut self, context: &dyn Context<S>) {
         let Some(seconds) = context.seconds_an_evaluation() else {
             return;
@@ -230,14 +232,14 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// A new batch begins, of which none has a part.
+    /// Begins a batch, in which no engine has a part yet.
     pub(super) fn begin_batch(&mut self) {
         for guest in &mut self.guests {
             guest.own = 0..0;
         }
     }
 
-    /// Whether it has a part of the batch.
+    /// Whether the engine has a part of the batch.
     pub(super) fn has_part(&self, index: usize) -> bool {
         !self.guests[index].own.is_empty()
     }
@@ -250,12 +252,12 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// Its place among the names of all sources.
+    /// Its index among the names of all sources.
     pub(super) fn place(&self, index: usize) -> usize {
         Source::Guest as usize + self.guests[index].kind as usize
     }
 
-    /// Whether a model is open that may be of use.
+    /// Whether a model of F is open and may be of use.
     pub(super) fn has_model(&self) -> bool {
         self.guests.iter().any(|guest| match &guest.engine {
             Member::Model(model) => guest.open && model.is_useful() != Some(false),
@@ -263,24 +265,39 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// The engine that looks for the first hit beside a model, while it may, and its credit: descents by quadratic models, where all axes are
-    /// continuous.
-    pub(super) fn first(&self, all: &Credit, planned: Option<u64>) -> Option<(usize, &Credit)> {
+    /// The engines that look for the first hit while a model is at work: the model itself and the descents by quadratic models. `None`
+    /// where an axis is not continuous, after the first hit, and after their share of the evaluations.
+    pub(super) fn seekers(&self, all: &Credit, planned: Option<u64>) -> Option<[usize; 2]> {
         let most = FIRST_SHARE * planned.unwrap_or(MODELLED) as f64;
         if !self.continuous || !all.is_barren() || all.evaluations() as f64 >= most {
             return None;
         }
-        let mut guests = self.guests.iter().enumerate();
-        let (index, guest) =
-            guests.find(|(_, guest)| guest.kind == Kind::Quadratic && guest.open && guest.own.is_empty())?;
-        Some((index, &guest.arm))
+        let find = |kind| {
+            let mut guests = self.guests.iter();
+            guests.position(|guest| guest.kind == kind && guest.open && guest.own.is_empty())
+        };
+        Some([find(Kind::Model)?, find(Kind::Quadratic)?])
+    }
+
+    /// What a source is among those that look for the first hit.
+    pub(super) fn seeker(&self, (source, index): Tag) -> Option<Seeker> {
+        match source {
+            Source::Descent => Some(Seeker::Direct),
+            Source::Guest => match self.guests[index].kind {
+                Kind::Model => Some(Seeker::Model),
+                Kind::Quadratic => Some(Seeker::Quadratic),
+                Kind::Cma | Kind::Flood | Kind::Regions => None,
+            },
+            _ => None,
+        }
     }
 
     pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
         self.guests.iter().map(|guest| &guest.arm)
     }
 
-    /// Offers the credit of each that is worth trying and has no part of the batch yet, with its weight; beside a model or not.
+    /// The credits and weights of the engines that are worth trying and have no part of the batch yet. `modelled`: whether a model of F is
+    /// at work.
     pub(super) fn arms<'a>(
         &'a self,
         all: &'a Credit,
@@ -310,7 +327,7 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// Asks one of them for its part of the batch.
+    /// Asks an engine for its part of the batch.
     pub(super) fn ask(
         &mut self,
         index: usize,
@@ -342,7 +359,7 @@ impl<S: Real> Guests<S> {
         Answer::Worked
     }
 
-    /// Tells each what became of its part, where the batch is the engine's, and of what else concerns it.
+    /// Tells each engine the outcomes of its part, if the portfolio proposed the batch, and the other outcomes that concern it.
     pub(super) fn tell(
         &mut self,
         context: &dyn Context<S>,
@@ -381,7 +398,7 @@ impl<S: Real> Guests<S> {
                 }
             };
             tell(&|i| own.contains(&i), Origin::Engine);
-            // Start points count for what they are; for the rest, the hits of others are as good as found by exhaustion.
+            // An engine takes start points for what they are, and hits of others as if exhaustion had found them.
             let origin = match origin {
                 Origin::Start => Origin::Start,
                 _ => Origin::Exhaustion,
@@ -429,7 +446,7 @@ impl<S: Real> Guests<S> {
         Ok(())
     }
 
-    /// Whether restored parts of a batch are inside it, and it and the source chosen last name engines that there are.
+    /// Whether restored parts lie inside the batch, and the tags name engines that exist.
     pub(super) fn fit(&self, tags: &[Tag], chosen: Option<Tag>) -> bool {
         let inside = |own: &Range<usize>| own.start <= own.end && own.end <= tags.len();
         self.guests.iter().all(|guest| inside(&guest.own))
@@ -440,14 +457,14 @@ impl<S: Real> Guests<S> {
     }
 }
 
-/// Whether F may be smooth along some axes. Keys of a permutation are not such: F is constant where their order is. Nor are the axes of a
-/// problem that names neighbours: it may have keys of its own.
+/// Whether F may be smooth along some axes. Along the keys of a permutation it is not: F depends on their order alone. A problem that
+/// names neighbours may use keys of its own.
 fn is_smooth<S: Real>(context: &dyn Context<S>) -> bool {
     let has = |kind| context.space().axes().iter().any(|axis| axis.kind() == kind);
     has(AxisKind::Continuous) && !has(AxisKind::Place) && !context.offers_neighbours()
 }
 
-/// The flood fill of the hits of others.
+/// A flood fill from the hits of other sources.
 #[derive(Debug)]
 struct FloodAlone<S>(Flood<S>);
 

@@ -7,6 +7,7 @@ mod moves;
 mod near_misses;
 mod neighbourhoods;
 mod populations;
+mod progress;
 mod scan;
 mod source;
 mod sources;
@@ -79,9 +80,9 @@ engine_settings! {
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
     /// share until something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together
     /// 18 %, except for descents on a lattice and uniform points. So does the model, once it is known to predict less than a quarter of the
-    /// variance of F; until then the others together take at most 6 % beside it, but on continuous axes descents, two thirds of them by
-    /// quadratic models, look for the first hit with up to half of the evaluations. All sources
-    /// learn the hits of the others. No parameter depends on the problem.
+    /// variance of F; until then the others together take at most 6 % beside it. On continuous axes the model and descents, by quadratic models
+    /// and without, look for the first hit together with up to half of the evaluations: the more a source has lowered the least F, the
+    /// more it is asked. All sources learn the hits of the others. No parameter depends on the problem.
     ///
     /// ```
     /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};

@@ -1,4 +1,4 @@
-//! The engine of the portfolio: which source is asked, and what its outcomes teach.
+//! The engine of the portfolio: it chooses a source, and learns from the outcomes.
 
 mod proposals;
 
@@ -10,6 +10,7 @@ use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
+use super::progress::{Progress, Seeker};
 use super::scan::Scan;
 use super::source::{ARMS, CROSS, DESCENT, MEMBER, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag, Tally, arm_of};
 use super::swarms::Swarms;
@@ -26,25 +27,23 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Part, Reader, State};
 
-/// A batch is given up after so many choices of a source that gave no candidate.
+/// A batch ends after this many choices of a source that gave no candidate.
 const REJECTED: usize = 100;
-/// Points of the first batch, at least: none of them could learn of the others. A model takes them one by one.
+/// Fewest points of the first batch, in which no point can learn from another. With a model of F it is a single point.
 const FIRST: usize = 4;
-/// Evaluations of direct descents for each one of descents by quadratic models, until something hits beside a model: F need not be smooth.
-const DIRECT: f64 = 0.5;
-/// Batches grow by a point each so many evaluations, up to so many points: small ones learn sooner, large ones cost less time.
+/// Batches grow by one point every `SLOW` evaluations, up to `LARGEST`: small ones learn sooner, large ones cost less time.
 const SLOW: usize = 2048;
 const LARGEST: usize = 32;
-/// A choice of source lasts a candidate more each so many evaluations, until it lasts so many: a choice costs time.
+/// A choice of source lasts for one more candidate every `TURN` evaluations, up to `LONGEST_TURN`: choosing costs time.
 const TURN: u64 = 128;
 const LONGEST_TURN: u64 = 8;
-/// Share of the evaluations that estimates how complete the result is.
+/// Share of the evaluations that serve to estimate how complete the result is.
 const PROBES: f64 = 0.02;
 
 /// The engine of [`Portfolio`].
 #[derive(Debug)]
 pub(super) struct Sources<S> {
-    /// Candidates proposed at once: as the user says, and now.
+    /// Candidates proposed at once: as set by the user, and in this batch.
     asked_for: Option<usize>,
     batch: usize,
     /// Candidates of a batch that come from one choice of source.
@@ -54,18 +53,20 @@ pub(super) struct Sources<S> {
     timing: NeighbourTiming,
     without: Omitted,
     arms: [Credit; ARMS],
-    /// All of them, and the guests, together.
+    /// All arms and guests together.
     whole: Credit,
     descents: Vec<RestartedDescent<S>>,
     next_descent: usize,
     descended: usize,
     patches: Patches,
+    /// Who brings the search closer to a first hit.
+    progress: Progress,
     /// Evaluations that were planned when the slice began, if that was known.
     planned: Option<u64>,
     guests: Guests<S>,
     hits: Vec<S>,
     visited: Option<Visited>,
-    /// The lattice point by point, once so many are visited that uniform draws mostly repeat, or if the budget has room for all.
+    /// The lattice point by point, once uniform draws would mostly repeat points, or if the budget has room for all.
     scan: Scan,
     swarms: Swarms<S>,
     climbers: Climbers<S>,
@@ -93,6 +94,7 @@ impl<S: Real> Sources<S> {
             next_descent: 0,
             descended: 0,
             patches: Patches::default(),
+            progress: Progress::default(),
             planned: None,
             guests: Guests::new(),
             hits: Vec::new(),
@@ -121,7 +123,7 @@ impl<S: Real> Sources<S> {
         self.hits.len() / self.position.len().max(1)
     }
 
-    /// The source chosen last, as long as its turn lasts, else a new choice; and how many candidates are to come from it.
+    /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
     fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
         if let Some((tag, left @ 1..)) = self.chosen
             && !(tag.0 == Source::Guest && self.guests.has_part(tag.1))
@@ -134,18 +136,18 @@ impl<S: Real> Sources<S> {
         chosen
     }
 
-    /// Draws a source, and which step of [`Source::Step`].
+    /// Draws a source, with the index of the step for [`Source::Step`].
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
-        // What goes on at once beside the model is for the others.
+        // The model proposes one point; the other workers are for the other sources.
         let modelled = self.batch == 1 && self.guests.has_model();
-        if modelled && let Some((index, quadratic)) = self.guests.first(&self.whole, self.planned) {
-            let direct = self.arms[DESCENT].evaluations() as f64;
-            if direct < DIRECT * quadratic.evaluations() as f64 {
-                return (Source::Descent, 0);
-            }
-            return (Source::Guest, index);
+        if modelled && let Some([model, quadratic]) = self.guests.seekers(&self.whole, self.planned) {
+            return match self.progress.choose(rng) {
+                Seeker::Model => (Source::Guest, model),
+                Seeker::Quadratic => (Source::Guest, quadratic),
+                Seeker::Direct => (Source::Descent, 0),
+            };
         }
         let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
@@ -202,7 +204,7 @@ impl<S: Real> Sources<S> {
         best.1
     }
 
-    /// Number of sources that have found nothing.
+    /// Number of sources without a hit.
     fn barren(&self) -> usize {
         let arms = self.arms.iter().chain(self.guests.credits());
         arms.filter(|arm| arm.is_barren()).count()
@@ -244,8 +246,9 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.arms = [Credit::default(); ARMS];
         self.whole = Credit::default();
         self.patches = Patches::default();
+        self.progress = Progress::default();
         self.chosen = None;
-        // Those of the last batch name sources of the slice before.
+        // The tags of the last batch name sources of the slice before.
         self.tags.clear();
         self.trials.clear();
         self.planned = context.evaluations_planned();
@@ -269,7 +272,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.swarms.begin_batch();
         self.descended = 0;
         self.guests.begin_batch();
-        // Fewer than wanted would let workers wait.
+        // With fewer than `wanted` candidates, workers would wait.
         let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
         let first = if made == 0 && !self.guests.has_model() {
             FIRST
@@ -322,7 +325,7 @@ impl<S: Real> Engine<S> for Sources<S> {
             }
             let made = (out.len() - before) as u64;
             self.chosen = (has_more && made > 0).then_some((tag, left - made));
-            // A source with nothing left for this batch ends the batch, so that worse ones do not fill it, unless workers would wait.
+            // A source with nothing left ends the batch, so that worse sources do not fill it, unless workers would wait.
             if out.len() == before {
                 if !out.is_empty() && out.len() >= wanted {
                     break;
@@ -333,7 +336,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         if out.is_empty() && self.visited.as_ref().is_some_and(Visited::is_all) {
             return Ask::Covered;
         }
-        // Everything drawn was known: propose uniform points, whatever they are.
+        // Every draw was known. Propose uniform points, known or not.
         let least = if self.visited.is_some() { 1 } else { wanted };
         while out.len() < least {
             out.push_with(|position| rng.position(context.space(), position));
@@ -346,7 +349,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         let space = context.space();
         for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
-                // Hits are kept at the centres of their cells, so that steps between cells are whole.
+                // Hits are kept at the centres of their cells, so that steps between them are whole.
                 let centre = space
                     .axes()
                     .iter()
@@ -392,7 +395,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
                 Source::Neighbour => self.neighbourhoods.count(outcome.fitness()),
                 Source::NearMiss => self.near_misses.count(outcome.is_hit()),
-                // Hits are inexact on continuous axes: what was put together from two of them may just miss a third one.
+                // Hits are inexact on continuous axes: a recombination of two may just miss a third.
                 Source::Cross => {
                     if let (None, Outcome::Miss(fitness)) = (&self.visited, outcome) {
                         self.climbers.offer(position, fitness);
@@ -412,12 +415,16 @@ impl<S: Real> Engine<S> for Sources<S> {
                 _ => source as usize,
             };
             self.tally.count(place, *outcome);
+            if self.whole.is_barren() {
+                let seeker = self.guests.seeker((source, index));
+                self.progress.count(seeker, *outcome, context.threshold());
+            }
             self.whole.count(hit);
             self.patches.count(self.role((source, index)), hit);
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
             }
-            // After all counts, because a step that is learned may replace another.
+            // Last, because a learned step may replace another.
             if let (Source::Trial, true, Some(steps)) = (source, hit, &mut self.steps) {
                 let dimension = space.dimension();
                 steps.learn(&self.trials[index * dimension..(index + 1) * dimension], space);
@@ -437,7 +444,8 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
-        (self.whole, self.patches, self.chosen, self.planned).save(state);
+        (self.whole, self.patches, self.progress).save(state);
+        (self.chosen, self.planned).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);
         for descent in &self.descents {
@@ -458,7 +466,8 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
-        (self.whole, self.patches, self.chosen, self.planned) = from.read()?;
+        (self.whole, self.patches, self.progress) = from.read()?;
+        (self.chosen, self.planned) = from.read()?;
         (self.batch, self.block, self.next_descent) = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();
