@@ -10,8 +10,9 @@ use std::collections::BinaryHeap;
 
 use super::Separation;
 use super::advance::Goal;
+use super::looks::Looks;
 use super::meetings::{Meet, Meetings};
-use super::query::{Impact, free_until, within};
+use super::query::Impact;
 use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MIXED, MovingBox, MovingTree};
 use super::waiting::{FEATURE, GroupOrFeature, Waiting};
@@ -66,7 +67,9 @@ struct Descent<'s> {
     waiting: BinaryHeap<Waiting>,
     /// Pairs of groups no later than `now`, which need no order.
     at_once: Vec<Waiting>,
-    /// The time of the pair that is being opened.
+    /// Pairs of features to be looked at, no earlier than `now`.
+    looks: Looks,
+    /// The time of the pair that was taken last from those that wait: all others are no earlier.
     now: f64,
     /// Half of the least time up to which a look has proved a pair free.
     soon: f64,
@@ -119,6 +122,7 @@ impl Step {
             margin: self.margin(separation.get()),
             waiting: BinaryHeap::new(),
             at_once: Vec::new(),
+            looks: Looks::default(),
             now: 0.0,
             soon: 0.5,
             best: Earliest {
@@ -204,22 +208,14 @@ impl<'s> Descent<'s> {
 
     fn run(mut self, stop: &mut dyn FnMut() -> bool) -> Earliest {
         let mut rounds = 0_u32;
-        while let Some(next) = self.at_once.pop().or_else(|| self.waiting.pop()) {
-            if next.time >= self.best.time[1] {
-                break;
-            }
-            // All that wait are later than this one, which is close enough. A bound of 0 would not say that the start is free.
-            if self.at_once.is_empty() && next.time > 0.0 && next.time + self.tolerance >= self.best.time[1] {
-                self.best.time[0] = self.best.time[0].min(next.time);
-                break;
-            }
+        while let Some(next) = self.next() {
             rounds = rounds.wrapping_add(1);
             if rounds.is_multiple_of(16) && stop() {
-                self.best.undecided = (self.waiting.len() + self.at_once.len()) as u64 + 1;
-                self.best.time[0] = self.best.time[0].min(next.time);
+                let waiting = self.waiting.len() + self.at_once.len() + self.looks.len();
+                self.best.undecided = waiting as u64 + 1;
+                self.best.time[0] = self.best.time[0].min(self.now);
                 return self.best;
             }
-            self.now = next.time;
             let Some(sides) = self.sides[next.kind as usize] else {
                 continue;
             };
@@ -238,6 +234,29 @@ impl<'s> Descent<'s> {
         }
         self.best.is_proved = true;
         self.best
+    }
+
+    /// The next that waits, or `None` if the answer is proved.
+    fn next(&mut self) -> Option<Waiting> {
+        loop {
+            if self.at_once.is_empty() {
+                self.look_at_all();
+            }
+            if let Some(next) = self.at_once.pop() {
+                if next.time < self.best.time[1] {
+                    return Some(next);
+                }
+                continue;
+            }
+            let next = self.waiting.pop().filter(|next| next.time < self.best.time[1])?;
+            // All that wait are later than this one, which is close enough. A bound of 0 would not say that the start is free.
+            if next.time > 0.0 && next.time + self.tolerance >= self.best.time[1] {
+                self.best.time[0] = self.best.time[0].min(next.time);
+                return None;
+            }
+            self.now = next.time;
+            return Some(next);
+        }
     }
 
     fn wait(&mut self, kind: u8, time: f64, a: GroupOrFeature, b: GroupOrFeature) {
@@ -316,6 +335,7 @@ impl<'s> Descent<'s> {
             b: group(second, of.b),
             around_b: (!is_same).then(|| second.box_around(of.b.level as usize, of.b.group)),
             margin: self.margin,
+            corners: (of.a.level == 0).then(|| [first.corners(of.a.group), second.corners(of.b.group)]),
         };
         meet.until((self.best.time[1] as f32).next_up())
     }
@@ -342,20 +362,41 @@ impl<'s> Descent<'s> {
         }
     }
 
-    /// Proves a pair free up to some time, and lets it wait for that.
-    fn look_at(&mut self, number: u8, lists: [FeatureList; 2], [a, b]: [u32; 2], time: f64) {
-        if !self.step.may_pair(lists, a, b) {
+    /// Looks at a pair together with others.
+    fn look_at(&mut self, number: u8, lists: [FeatureList; 2], pair: [u32; 2], time: f64) {
+        let [a, b] = pair;
+        if !self.step.may_pair_apart(lists, a, b) {
             return;
         }
         self.best.queries += 1;
-        let kind = KINDS[number as usize];
-        let free = self.step.free_until(kind, a, b, self.separation, time);
+        if self.looks.kind != number {
+            self.look_at_all();
+        }
+        self.looks.add(number, pair, time);
+        if self.looks.is_full() {
+            self.look_at_all();
+        }
+    }
+
+    /// Proves pairs free up to some time, and lets them wait for that.
+    fn look_at_all(&mut self) {
+        let looks = std::mem::take(&mut self.looks);
+        let number = looks.kind;
+        if let (true, Some(sides)) = (looks.len() > 0, self.sides[number as usize]) {
+            for (pair, free) in looks.look(self.step, KINDS[number as usize], self.separation) {
+                self.wait_until(number, sides.lists, pair, free);
+            }
+        }
+    }
+
+    /// Lets a pair wait for the time up to which it is free.
+    fn wait_until(&mut self, number: u8, lists: [FeatureList; 2], [a, b]: [u32; 2], free: f64) {
         if free >= self.best.time[1] {
             return;
         }
         if free < self.soon {
             self.soon = 0.5 * free;
-            self.ask(kind, lists, [a, b], free);
+            self.ask(KINDS[number as usize], lists, [a, b], free);
             return;
         }
         let feature = |number: u32| GroupOrFeature {
@@ -426,58 +467,4 @@ fn meeting(tree: &MovingTree, of: GroupOrFeature, other: &MovingBox) -> impl Ite
         }
         None
     })
-}
-
-impl Step {
-    /// The first time of a hit of a pair of this kind within `tolerance`, or `None` if it does not hit or there is no such pair.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for the kinds edge-triangle and triangle-triangle, and for a tolerance below 1e-12.
-    pub fn impact_of(
-        &self,
-        kind: PairKind,
-        contact: &MovingContact,
-        separation: Separation,
-        tolerance: f64,
-    ) -> Result<Option<Impact>, Error> {
-        let lists = Self::lists(kind)?;
-        let goal = Goal {
-            tolerance: Goal::checked(tolerance)?,
-            ..Goal::DECISION
-        };
-        let pair = self.numbers(lists, contact);
-        let pair = pair.filter(|&[a, b]| self.may_pair(lists, a, b));
-        Ok(pair.and_then(|[a, b]| self.impact(kind, a, b, separation, goal)))
-    }
-
-    /// A time up to which a look proves a pair free of hits, if it is free up to `from`; at least that.
-    fn free_until(&self, kind: PairKind, a: u32, b: u32, separation: Separation, from: f64) -> f64 {
-        match kind {
-            PairKind::VertexVertex => free_until(&self.vertex(a), &self.vertex(b), separation, from),
-            PairKind::VertexEdge => free_until(&self.vertex(a), &self.edge(b), separation, from),
-            PairKind::VertexTriangle | PairKind::EdgeTriangle | PairKind::TriangleTriangle => {
-                free_until(&self.vertex(a), &self.triangle(b), separation, from)
-            }
-            PairKind::EdgeEdge => free_until(&self.edge(a), &self.edge(b), separation, from),
-        }
-    }
-
-    /// The first hit of a pair during a part of the step.
-    pub(super) fn impact(
-        &self,
-        kind: PairKind,
-        a: u32,
-        b: u32,
-        separation: Separation,
-        goal: Goal,
-    ) -> Option<Impact> {
-        match kind {
-            PairKind::VertexVertex => within(&self.vertex(a), &self.vertex(b), separation, goal),
-            PairKind::VertexEdge => within(&self.vertex(a), &self.edge(b), separation, goal),
-            PairKind::VertexTriangle | PairKind::EdgeTriangle | PairKind::TriangleTriangle => {
-                within(&self.vertex(a), &self.triangle(b), separation, goal)
-            }
-            PairKind::EdgeEdge => within(&self.edge(a), &self.edge(b), separation, goal),
-        }
-    }
 }

@@ -6,10 +6,9 @@ use std::sync::mpsc;
 
 use super::advance::Goal;
 use super::meetings::Meet;
-use super::query::decide_during;
 use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MIXED, MovingTree};
-use super::{Decided, DecidedBy, Separation};
+use super::{DecidedBy, Separation};
 use crate::Error;
 use crate::distance::PairKind;
 
@@ -246,6 +245,7 @@ impl PairSearch<'_> {
             b: &second.levels[number][b as usize],
             around_b: (!is_same).then(|| second.box_around(number, b)),
             margin: self.margin,
+            corners: (level == 0).then(|| [first.corners(a), second.corners(b)]),
         }
     }
 
@@ -283,7 +283,7 @@ impl PairSearch<'_> {
         } else {
             [a, b]
         };
-        if !self.step.may_pair(self.lists, a, b) {
+        if !self.step.may_pair_apart(self.lists, a, b) {
             return;
         }
         found.candidates += 1;
@@ -300,20 +300,6 @@ impl PairSearch<'_> {
         found.by_integers += u64::from(decided.by == DecidedBy::Exact);
         if decided.within {
             found.pairs.push([a, b]);
-        }
-    }
-}
-
-impl Step {
-    /// Decides a pair of features by their numbers in the common lists.
-    fn decide(&self, kind: PairKind, [a, b]: [u32; 2], separation: Separation, goal: Goal) -> Decided {
-        match kind {
-            PairKind::VertexVertex => decide_during(&self.vertex(a), &self.vertex(b), separation, goal),
-            PairKind::VertexEdge => decide_during(&self.vertex(a), &self.edge(b), separation, goal),
-            PairKind::VertexTriangle | PairKind::EdgeTriangle | PairKind::TriangleTriangle => {
-                decide_during(&self.vertex(a), &self.triangle(b), separation, goal)
-            }
-            PairKind::EdgeEdge => decide_during(&self.edge(a), &self.edge(b), separation, goal),
         }
     }
 }

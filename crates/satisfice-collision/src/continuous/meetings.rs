@@ -25,6 +25,8 @@ pub(super) struct Meet<'g> {
     /// The box around the second group; `None` if the groups are one.
     pub(super) around_b: Option<MovingBox>,
     pub(super) margin: f32,
+    /// The vertices of the features in both, a lane each; features that share one do not meet. `None` for groups of groups.
+    pub(super) corners: Option<[&'g [[u32; LANES]]; 2]>,
 }
 
 impl Meet<'_> {
@@ -77,10 +79,11 @@ impl simd::Work for Until<'_> {
             let lane = own.trailing_zeros() as usize;
             own &= own - 1;
             let grown = of.a.lane(lane).grown(of.margin);
-            let (mask, late) = row(s, of.b, &grown, until);
+            let mask = row(s, of.b, &grown, until);
+            let mask = without_neighbours(lanes, &of, lane, mask);
             meetings.masks[lane] = mask;
             // most meet from the start, and divisions are slow
-            if late != 0 {
+            if mask != 0 && mask & late(s, of.b, &grown) != 0 {
                 meetings.first[lane] = first(s, of.b, &grown);
             }
         }
@@ -93,13 +96,14 @@ impl simd::Work for Masks<'_> {
 
     #[inline(always)]
     fn run<L: simd::Lanes>(self, lanes: L) -> [u32; LANES] {
-        let (s, of) = (lanes.single(), self.0);
+        let (s, of) = (lanes.single(), &self.0);
         let mut masks = [0; LANES];
-        let mut own = own_lanes(s, &of, None);
+        let mut own = own_lanes(s, of, None);
         while own != 0 {
             let lane = own.trailing_zeros() as usize;
             own &= own - 1;
-            masks[lane] = row(s, of.b, &of.a.lane(lane).grown(of.margin), None).0;
+            let mask = row(s, of.b, &of.a.lane(lane).grown(of.margin), None);
+            masks[lane] = without_neighbours(lanes, of, lane, mask);
         }
         masks
     }
@@ -110,7 +114,7 @@ impl simd::Work for Candidates<'_> {
 
     #[inline(always)]
     fn run<L: simd::Lanes>(self, lanes: L) -> u32 {
-        row(lanes.single(), self.group, self.of, None).0
+        row(lanes.single(), self.group, self.of, None)
     }
 }
 
@@ -119,22 +123,36 @@ impl simd::Work for Candidates<'_> {
 fn own_lanes<F: Floats<Scalar = f32, Array = Eight>>(s: F, of: &Meet<'_>, until: Option<f32>) -> u32 {
     let all = (1 << of.lanes) - 1;
     match &of.around_b {
-        Some(around) => all & row(s, of.a, &around.grown(of.margin), until).0,
+        Some(around) => all & row(s, of.a, &around.grown(of.margin), until),
         None => all,
     }
 }
 
-/// The lanes of a group that are not apart from a box, a bit each, and those of them that are so at the start. Without a time, at both
-/// ends in the same order.
+/// The bits of a mask of the second group whose features share no vertex with the feature in a lane of the first.
+#[inline(always)]
+fn without_neighbours<L: simd::Lanes>(lanes: L, of: &Meet<'_>, lane: usize, mut mask: u32) -> u32 {
+    if let Some([a, b]) = of.corners
+        && mask != 0
+    {
+        for own in a {
+            for other in b {
+                mask &= !lanes.equal_ids(other, own[lane]);
+            }
+        }
+    }
+    mask
+}
+
+/// The lanes of a group that are not apart from a box until a time, a bit each. Without a time, at both ends in the same order.
 #[inline(always)]
 fn row<F: Floats<Scalar = f32, Array = Eight>>(
     s: F,
     group: &MovingGroup,
     of: &MovingBox,
     until: Option<f32>,
-) -> (u32, u32) {
+) -> u32 {
     let zero = s.splat(0.0);
-    let (mut apart, mut late) = (s.splat(-1.0), zero);
+    let mut apart = s.splat(-1.0);
     for k in 0..3 {
         for side in 0..2 {
             let [from, to] = gap(s, group, of, k, side);
@@ -144,11 +162,21 @@ fn row<F: Floats<Scalar = f32, Array = Eight>>(
             };
             // in this order an empty box, whose last gap is no number, is apart
             apart = s.max(s.min(last, from), apart);
-            late = s.max(from, late);
         }
     }
-    let mask = s.bits(s.at_most(apart, zero));
-    (mask, mask & s.bits(s.less(zero, late)))
+    s.bits(s.at_most(apart, zero))
+}
+
+/// The lanes that are apart at the start.
+#[inline(always)]
+fn late<F: Floats<Scalar = f32, Array = Eight>>(s: F, group: &MovingGroup, of: &MovingBox) -> u32 {
+    let mut late = s.splat(0.0);
+    for k in 0..3 {
+        for side in 0..2 {
+            late = s.max(gap(s, group, of, k, side)[0], late);
+        }
+    }
+    s.bits(s.less(s.splat(0.0), late))
 }
 
 /// Lower bounds of the times at which the boxes of a group first meet a box, where they do.

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::Moving;
-use super::tree::{BoxFrame, MIXED, MovingBox, MovingTree};
+use super::tree::{BoxFrame, MIXED, MovingTree};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::{Error, Mesh};
 
@@ -250,14 +250,24 @@ impl Step {
     /// and two vertices are not joined by an edge.
     #[inline]
     pub(super) fn may_pair(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
+        !self.share_a_vertex(lists, a, b) && self.bodies_collide(lists, a, b)
+    }
+
+    /// The same for two features that share no vertex.
+    #[inline]
+    pub(super) fn may_pair_apart(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
+        let are_vertices = lists == [FeatureList::Vertices; 2];
+        !(are_vertices && self.share_a_vertex(lists, a, b)) && self.bodies_collide(lists, a, b)
+    }
+
+    /// Whether two features are of different bodies or of one that collides with itself.
+    #[inline]
+    fn bodies_collide(&self, lists: [FeatureList; 2], a: u32, b: u32) -> bool {
         if self.is_one_deforming_body() {
-            return !self.share_a_vertex(lists, a, b);
-        }
-        let (body_a, body_b) = (self.feature(lists[0], a).body, self.feature(lists[1], b).body);
-        if body_a != body_b {
             return true;
         }
-        self.bodies[body_a as usize].collides_with_itself && !self.share_a_vertex(lists, a, b)
+        let (body_a, body_b) = (self.feature(lists[0], a).body, self.feature(lists[1], b).body);
+        body_a != body_b || self.bodies[body_a as usize].collides_with_itself
     }
 
     #[inline(always)]
@@ -296,21 +306,15 @@ impl Step {
                 (body.first[list as usize] as usize, rigid)
             });
             let bodies: Vec<(usize, u32)> = bodies.collect();
-            let vertices = frame.boxes(&self.from, &self.to);
-            let around =
-                |corners: &[u32]| MovingBox::around(corners.iter().map(|&corner| &vertices[corner as usize]));
             match list {
-                FeatureList::Vertices => {
-                    MovingTree::new(vertices.len(), |vertex| vertices[vertex as usize], &bodies)
+                FeatureList::Vertices => MovingTree::new(frame, self.from.len(), |v| [v], &bodies),
+                FeatureList::Edges => {
+                    MovingTree::new(frame, self.edges.len(), |e| self.edges[e as usize], &bodies)
                 }
-                FeatureList::Edges => MovingTree::new(
-                    self.edges.len(),
-                    |edge| around(&self.edges[edge as usize]),
-                    &bodies,
-                ),
                 FeatureList::Triangles => MovingTree::new(
+                    frame,
                     self.triangles.len(),
-                    |triangle| around(&self.triangles[triangle as usize]),
+                    |t| self.triangles[t as usize],
                     &bodies,
                 ),
             }

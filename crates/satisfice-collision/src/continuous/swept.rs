@@ -31,11 +31,11 @@ use super::vector::{along, cross, dot, largest, sub};
 use crate::distance::Point;
 
 /// 2^-53.
-const U: f64 = f64::EPSILON / 2.0;
+pub(super) const U: f64 = f64::EPSILON / 2.0;
 /// More than all underflows of a sum of products.
-const TINY: f64 = 1e-300;
+pub(super) const TINY: f64 = 1e-300;
 /// Sizes outside `[1 / RANGE, RANGE]` are left to integers.
-const RANGE: f64 = 1e250;
+pub(super) const RANGE: f64 = 1e250;
 /// How far on each side of a computed root of the volume its sign is examined.
 const WIDTHS: [f64; 7] = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 
@@ -253,6 +253,6 @@ fn lower_bound(n: Point, w: Point) -> f64 {
 
 /// `2^-e` for `2^e <= x < 2^(e + 1)`, a normal number within [`RANGE`].
 #[inline(always)]
-fn inverse_power_of_two(x: f64) -> f64 {
+pub(super) fn inverse_power_of_two(x: f64) -> f64 {
     f64::from_bits(0x7fe0_0000_0000_0000 - (x.to_bits() & 0x7ff0_0000_0000_0000))
 }

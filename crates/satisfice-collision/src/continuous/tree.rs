@@ -13,11 +13,13 @@ use crate::simd::Eight;
 /// Boxes of a group.
 pub(super) const LANES: usize = 8;
 
-/// Where the frame of the boxes lies.
-#[derive(Debug, Clone, Copy)]
+/// Where the frame of the boxes lies, and where the vertices are in it.
+#[derive(Debug)]
 pub(super) struct BoxFrame {
     centre: Point,
     scale: f64,
+    /// Of every vertex at both ends of the step; the fourth coordinate is 0.
+    paths: Vec<[[f32; 4]; 2]>,
 }
 
 /// A box at both ends of the step.
@@ -40,6 +42,9 @@ pub(super) struct MovingGroup {
 pub(super) struct MovingTree {
     /// The features in the order of the lowest level's lanes.
     pub(super) order: Vec<u32>,
+    /// The vertices of the features of each group, a lane each: as many arrays a group as a feature has vertices.
+    corners: Vec<[u32; LANES]>,
+    corners_per_feature: usize,
     /// From the groups of features to the root. A group's number is the number of its box one level higher.
     pub(super) levels: Vec<Vec<MovingGroup>>,
     /// For every group the rigid body that all its features belong to, or [`MIXED`]; empty if there is none.
@@ -54,31 +59,55 @@ impl BoxFrame {
         let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for p in from.iter().chain(to) {
             for k in 0..3 {
-                min[k] = min[k].min(p[k]);
-                max[k] = max[k].max(p[k]);
+                min[k] = if p[k] < min[k] { p[k] } else { min[k] };
+                max[k] = if p[k] > max[k] { p[k] } else { max[k] };
             }
         }
         // Halves first, so that nothing overflows.
         let size = (0..3).fold(0.0_f64, |size, k| size.max(0.5 * max[k] - 0.5 * min[k]));
-        Self {
+        let mut frame = Self {
             centre: std::array::from_fn(|k| 0.5 * min[k] + 0.5 * max[k]),
             scale: if size > 1e-300 { 1.0 / size } else { 1.0 },
-        }
+            paths: Vec::new(),
+        };
+        let ends = from.iter().zip(to);
+        frame.paths = ends.map(|(p, q)| [frame.local(p), frame.local(q)]).collect();
+        frame
     }
 
     /// A point in the frame: the exact value of each coordinate lies within one step of single precision of it, or two.
-    fn local(&self, p: Point) -> [f32; 3] {
-        std::array::from_fn(|k| ((0.5 * p[k] - 0.5 * self.centre[k]) * self.scale) as f32)
+    #[inline(always)]
+    fn local(&self, p: &Point) -> [f32; 4] {
+        let [x, y, z] = [0, 1, 2].map(|k| ((0.5 * p[k] - 0.5 * self.centre[k]) * self.scale) as f32);
+        [x, y, z, 0.0]
     }
 
-    /// The boxes around vertices at both ends of the step.
-    pub(super) fn boxes(&self, from: &[Point], to: &[Point]) -> Vec<MovingBox> {
-        let ends = from.iter().zip(to).map(|(&p, &q)| [self.local(p), self.local(q)]);
-        ends.map(|ends| MovingBox {
-            min: ends.map(|p| p.map(below)),
-            max: ends.map(|p| p.map(above)),
-        })
-        .collect()
+    /// Around these vertices at both ends of the step: the least and the greatest coordinates, as rounded.
+    #[inline(always)]
+    fn extent<const N: usize>(&self, corners: [u32; N]) -> [[[f32; 4]; 2]; 2] {
+        let mut min = self.paths[corners[0] as usize];
+        let mut max = min;
+        for corner in &corners[1..] {
+            let path = &self.paths[*corner as usize];
+            for end in 0..2 {
+                for k in 0..4 {
+                    min[end][k] = lesser(path[end][k], min[end][k]);
+                    max[end][k] = greater(path[end][k], max[end][k]);
+                }
+            }
+        }
+        [min, max]
+    }
+
+    /// A number for each axis that orders features as the middles of their boxes at half of the step are ordered, up to rounding.
+    #[inline(always)]
+    fn middle<const N: usize>(&self, corners: [u32; N]) -> [f32; 3] {
+        let [min, max] = self.extent(corners);
+        let mut middle = [0.0; 3];
+        for k in 0..3 {
+            middle[k] = (min[0][k] + max[0][k]) + (min[1][k] + max[1][k]);
+        }
+        middle
     }
 
     /// A distance in the frame, rounded up.
@@ -105,15 +134,6 @@ impl MovingBox {
         max: [[f32::NEG_INFINITY; 3]; 2],
     };
 
-    /// The box around several.
-    pub(super) fn around<'a>(boxes: impl IntoIterator<Item = &'a Self>) -> Self {
-        let mut all = Self::EMPTY;
-        for of in boxes {
-            all.include(of);
-        }
-        all
-    }
-
     fn include(&mut self, other: &Self) {
         for end in 0..2 {
             for k in 0..3 {
@@ -133,12 +153,6 @@ impl MovingBox {
             min: self.min.map(|p| p.map(|x| (x - margin).next_down())),
             max: self.max.map(|p| p.map(|x| (x + margin).next_up())),
         }
-    }
-
-    /// Four times the middle at half of the step.
-    fn middle(&self) -> [f32; 3] {
-        let sum = |end: usize, k: usize| self.min[end][k] + self.max[end][k];
-        std::array::from_fn(|k| sum(0, k) + sum(1, k))
     }
 
     /// Bounds of the times at which two boxes meet, or `None` if they are apart all the time.
@@ -177,6 +191,17 @@ impl MovingGroup {
         }
     }
 
+    /// Makes a lane the box around what has this extent before rounding.
+    #[inline(always)]
+    fn set_around(&mut self, lane: usize, [min, max]: &[[[f32; 4]; 2]; 2]) {
+        for end in 0..2 {
+            for k in 0..3 {
+                self.min[end][k][lane] = below(min[end][k]);
+                self.max[end][k][lane] = above(max[end][k]);
+            }
+        }
+    }
+
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> MovingBox {
         MovingBox {
@@ -196,22 +221,40 @@ impl MovingGroup {
 }
 
 impl MovingTree {
-    /// The tree over so many features with the boxes `of` them. `bodies` are where those of each body begin, and the body if it is rigid or [`MIXED`].
-    /// Features of a body stay together.
-    pub(super) fn new(count: usize, of: impl Fn(u32) -> MovingBox, bodies: &[(usize, u32)]) -> Self {
+    /// The tree over so many features with these `corners`. `bodies` are where those of each body begin, and the body if it is rigid or
+    /// [`MIXED`]. Features of a body stay together.
+    pub(super) fn new<const N: usize>(
+        frame: &BoxFrame,
+        count: usize,
+        corners: impl Fn(u32) -> [u32; N],
+        bodies: &[(usize, u32)],
+    ) -> Self {
         let mut order = Vec::with_capacity(count);
         let mut owners = Vec::new();
         let has_rigid = bodies.iter().any(|&(_, rigid)| rigid != MIXED);
         for (number, &(first, rigid)) in bodies.iter().enumerate() {
             let end = bodies.get(number + 1).map_or(count, |&(next, _)| next);
-            let middles = (first..end).map(|feature| of(feature as u32).middle());
+            let middles = (first..end).map(|feature| frame.middle(corners(feature as u32)));
             let within = order_by_median(middles, false);
             order.extend(within.into_iter().map(|feature| feature + first as u32));
             if has_rigid {
                 owners.resize(end, rigid);
             }
         }
-        let mut levels = vec![groups(order.iter().map(|&feature| of(feature)))];
+        let number = count.div_ceil(LANES).max(1);
+        let mut lowest = vec![MovingGroup::EMPTY; number];
+        let mut in_lanes = vec![[u32::MAX; LANES]; number * N];
+        let lanes = lowest.iter_mut().zip(in_lanes.chunks_exact_mut(N));
+        for ((group, in_lanes), features) in lanes.zip(order.chunks(LANES)) {
+            for (lane, &feature) in features.iter().enumerate() {
+                let corners = corners(feature);
+                group.set_around(lane, &frame.extent(corners));
+                for (lanes, corner) in in_lanes.iter_mut().zip(corners) {
+                    lanes[lane] = corner;
+                }
+            }
+        }
+        let mut levels = vec![lowest];
         while levels[levels.len() - 1].len() > 1 {
             let next = groups(levels[levels.len() - 1].iter().map(MovingGroup::union));
             levels.push(next);
@@ -223,7 +266,20 @@ impl MovingTree {
                 rigid.push(common(&rigid[level - 1]));
             }
         }
-        Self { order, levels, rigid }
+        Self {
+            order,
+            corners: in_lanes,
+            corners_per_feature: N,
+            levels,
+            rigid,
+        }
+    }
+
+    /// The vertices of the features of a group, a lane each.
+    #[inline(always)]
+    pub(super) fn corners(&self, group: u32) -> &[[u32; LANES]] {
+        let first = group as usize * self.corners_per_feature;
+        &self.corners[first..first + self.corners_per_feature]
     }
 
     /// The rigid body that all features of a group belong to, or [`MIXED`].

@@ -90,6 +90,10 @@ macro_rules! floats {
                 self.0.avx.$blend(other, then, equal)
             }
             #[inline(always)]
+            fn select(self, mask: $number, then: $number, other: $number) -> $number {
+                self.0.avx.$blend(other, then, mask)
+            }
+            #[inline(always)]
             fn less(self, x: $number, y: $number) -> $number {
                 self.0.avx.$compare::<_CMP_LT_OQ>(x, y)
             }
@@ -214,6 +218,14 @@ impl Lanes for V3 {
             self.avx2
                 ._mm256_permutevar8x32_epi32(pulp::cast(*from), order(mask)),
         );
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "bits")]
+    fn equal_ids(self, ids: &[u32; 8], id: u32) -> u32 {
+        let id = self.avx._mm256_set1_epi32(id as i32);
+        let equal = self.avx2._mm256_cmpeq_epi32(pulp::cast(*ids), id);
+        self.avx._mm256_movemask_ps(pulp::cast(equal)) as u32
     }
 
     #[inline(always)]

@@ -55,6 +55,8 @@ pub(crate) trait Floats: Copy {
         then: Self::Number,
         other: Self::Number,
     ) -> Self::Number;
+    /// `then` in the lanes of the mask, `other` elsewhere.
+    fn select(self, mask: Self::Mask, then: Self::Number, other: Self::Number) -> Self::Number;
     /// `x < y`; false for NaN.
     fn less(self, x: Self::Number, y: Self::Number) -> Self::Mask;
     /// `x <= y`; false for NaN.
@@ -89,6 +91,8 @@ pub(crate) trait Lanes: Copy + Send + Sync {
     fn compact(self, from: &Eight, mask: u32, to: &mut Eight);
     /// The same for feature numbers.
     fn compact_ids(self, from: &[u32; 8], mask: u32, to: &mut [u32; 8]);
+    /// The lanes of `ids` that are `id`, a bit each.
+    fn equal_ids(self, ids: &[u32; 8], id: u32) -> u32;
     /// `((point - origin) * scale) as f32`, with the components then taken in the order of `axes`.
     fn place(self, point: &[f64; 4], origin: &[f64; 4], scale: f64, axes: [u32; 4]) -> [f32; 4];
     /// Extends the bounds `[min, max]` to `point`.

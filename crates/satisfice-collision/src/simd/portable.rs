@@ -74,6 +74,16 @@ macro_rules! floats {
                 std::array::from_fn(|k| if x[k] == y[k] { then[k] } else { other[k] })
             }
             #[inline(always)]
+            fn select(self, mask: u32, then: Self::Number, other: Self::Number) -> Self::Number {
+                std::array::from_fn(|k| {
+                    if mask >> k & 1 == 1 {
+                        then[k]
+                    } else {
+                        other[k]
+                    }
+                })
+            }
+            #[inline(always)]
             fn less(self, x: Self::Number, y: Self::Number) -> u32 {
                 (0..$lanes).fold(0, |bits, k| bits | u32::from(x[k] < y[k]) << k)
             }
@@ -128,6 +138,11 @@ impl Lanes for Portable {
     #[inline(always)]
     fn compact_ids(self, from: &[u32; 8], mask: u32, to: &mut [u32; 8]) {
         compact(from, mask, to);
+    }
+
+    #[inline(always)]
+    fn equal_ids(self, ids: &[u32; 8], id: u32) -> u32 {
+        (0..8).fold(0, |bits, k| bits | u32::from(ids[k] == id) << k)
     }
 
     #[inline(always)]

@@ -21,7 +21,7 @@ struct AllAtOnce {
 }
 
 impl Work for AllAtOnce {
-    type Output = (u64, u64, [Eight; 3], u32, u32);
+    type Output = (u64, u64, [Eight; 3], u32, u32, u32);
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Self::Output {
@@ -42,6 +42,7 @@ impl Work for AllAtOnce {
             lanes.columns(&rows),
             lanes.closer([&b[0], &b[1], &b[2]], [0.1, 0.2, 0.3], 0.5),
             lanes.inside([&b[0], &b[1], &b[2]], [-0.7; 3], [0.6; 3]),
+            lanes.equal_ids(&b[0].map(|x| (x.abs() * 4.0) as u32), 2),
         )
     }
 }
