@@ -54,7 +54,7 @@ pub use skips::Skips;
 
 use crate::broad::{Method, Pair};
 use crate::distance::{self, PairKind, Proximity, Threshold};
-use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement, Shape};
+use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement};
 use body_tree::BodyTree;
 use changes::Log;
 use membership::Membership;
@@ -117,6 +117,19 @@ pub struct World {
     workspaces: Vec<Workspace>,
     /// The number of each body among those whose boxes changed last, by slot.
     numbers: Vec<u32>,
+}
+
+/// Refuses a feature that a body does not have.
+#[inline]
+fn exists(state: &State, kind: FeatureKind, feature: u32) -> Result<(), Error> {
+    if (feature as usize) < state.count(kind) {
+        return Ok(());
+    }
+    Err(Error::parameter(
+        "feature",
+        feature,
+        "a number of a feature of its body",
+    ))
 }
 
 /// There is no such body.
@@ -276,39 +289,45 @@ impl World {
     /// # Errors
     /// [`Error::Parameter`] if a body or a feature does not exist.
     pub fn proximity(&self, contact: Contact) -> Result<Proximity, Error> {
-        let [a, b] = self.shapes(contact)?;
-        Ok(distance::proximity(&a, &b))
+        for (body, kind, feature) in self.sides(contact) {
+            exists(self.known(body)?, kind, feature)?;
+        }
+        Ok(self.proximity_of(
+            [contact.body_a.slot, contact.body_b.slot],
+            Pair {
+                a: contact.a,
+                b: contact.b,
+            },
+        ))
     }
 
-    /// The distance of a contact, or of any pair of features, in the last frame: that of the [`proximity`](Self::proximity), faster.
+    /// Appends the distances of contacts, or of any pairs of features, in the last frame: those of their [proximities](Self::proximity), faster.
     ///
     /// # Errors
-    /// As [`World::proximity`].
-    pub fn contact_distance(&self, contact: Contact) -> Result<f64, Error> {
-        let [a, b] = self.shapes(contact)?;
-        Ok(distance::distance(&a, &b))
-    }
-
-    /// Both features in the world.
-    #[inline]
-    fn shapes(&self, contact: Contact) -> Result<[Shape; 2], Error> {
-        let (kind_a, kind_b) = self.feature_kinds();
-        for (body, kind, feature) in [
-            (contact.body_a, kind_a, contact.a),
-            (contact.body_b, kind_b, contact.b),
-        ] {
-            if feature as usize >= self.known(body)?.count(kind) {
-                return Err(Error::parameter(
-                    "feature",
-                    feature,
-                    "a number of a feature of its body",
+    /// As [`World::proximity`]; then the distances before the first contact that does not exist have been appended.
+    pub fn contact_distances(&self, contacts: &[Contact], distances: &mut Vec<f64>) -> Result<(), Error> {
+        for run in contacts.chunk_by(|one, next| (one.body_a, one.body_b) == (next.body_a, next.body_b)) {
+            let [(body_a, kind_a, _), (body_b, kind_b, _)] = self.sides(run[0]);
+            let (a, b) = (self.known(body_a)?, self.known(body_b)?);
+            for contact in run {
+                exists(a, kind_a, contact.a)?;
+                exists(b, kind_b, contact.b)?;
+                distances.push(distance::distance(
+                    &a.shape(kind_a, contact.a),
+                    &b.shape(kind_b, contact.b),
                 ));
             }
         }
-        Ok([
-            self.state(contact.body_a.slot).shape(kind_a, contact.a),
-            self.state(contact.body_b.slot).shape(kind_b, contact.b),
-        ])
+        Ok(())
+    }
+
+    /// Body, kind and number of both features.
+    fn sides(&self, contact: Contact) -> [(BodyId, FeatureKind, u32); 2] {
+        let (kind_a, kind_b) = self.feature_kinds();
+        [
+            (contact.body_a, kind_a, contact.a),
+            (contact.body_b, kind_b, contact.b),
+        ]
     }
 
     /// Distance and closest points; the features exist.

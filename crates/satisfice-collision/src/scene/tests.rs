@@ -161,9 +161,18 @@ fn queries_agree_with_the_complete_answer() {
                 .iter()
                 .map(|&contact| (world.proximity(contact).unwrap().distance, contact))
                 .collect();
-            for &(distance, contact) in &by_distance {
-                assert_eq!(world.contact_distance(contact).unwrap(), distance);
-            }
+            let (listed, mut measured): (Vec<_>, _) = (
+                by_distance.iter().map(|&(_, contact)| contact).collect(),
+                Vec::new(),
+            );
+            world.contact_distances(&listed, &mut measured).unwrap();
+            assert!(
+                measured
+                    .iter()
+                    .zip(&by_distance)
+                    .all(|(one, (other, _))| one == other)
+                    && measured.len() == listed.len()
+            );
             by_distance.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             for k in [0, 1, 7, 10_000] {
                 let closest: Vec<_> = world
