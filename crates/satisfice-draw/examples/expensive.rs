@@ -184,7 +184,7 @@ fn panel(evaluated: &[(Vec<f64>, f64)], delta: f64) -> Option<Map> {
                     levels: (-2..13).map(|k| 5.0 * f64::from(k)).collect(),
                 },
             },
-            marks("miss", Colour::White, 3.0, Marker::Cross, misses),
+            marks("miss", Colour::Black, 3.0, Marker::Cross, misses),
             marks("hit", Colour::Vermilion, 2.6, Marker::Disc, hits),
         ],
         ..Map::default()
