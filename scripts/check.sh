@@ -41,6 +41,10 @@ if rustup target list --installed 2> /dev/null | grep -q '^wasm32-unknown-unknow
   cargo check -p satisfice --quiet --no-default-features --target wasm32-unknown-unknown
 fi
 
+step "fuzz targets compile"
+# Their bodies run as tests (satisfice-collision, fuzz_targets and continuous). Without libFuzzer itself, which is C++ and is not linked here.
+CUSTOM_LIBFUZZER_PATH=./none.a cargo check --manifest-path fuzz/Cargo.toml --target-dir "${CARGO_TARGET_DIR:-target}" --locked --quiet
+
 step "every example ($profile)"
 # Of the whole workspace: with another choice of packages, libraries have other features and are compiled again.
 cargo build --workspace --examples --profile "$profile" --quiet
