@@ -243,6 +243,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         true
     }
 
+    /// Ends the slice where the time ended the search of the lanes: there is none left for probes. After other limits there is.
+    pub(super) fn end_if_late(&mut self) {
+        if self.progress.ended == Some(StopReason::Time) {
+            self.common.ledger.stop.get_or_insert(StopReason::Time);
+        }
+    }
+
     /// Settles a batch of probes.
     pub(super) fn settle_probes<P>(&mut self, problem: &P, observer: &mut dyn Observer<T>)
     where

@@ -417,3 +417,20 @@ fn tickets_can_move_to_another_thread() {
         .unwrap(),
     );
 }
+
+/// Whoever waits for answers looks at the time as well, and may do so before the search does.
+#[test]
+fn tickets_that_end_after_their_time_say_so() {
+    let time = core::time::Duration::from_millis(20);
+    for order in [Tickets::<Problem>::ordered, Tickets::<Problem>::eager] {
+        for islands in [1, 2] {
+            for (limit, reason) in [(time, StopReason::Time), (time * 10_000, StopReason::Cancelled)] {
+                let search = Search::new().seed(1).islands(islands);
+                let mut tickets = order(search, problem("square"), &Budget::time(limit)).unwrap();
+                assert!(!tickets.ask(2).is_empty());
+                std::thread::sleep(time);
+                assert_eq!(tickets.finish().stop_reason, reason, "{islands} islands");
+            }
+        }
+    }
+}

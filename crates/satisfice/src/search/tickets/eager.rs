@@ -456,7 +456,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
 
     /// Ends the slice. Its first engine continues in the next one, if that has one lane.
     pub(super) fn finish(mut self) -> Running<S, T> {
-        let _ = self.slice.ledger.is_over();
+        if !self.slice.ledger.is_over() {
+            self.slice.ledger.give_up();
+        }
         let mut slice = Some(self.slice);
         let running = |lane: EagerLane<S>| {
             let slice = slice.take()?;

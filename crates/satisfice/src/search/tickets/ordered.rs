@@ -316,9 +316,17 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         let Running { lanes, exchange } = &mut self.running;
         let over = lanes.iter_mut().all(|lane| lane.slice.ledger.is_over());
         match exchange {
-            // What the lanes have found since their last exchange.
-            Some(exchange) if exchange.is_searching() && over => exchange.between_rounds(lanes, &mut ()),
-            Some(exchange) if exchange.is_searching() => self.running.end(StopReason::Cancelled),
+            Some(exchange) if exchange.is_searching() && over => {
+                // What the lanes have found since their last exchange.
+                exchange.between_rounds(lanes, &mut ());
+                exchange.end_if_late();
+            }
+            Some(exchange) if exchange.is_searching() => {
+                lanes.iter_mut().for_each(|lane| lane.slice.ledger.give_up());
+                let reason = lanes.first().and_then(|lane| lane.slice.ledger.stop);
+                self.running.end(reason.unwrap_or(StopReason::Cancelled));
+            }
+            None if !over => lanes.iter_mut().for_each(|lane| lane.slice.ledger.give_up()),
             _ => {}
         }
         self.running
