@@ -253,25 +253,32 @@ fn two_times_of_an_animation_are_a_step() {
         "v 0 0 -0.25\nv 1 0 -0.25\nv 0 1 -0.25\nf 1 2 3\n",
     )
     .unwrap();
-    for (call, time) in [
-        ("scene.gltf --from 0.5s --to 1.5s --threshold 0", 0.5),
-        ("--from 500ms --to 2s scene.gltf --threshold 0", 1.0 / 3.0),
+    for (call, time, seconds) in [
+        ("scene.gltf --from 0.5s --to 1.5s --threshold 0", 0.5, 1.0),
+        ("--from 500ms --to 2s scene.gltf --threshold 0", 1.0 / 3.0, 1.0),
         (
             "scene.gltf --from 0 --to 2s --threshold 0.25 --animation fall",
             0.375,
+            0.75,
         ),
         (
             "scene.gltf below.obj --from 1.25s --to 2s --threshold 0 --at lid:0,0,0.125",
             1.0 / 6.0,
+            1.375,
         ),
         // Backwards, from below.
-        ("scene.gltf --from 1.5s --to 0.5s --threshold 0", 0.5),
+        ("scene.gltf --from 1.5s --to 0.5s --threshold 0", 0.5, 1.0),
     ] {
         let report = report(&folder, &format!("collide {call} --first"));
         let [low, high] = bounds(&report["first_impact"]["time"]);
         assert!(
             low <= time + 1e-9 && time - 1e-9 <= high && high - low <= 1e-6,
             "{call}: {low} {high}"
+        );
+        let [early, late] = bounds(&report["first_impact"]["seconds"]);
+        assert!(
+            (early - seconds).abs() < 3e-6 && (late - seconds).abs() < 3e-6,
+            "{call}: {early} s {late} s"
         );
         assert_eq!(report["bodies"][1]["name"], "lid", "{call}");
     }
@@ -280,6 +287,10 @@ fn two_times_of_an_animation_are_a_step() {
     assert!(
         done.stdout
             .contains("  step          from 0.5 s to 1.5 s of the animation\n")
+            && done
+                .stdout
+                .contains(" of the step, at 1 s of the animation, that is proved\n")
+            && done.stdout.contains("at 0.5 (1 s)\n")
             && done.stdout.contains("  bodies        floor - lid\n"),
         "{}",
         done.stdout

@@ -28,6 +28,14 @@ pub(super) struct Times {
     animations: Vec<String>,
 }
 
+impl Times {
+    /// The time of the animations at a part of the step, in seconds.
+    pub(super) fn at(&self, part: f64) -> f64 {
+        let [from, to] = self.seconds;
+        from * (1.0 - part) + to * part
+    }
+}
+
 impl Ends {
     pub(super) fn of_arguments(arguments: &CollideArguments) -> anyhow::Result<Self> {
         let CollideArguments { from, to, .. } = arguments;

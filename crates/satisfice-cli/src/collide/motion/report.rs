@@ -23,6 +23,9 @@ use super::frames::Frames;
 pub(super) struct FirstImpact {
     /// A lower and an upper bound of its time, as parts of the step; `[1, 1]` if nothing comes near.
     pub(super) time: [f64; 2],
+    /// The same in seconds of the animations, rounded, where the ends of the step are times of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) seconds: Option<[f64; 2]>,
     /// Whether the bounds are final: within a millionth of the step, or nothing comes near.
     pub(super) proved: bool,
 }
@@ -94,6 +97,7 @@ impl<'a> MotionReport<'a> {
             unseen_method: proved.then_some(Estimate::Proved),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         };
+        let times = frames.request.ends.times();
         let bodies = found.pairs.iter().map(|hit| {
             let [a, b] = [hit.contact.a.body as usize, hit.contact.b.body as usize];
             [a.min(b), a.max(b)]
@@ -102,7 +106,11 @@ impl<'a> MotionReport<'a> {
             touching: bodies.collect(),
             head,
             pairs: found.pairs,
-            first_impact: found.first.map(|(time, proved)| FirstImpact { time, proved }),
+            first_impact: found.first.map(|(time, proved)| FirstImpact {
+                time,
+                seconds: times.map(|times| time.map(|part| times.at(part))),
+                proved,
+            }),
             frames,
         }
     }

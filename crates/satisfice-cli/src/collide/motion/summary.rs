@@ -7,7 +7,7 @@ use satisfice_collision::FeatureKind;
 use super::super::digits::digits;
 use super::super::pairs::Side;
 use super::super::summary::{Lines, SHOWN_PAIRS, body_names, elapsed};
-use super::report::MotionReport;
+use super::report::{FirstImpact, MotionReport};
 
 pub(super) fn summary(report: &MotionReport<'_>) -> String {
     let head = &report.head;
@@ -44,7 +44,7 @@ pub(super) fn summary(report: &MotionReport<'_>) -> String {
         let (kind_a, kind_b) = kind.features();
         let when = match (line.at_start, line.time) {
             (Some(true), _) => "at the start".to_owned(),
-            (_, Some(time)) => format!("at {}", moment(time[0])),
+            (_, Some(time)) => format!("at {}", moment(report, time[0])),
             _ => "at a time that was not computed".to_owned(),
         };
         let pair = format!(
@@ -90,16 +90,8 @@ pub(super) fn first_impact(report: &MotionReport<'_>) -> Option<String> {
     Some(match (first.proved, found) {
         (true, false) => "none: the step is free, that is proved".to_owned(),
         (true, true) if high == 0.0 => "at the start, that is proved".to_owned(),
-        (true, true) => format!(
-            "between {} and {} of the step, that is proved",
-            bound(low, Towards::Below),
-            bound(high, Towards::Above)
-        ),
-        (false, true) => format!(
-            "between {} and {} of the step so far; an earlier one may exist",
-            bound(low, Towards::Below),
-            bound(high, Towards::Above)
-        ),
+        (true, true) => format!("{}, that is proved", bounds(first)),
+        (false, true) => format!("{} so far; an earlier one may exist", bounds(first)),
         (false, false) if report.head.stop_reason == StopReason::Covered => "none".to_owned(),
         (false, false) => format!(
             "not before {} of the step; none found so far",
@@ -108,9 +100,26 @@ pub(super) fn first_impact(report: &MotionReport<'_>) -> Option<String> {
     })
 }
 
-/// A time as a part of the step.
-fn moment(time: f64) -> String {
-    digits(time)
+/// A time as a part of the step, and in seconds where the ends of the step are times of animations.
+fn moment(report: &MotionReport<'_>, time: f64) -> String {
+    match report.frames.request.ends.times() {
+        Some(times) => format!("{} ({} s)", digits(time), digits(times.at(time))),
+        None => digits(time),
+    }
+}
+
+/// Two bounds of a time of the step, and in seconds where they are known.
+fn bounds(first: FirstImpact) -> String {
+    let [low, high] = first.time;
+    let parts = format!(
+        "between {} and {} of the step",
+        bound(low, Towards::Below),
+        bound(high, Towards::Above)
+    );
+    match first.seconds {
+        Some([_, late]) => format!("{parts}, at {} s of the animation", digits(late)),
+        None => parts,
+    }
 }
 
 /// Where a bound may be rounded to.
