@@ -302,4 +302,19 @@ fn two_bodies_of_one_name_are_told_apart() {
         names("collide one/ball.obj one/ball.obj --threshold 0.1"),
         ["one/ball.obj#0", "one/ball.obj#1"]
     );
+    fs::copy(
+        folder.path().join("one/ball.obj"),
+        folder.path().join("one/egg.obj"),
+    )
+    .unwrap();
+    assert_eq!(
+        names("collide one/ball.obj one/egg.obj --at egg:0,0,1 --at one/ball.obj:0,0,1 --threshold 0.1"),
+        ["ball.obj", "egg.obj"],
+        "no folders where files have names of their own"
+    );
+    let line = error_in(
+        folder.path(),
+        "collide one/ball.obj two/ball.obj --threshold 0.1 --at ball:0,0,1",
+    );
+    assert!(line.contains("bodies 0 and 1 are called so"), "{line}");
 }

@@ -9,6 +9,7 @@ use satisfice_collision::io::{self, AnimatedScene, Format, PlacedMesh};
 use satisfice_collision::{Error, Mesh};
 use serde::{Deserialize, Serialize};
 
+use super::names::Names;
 use super::weld;
 
 /// What a mesh from standard input is called.
@@ -138,30 +139,19 @@ impl Inputs {
             .into_iter()
             .flat_map(|(path, bodies)| bodies.into_iter().map(move |body| (path.clone(), body)))
             .collect();
-        let stems: Vec<String> = files.iter().map(|(_, body)| body.name.clone()).collect();
-        for (path, body) in &mut files {
-            // A mesh is called like its file, a body of a scene as the scene calls it.
-            if Format::of_path(&*path).is_ok_and(|format| !format.is_scene()) {
-                body.name = path.display().to_string();
-            }
-        }
+        let names = Names::of(&files);
         for at in &self.at {
-            place(at, &stems, &mut files)?;
+            let body = &mut files[names.find(&at.body)?].1;
+            *body = body.moved(at.to, at.turn, at.scale)?;
         }
-        let several_of_one_name = repeated(&files);
         files
             .into_iter()
-            .enumerate()
-            .map(|(number, (file, body))| {
-                let mesh = body.placed().with_context(|| body.name.clone())?;
+            .zip(names.into_vec())
+            .map(|((file, body), name)| {
+                let mesh = body.placed().with_context(|| name.clone())?;
                 let mesh = match self.weld {
                     Some(distance) => Arc::new(weld::welded(&mesh, distance)?),
                     None => mesh,
-                };
-                // Two files of one name in two folders.
-                let name = match several_of_one_name.contains(&body.name) {
-                    true => format!("{}#{number}", body.name),
-                    false => body.name,
                 };
                 Ok(NamedBody { name, file, mesh })
             })
@@ -179,37 +169,6 @@ impl Inputs {
             _ => Ok(()),
         }
     }
-}
-
-/// Places the body of this name, with or without the extension of its file, or number.
-fn place(at: &At, stems: &[String], bodies: &mut [(PathBuf, PlacedMesh)]) -> anyhow::Result<()> {
-    let named = bodies.iter().position(|(_, body)| body.name == at.body);
-    let named = named.or_else(|| stems.iter().position(|stem| *stem == at.body));
-    let numbered = at.body.parse().ok().filter(|number| *number < bodies.len());
-    let Some(number) = named.or(numbered) else {
-        bail!(
-            "--at {}: there is no such body; name one of 0 to {} or by its name, e.g. {}",
-            at.body,
-            bodies.len().saturating_sub(1),
-            bodies.first().map_or("", |(_, body)| &body.name)
-        );
-    };
-    let body = &mut bodies[number].1;
-    *body = body.moved(at.to, at.turn, at.scale)?;
-    Ok(())
-}
-
-/// The names that several bodies have.
-fn repeated(bodies: &[(PathBuf, PlacedMesh)]) -> Vec<String> {
-    let mut names: Vec<&String> = bodies.iter().map(|(_, body)| &body.name).collect();
-    names.sort_unstable();
-    let mut repeated: Vec<String> = names
-        .windows(2)
-        .filter(|pair| pair[0] == pair[1])
-        .map(|pair| pair[0].clone())
-        .collect();
-    repeated.dedup();
-    repeated
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod files;
 pub(crate) mod inputs;
 mod memory;
 mod motion;
+mod names;
 mod overlaps;
 mod page;
 mod pairs;
