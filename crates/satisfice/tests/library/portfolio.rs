@@ -100,6 +100,30 @@ fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {
 /// The model of F costs a hundred times the time of other sources. Where it predicts nothing it is asked a few dozen times, whatever the
 /// others find; where it predicts F, most candidates are its own.
 #[test]
+fn the_search_goes_first_where_there_is_time_to_enumerate() {
+    // A ring of 2 % of the points. An enumeration comes by half of it after half of the points, whenever it begins.
+    let space = Space::lattice(2, 400).unwrap();
+    let ring = |x: &[f64]| ((x[0] - 200.0).hypot(x[1] - 160.0) - 100.0).abs();
+    for (seed, budget) in [
+        (1, Budget::millis(3_600_000)),
+        (2, Budget::evaluations(10_000_000)),
+    ] {
+        let report = Search::new()
+            .seed(seed)
+            .run(&from_fn(space.clone(), 2.5, ring).boxed(), &budget)
+            .unwrap();
+        assert_eq!(report.completeness, Completeness::Proved, "{report}");
+        assert!(report.counts.evaluations < 170_000, "{report}");
+        let half = report.hits().nth(report.hit_count() / 2).unwrap();
+        assert!(
+            half.evaluation < 16_000,
+            "half of the hits after {} evaluations",
+            half.evaluation
+        );
+    }
+}
+
+#[test]
 fn a_model_that_predicts_nothing_is_not_asked_for_long() {
     let asked = |delta: f64, fitness: fn(&[f64]) -> f64| {
         let problem = from_fn(Space::lattice(6, 10).unwrap(), delta, fitness).boxed();

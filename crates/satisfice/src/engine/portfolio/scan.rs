@@ -9,6 +9,10 @@ use crate::space::Space;
 /// Lattices of at most this many points are enumerated from the start.
 const SMALL: u64 = 4096;
 
+/// A search is stale when it has gone without a new hit for as long as an enumeration takes to meet this many, by the hits known:
+/// a search that still finds has such pauses, too.
+const PATIENCE: u64 = 16;
+
 /// Goes through all points of a lattice once, in its order, from a random point on, so that the lanes of a search begin at
 /// different ones.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -19,6 +23,9 @@ pub(super) struct Scan {
     next: u64,
     passed: u64,
     started: bool,
+    /// Hits known, and the evaluation at which the last of them was new.
+    hits: usize,
+    latest: u64,
     /// Whether nothing but this enumeration goes on.
     alone: bool,
 }
@@ -43,10 +50,9 @@ impl Scan {
         self.points > 0 && self.passed == self.points
     }
 
-    /// Whether the rest of the lattice is to be enumerated now, with nothing beside: it is small, or mostly visited, or takes as
-    /// many evaluations as the budget has left, of which `reserve` is the share that is not the engine's.
-    ///
-    /// Under a limit of time alone, the rest is enumerated as soon as it fits, at the pace so far.
+    /// Whether the rest of the lattice is to be enumerated now, with nothing beside. It has to fit into what the budget has left, of
+    /// which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace so far. And it has to be due:
+    /// the lattice is small, or mostly visited, or soon it would no longer fit, or the search finds no more than it would.
     pub(super) fn goes_alone<S: Real>(
         &mut self,
         context: &dyn Context<S>,
@@ -62,17 +68,28 @@ impl Scan {
             .unvisited()
             .unwrap_or(self.points)
             .min(self.points - self.passed) as f64;
-        let (made, used) = (context.evaluations() as f64, context.elapsed_share());
+        let (made, used) = (context.evaluations(), context.elapsed_share());
+        let due = self.points <= SMALL || visited.is_dense() || self.search_is_stale(made, context.hits());
         self.alone = if let Some(planned) = context.evaluations_planned() {
             let room = planned as f64 * (1.0 - reserve) - 1.0;
-            let pressed = rest + 2.0 * batch as f64 > room;
-            rest <= room && (self.points <= SMALL || visited.is_dense() || pressed)
+            rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
-            rest * used <= (1.0 - used) * made
+            let (takes, left) = (rest * used, (1.0 - used) * made as f64);
+            takes <= left && (due || takes > left / 2.0)
         } else {
             self.points <= SMALL
         };
         self.alone
+    }
+
+    /// Whether an enumeration promises as much as the search now does: by what it last found, or because half of the points are
+    /// visited anyway.
+    fn search_is_stale(&mut self, made: u64, hits: usize) -> bool {
+        if hits > self.hits {
+            (self.hits, self.latest) = (hits, made);
+        }
+        let wait = self.points / (hits as u64 + 1) * PATIENCE;
+        made.saturating_sub(self.latest) > wait || made > self.points / 2
     }
 
     /// Writes the next point that is not remembered as visited; `false` at the end.
