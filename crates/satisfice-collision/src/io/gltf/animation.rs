@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::buffers::Buffers;
 use super::document::{self, Document};
-use super::{NAME, malformed, nodes};
+use super::{NAME, malformed};
 use crate::error::Error;
 use crate::io::animated::Play;
 
@@ -40,14 +40,6 @@ enum Interpolation {
     CubicSpline,
 }
 
-/// The name of an animation, or its number.
-pub(super) fn name(document: &Document, index: usize) -> String {
-    match &document.animations[index].name {
-        Some(name) if !name.is_empty() => name.replace(char::is_control, "\u{fffd}"),
-        _ => index.to_string(),
-    }
-}
-
 impl Motion {
     pub(super) fn read(
         document: &Document,
@@ -56,7 +48,7 @@ impl Motion {
     ) -> Result<Self, Error> {
         let mut motion = Self::default();
         for (index, animation) in document.animations.iter().enumerate() {
-            let name = name(document, index);
+            let name = document.animation_name(index);
             if play.has(&name) {
                 for channel in &animation.channels {
                     motion
@@ -110,20 +102,20 @@ impl Motion {
                 put
             }
             "weights" => {
-                let node = nodes::name(document, node);
+                let node = document.node_name(node);
                 return unsupported(format!(
                     "morph targets are not supported, and {node} has moving ones; apply them before the export"
                 ));
             }
             other => return Err(malformed(format!("{other:?} is no property of a node"))),
         };
-        let node = nodes::name(document, node);
+        let node = document.node_name(node);
         match before {
             Some(before) if before == index => {
                 return Err(malformed(format!("it sets the {path} of {node} twice")));
             }
             Some(before) => {
-                let before = name(document, before);
+                let before = document.animation_name(before);
                 return unsupported(format!(
                     "the animation {before} sets the {path} of {node} as well; choose one of them by its name"
                 ));

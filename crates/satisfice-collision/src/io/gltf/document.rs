@@ -29,6 +29,30 @@ pub(super) struct Document {
     pub(super) extensions_required: Vec<String>,
 }
 
+impl Document {
+    /// The name of a node, or of its mesh, or its number.
+    pub(super) fn node_name(&self, index: usize) -> String {
+        let node = &self.nodes[index];
+        let mesh = node.mesh.and_then(|mesh| self.meshes.get(mesh));
+        let given = node
+            .name
+            .as_deref()
+            .or_else(|| mesh.and_then(|mesh| mesh.name.as_deref()));
+        printable(given).unwrap_or_else(|| format!("node {index}"))
+    }
+
+    /// The name of an animation, or its number.
+    pub(super) fn animation_name(&self, index: usize) -> String {
+        printable(self.animations[index].name.as_deref()).unwrap_or_else(|| index.to_string())
+    }
+}
+
+/// A name as it can be printed: control characters could change what is seen on a terminal.
+fn printable(name: Option<&str>) -> Option<String> {
+    let name = name.filter(|name| !name.is_empty())?;
+    Some(name.replace(char::is_control, "\u{fffd}"))
+}
+
 #[derive(Deserialize)]
 pub(super) struct Asset {
     pub(super) version: String,

@@ -59,7 +59,7 @@ fn parse(bytes: &[u8], folder: &Folder, play: Play<'_>) -> Result<Box<dyn Frames
     let mut meshes: Vec<Option<Option<Arc<Mesh>>>> = document.meshes.iter().map(|_| None).collect();
     for index in nodes::with_meshes(&document)? {
         read_mesh(&document, &document.nodes[index], &mut buffers, &mut meshes)
-            .map_err(|error| error.in_body(nodes::name(&document, index)))?;
+            .map_err(|error| error.in_body(document.node_name(index)))?;
     }
     let motion = Motion::read(&document, &mut buffers, play)?;
     // They may hold the data of the file as text.
@@ -180,7 +180,7 @@ struct Scene {
 impl Frames for Scene {
     fn animations(&self) -> Vec<String> {
         (0..self.document.animations.len())
-            .map(|index| animation::name(&self.document, index))
+            .map(|index| self.document.animation_name(index))
             .collect()
     }
 
@@ -197,7 +197,7 @@ impl Frames for Scene {
             let Some(shape) = mesh.and_then(|mesh| self.meshes[mesh].as_ref()) else {
                 continue;
             };
-            let name = nodes::name(&self.document, index);
+            let name = self.document.node_name(index);
             let (mesh, placement) = instances
                 .instance(shape, &transform)
                 .map_err(|error| error.in_body(name.clone()))?;

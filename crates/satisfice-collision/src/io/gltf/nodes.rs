@@ -45,7 +45,7 @@ fn walk(
         let node = nodes.get(index).ok_or_else(|| no_node(index))?;
         let transform = local(index, node)
             .and_then(|local| local.then(&parent))
-            .map_err(|error| error.in_body(name(document, index)))?;
+            .map_err(|error| error.in_body(document.node_name(index)))?;
         if node.mesh.is_some() {
             placed.push((index, transform));
         }
@@ -55,21 +55,6 @@ fn walk(
         }
     }
     Ok(placed)
-}
-
-/// The name of a node, or of its mesh, or its number.
-pub(super) fn name(document: &Document, index: usize) -> String {
-    let node = &document.nodes[index];
-    let mesh = node.mesh.and_then(|mesh| document.meshes.get(mesh));
-    let given = node
-        .name
-        .as_ref()
-        .or_else(|| mesh.and_then(|mesh| mesh.name.as_ref()));
-    match given {
-        // Names are printed: control characters could change what is seen on a terminal.
-        Some(name) if !name.is_empty() => name.replace(char::is_control, "\u{fffd}"),
-        _ => format!("node {index}"),
-    }
 }
 
 /// The roots of the default scene, or of the first one; without scenes all nodes that are no children.
