@@ -25,7 +25,7 @@ CARGO_TARGET_DIR=$target RUSTFLAGS="${RUSTFLAGS:-}" "$python" -m maturin build -
 "$python" -m pip install --quiet --disable-pip-version-check "$target"/wheels-python/*.whl
 
 if [ "${FULL:-0}" = 1 ]; then
-  cargo clippy --quiet -- -D warnings
+  CARGO_TARGET_DIR=$target cargo clippy --quiet -- -D warnings
   "$python" -m mypy --strict -p satisfice
   "$python" -m mypy.stubtest satisfice._satisfice
   "$python" -m abi3audit --strict "$target"/wheels-python/*.whl

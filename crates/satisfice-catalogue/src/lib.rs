@@ -13,6 +13,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod axes;
 pub mod catalogue;
 pub mod checkpoint;
 mod control;

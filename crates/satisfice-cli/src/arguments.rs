@@ -84,7 +84,8 @@ Examples:
   satisfice run --worker './simulator --serve' --space space.toml --threshold 0.1 --time 8h --workers 4 --timeout 10min
       Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2]} and answers {\"ticket\": 7, \"value\": 0.3},
       or {\"ticket\": 7, \"error\": \"why not\"}, line by line. space.toml has a table [[axis]] for each coordinate, with
-      lower and upper, integer = true, or categories = [\"a\", \"b\"], and a name; separation = 0.1 makes nearer hits one.
+      lower and upper (and integer, logarithmic or periodic = true), or categories = [\"a\", \"b\"], or permutation = 5 for an order
+      of five, and a name; separation = 0.1 makes nearer hits one.
 
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {

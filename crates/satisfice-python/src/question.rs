@@ -1,8 +1,9 @@
 //! A function of Python as a problem: its space and what a hit is.
 
 use pyo3::prelude::*;
+use satisfice::Search;
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
-use satisfice::{Axis, Search, Space};
+use satisfice_catalogue::axes::{self, AxisEntry};
 use satisfice_catalogue::{RunSpec, Settings};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -17,8 +18,9 @@ pub(crate) type Function = FnProblem<f64, fn(&[f64]) -> f64>;
 #[derive(Clone, FromPyObject, Serialize, Deserialize)]
 #[pyo3(from_item_all)]
 pub(crate) struct Question {
-    /// Lower and upper end of each axis, and whether it is one of integers.
-    axes: Vec<(f64, f64, bool)>,
+    /// The axes and permutations, as JSON.
+    #[pyo3(from_py_with = entries)]
+    axes: Vec<AxisEntry>,
     delta: f64,
     separation: Option<Vec<f64>>,
     /// Points to evaluate first.
@@ -30,22 +32,11 @@ pub(crate) struct Question {
 
 impl Question {
     pub(crate) fn dimension(&self) -> usize {
-        self.axes.len()
+        self.axes.iter().map(AxisEntry::len).sum()
     }
 
     pub(crate) fn problem(&self) -> PyResult<Function> {
-        let axes = self.axes.iter().map(|&(lower, upper, integer)| {
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "Python has checked that they are whole and small"
-            )]
-            if integer {
-                Axis::integer(lower as i64, upper as i64)
-            } else {
-                Axis::continuous(lower, upper)
-            }
-        });
-        let space = Space::new(axes).map_err(refused)?;
+        let space = axes::space(&self.axes).map_err(refused)?;
         let problem = evaluated_elsewhere(space, self.delta);
         match &self.separation {
             None => Ok(problem.separation(0.0)),
@@ -73,4 +64,8 @@ impl Question {
         spec.problem_parameters = settings;
         Ok(())
     }
+}
+
+fn entries(axes: &Bound<'_, PyAny>) -> PyResult<Vec<AxisEntry>> {
+    serde_json::from_str(axes.extract()?).map_err(refused)
 }

@@ -59,6 +59,34 @@ def test_integers_and_categories():
     assert report.to_dict()["problem_parameters"]["categories"] == {"2": ["red", "green"]}
 
 
+def test_logarithmic_and_periodic_axes():
+    def f(x):
+        return abs(np.log10(x[0]) + 4) + abs((x[1] + 180) % 360 - 180)
+
+    report = satisfice.find(
+        f, [(1e-6, 1.0), (0, 360)], delta=0.5, logarithmic=[True, False], periodic=[False, True], separation=[0.1, 0.1],
+        evaluations=3000, seed=1,
+    )  # fmt: skip
+    assert report.hits > 20 and (report.fun < 0.5).all()
+    assert report.x[:, 1].min() < 0.5 and report.x[:, 1].max() > 359.5, "both sides of north"
+    said = report.to_dict()["problem_parameters"]
+    assert (said["logarithmic"], said["periodic"]) == ([True, False], [False, True])
+    # Uniform points: half of them lie below the geometric mean.
+    points = satisfice.Search([(1e-6, 1.0)], delta=0.5, logarithmic=True, evaluations=400, engine="random", seed=1).ask(400).x
+    assert 150 < (points < 1e-3).sum() < 250
+
+
+def test_permutations():
+    def f(x):
+        order = list(x[1:])
+        assert sorted(order) == [0, 1, 2, 3]
+        return sum(place != want for place, want in zip(order, [2, 0, 3, 1], strict=True)) + abs(x[0])
+
+    report = satisfice.find(f, [(-1, 1)] + [None] * 4, delta=0.5, permutations=[range(1, 5)], separation=0.1, evaluations=3000, seed=1)
+    assert report.hits > 3 and {tuple(x) for x in report.x[:, 1:]} == {(2, 0, 3, 1)}
+    assert report.to_dict()["problem_parameters"]["permutations"] == [[1, 2, 3, 4]]
+
+
 def test_an_all_integer_space_is_covered():
     report = satisfice.find(lambda x: x.sum(), [(0, 30)] * 2, delta=3, integrality=True, evaluations=5000, seed=1)
     assert sorted(map(tuple, report.x)) == [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (2, 0)]
@@ -209,6 +237,12 @@ def test_islands():
         ({"bounds": [(0, 1.5)], "integrality": True}, ValueError, "whole ends"),
         ({"integrality": [True]}, ValueError, "1 entries for 2 axes"),
         ({"categories": {7: ["a"]}}, ValueError, "axis 7"),
+        ({"logarithmic": True}, ValueError, "lower bound above 0"),
+        ({"periodic": [True]}, ValueError, "periodic has 1 entries"),
+        ({"permutations": [[1, 0]]}, ValueError, "follow each other"),
+        ({"permutations": [[]]}, ValueError, "empty group"),
+        ({"permutations": [[0, 1]], "categories": {1: "ab"}}, ValueError, "axis 1 is named twice"),
+        ({"categories": {1: "ab"}, "periodic": [False, True]}, ValueError, "cannot be periodic"),
         ({"delta": None}, ValueError, "delta is missing"),
         ({"delta": float("nan")}, ValueError, "NaN"),
         ({"separation": 0}, ValueError, "separation"),

@@ -26,7 +26,7 @@ use crate::summary::show;
 use crate::{interrupt, message};
 
 use evaluator::{Evaluator, Failure, Task, Way};
-use space::{SpaceFile, Widths};
+use space::SpaceFile;
 use template::{Template, split};
 
 /// How often the search looks for Ctrl-C and for its time while it waits for values.
@@ -121,10 +121,9 @@ fn check(arguments: &RunArguments) -> anyhow::Result<()> {
 
 fn problem(space: &SpaceFile, threshold: f64) -> anyhow::Result<Problem> {
     let problem = evaluated_elsewhere(space.space()?, threshold).named("program");
-    Ok(match &space.separation {
+    Ok(match space.radii()? {
         None => problem.separation(0.0),
-        Some(Widths::Same(radius)) => problem.separations(&vec![*radius; space.axes.len()])?,
-        Some(Widths::PerAxis(radii)) => problem.separations(radii)?,
+        Some(radii) => problem.separations(&radii)?,
     })
 }
 

@@ -1,4 +1,4 @@
-//! The command line of a program, with places for coordinates.
+//! The command line of a program, with places for coordinates: `{x}` for all, `{NAME}` for those of an axis or permutation.
 
 use anyhow::bail;
 
@@ -35,9 +35,7 @@ impl Template {
 
     /// Checks that some coordinate is asked for, and none that there is not.
     fn check(&self, space: &SpaceFile) -> anyhow::Result<()> {
-        let known: Vec<String> = (0..space.axes.len())
-            .map(|axis| format!("{{{}}}", space.name(axis)))
-            .collect();
+        let known: Vec<String> = space.places().map(|(name, _)| format!("{{{name}}}")).collect();
         let mut any = false;
         for word in &self.words {
             any |= word.contains(ALL) || known.iter().any(|place| word.contains(place));
@@ -71,34 +69,29 @@ impl Template {
 
     /// The program and its arguments for one point.
     pub(crate) fn words(&self, point: &[f64], space: &SpaceFile) -> Vec<String> {
-        let texts: Vec<String> = point
-            .iter()
-            .enumerate()
-            .map(|(axis, &value)| space.text(axis, value))
-            .collect();
+        let texts = space.texts(point);
+        let places = || {
+            let named = space.places().map(|(name, range)| (format!("{{{name}}}"), range));
+            named.chain([(ALL.to_owned(), 0..texts.len())])
+        };
+        let fill = |word: &str, between: &str| {
+            places().fold(word.to_owned(), |filled, (place, range)| {
+                filled.replace(&place, &texts[range].join(between))
+            })
+        };
         if self.is_shell {
-            let line = fill(&self.words[0], &texts, " ", space);
+            let line = fill(&self.words[0], " ");
             return vec!["/bin/sh".to_owned(), "-c".to_owned(), line];
         }
         let mut words = Vec::new();
         for word in &self.words {
-            if word == ALL {
-                words.extend(texts.iter().cloned()); // an argument each
-            } else {
-                words.push(fill(word, &texts, ",", space));
+            match places().find(|(place, _)| place == word) {
+                Some((_, range)) => words.extend_from_slice(&texts[range]), // an argument each
+                None => words.push(fill(word, ",")),
             }
         }
         words
     }
-}
-
-/// A word with its places filled.
-fn fill(word: &str, texts: &[String], between: &str, space: &SpaceFile) -> String {
-    let mut filled = word.replace(ALL, &texts.join(between));
-    for (axis, text) in texts.iter().enumerate() {
-        filled = filled.replace(&format!("{{{}}}", space.name(axis)), text);
-    }
-    filled
 }
 
 /// Splits a text at blanks; quotes and backslashes keep blanks, as in a shell. Nothing is expanded.

@@ -49,7 +49,10 @@ def find(
     threads: int = 1,
     parallel: int | None = None,
     integrality: Any = None,
+    logarithmic: Any = None,
+    periodic: Any = None,
     categories: Mapping[int, Sequence[Any]] | None = None,
+    permutations: Sequence[Sequence[int]] | None = None,
     x0: Any = None,
     vectorized: bool = False,
     workers: Any = 1,
@@ -68,15 +71,16 @@ def find(
         The function, ``f(x) -> float`` with `x` of shape (d,), or with `vectorized` ``f(X) -> values`` with `X` of shape
         (n, d) and values of shape (n,). It is called on the calling thread, with a fresh float64 array that it may change.
         A value that is NaN or infinite is never a hit, and is counted. Or a problem of the catalogue (see `problem`),
-        for which `bounds`, `delta`, `separation`, `integrality`, `categories`, `x0`, `vectorized`, `workers`, `executor` and
-        `catch` do not apply.
+        for which everything about the space (`bounds`, `separation`, `categories`, ...), `delta`, `x0`, `vectorized`,
+        `workers`, `executor` and `catch` do not apply.
     bounds : sequence of (lower, upper), or scipy.optimize.Bounds
-        The range of each axis, both ends included. ``None`` for an axis in `categories`.
+        The range of each axis, both ends included. ``None`` for an axis in `categories` or `permutations`.
     delta : float
         A hit is a point with f(x) < delta, strictly.
     separation : float or sequence of float, optional
         Hits within this Euclidean distance count as one, in units of the axes; with one number per axis, hits within the
-        ellipsoid that has these half-axes (0 on an integer axis: different integers are different hits). Without it,
+        ellipsoid that has these half-axes (0 on an integer axis: different integers are different hits). On a `logarithmic`
+        axis it is a distance of natural logarithms: 0.01 is about one percent. Without it,
         different coordinates are different hits: on continuous axes nearly every hit then is a new one.
     time : float, optional
         Wall time in seconds. `time` or `evaluations` is required.
@@ -107,8 +111,16 @@ def find(
         `ordered`, that number.
     integrality : bool or sequence of bool, optional
         Which axes are integers (as in `scipy.optimize.differential_evolution`).
+    logarithmic : bool or sequence of bool, optional
+        Which axes are searched by their logarithm, for several orders of magnitude. Their lower ends are above 0; `f` gets
+        the values themselves.
+    periodic : bool or sequence of bool, optional
+        Which axes are circles, such as angles: what leaves at one end enters at the other.
     categories : mapping of int to sequence, optional
-        Labels of axes that are categories: ``{2: ["steel", "brass"]}``. `f` gets the index of the label.
+        Labels of axes that are categories, without an order: ``{2: ["steel", "brass"]}``. `f` gets the index of the label.
+    permutations : sequence of sequences of int, optional
+        Groups of axes that follow each other and hold an order of the integers from 0 on: with ``[range(0, 5)]`` the first
+        five coordinates are a permutation of 0 to 4.
     x0 : array-like of shape (d,) or (m, d), optional
         Points to evaluate first, inside the bounds: good guesses, or hits of another run. Engines start from the best ones.
     vectorized : bool, default False
@@ -183,7 +195,10 @@ def find(
             "delta": delta is not None,
             "separation": separation is not None,
             "integrality": integrality is not None,
+            "logarithmic": logarithmic is not None,
+            "periodic": periodic is not None,
             "categories": categories is not None,
+            "permutations": permutations is not None,
             "x0": x0 is not None,
             "vectorized": vectorized,
             "catch": catch != (),
@@ -200,7 +215,18 @@ def find(
         if value != default:
             raise ValueError(f"{name} applies to problems of the catalogue only; a function is called on the calling thread")
     catch = catch if isinstance(catch, tuple) else (catch,)
-    asked = question(_name(f), bounds, delta, separation, integrality, categories, x0)
+    asked = question(
+        _name(f),
+        bounds,
+        delta,
+        separation,
+        x0,
+        integrality=integrality,
+        logarithmic=logarithmic,
+        periodic=periodic,
+        categories=categories,
+        permutations=permutations,
+    )
     if executor is not None:
         from ._islands import find_with_islands
 

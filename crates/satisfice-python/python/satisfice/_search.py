@@ -47,7 +47,7 @@ class Search:
 
     Parameters
     ----------
-    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, parallel, integrality, categories, x0
+    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, parallel, integrality, logarithmic, periodic, categories, permutations, x0
         As for `find`.
     time : float, optional
         Wall time in seconds from now on.
@@ -83,13 +83,27 @@ class Search:
         islands: int = 1,
         parallel: int | None = None,
         integrality: Any = None,
+        logarithmic: Any = None,
+        periodic: Any = None,
         categories: Any = None,
+        permutations: Any = None,
         x0: Any = None,
         ordered: bool = False,
         name: str = "function",
     ) -> None:
         self._search = _satisfice.Search(
-            question(name, bounds, delta, separation, integrality, categories, x0),
+            question(
+                name,
+                bounds,
+                delta,
+                separation,
+                x0,
+                integrality=integrality,
+                logarithmic=logarithmic,
+                periodic=periodic,
+                categories=categories,
+                permutations=permutations,
+            ),
             run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1, parallel),
             bool(ordered),
         )
