@@ -291,6 +291,7 @@ impl<S: Real> Identity for Located<S> {
         }
     }
 
+    #[inline]
     fn same(&self, other: &Self) -> bool {
         self.is_within(other.coordinates.iter().copied())
     }

@@ -151,7 +151,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// Judges an evaluated solution. Only one below the threshold is looked up in the archive.
-    #[inline]
+    #[inline(always)]
     fn judge<P: SatisficingProblem<Solution = T> + ?Sized>(
         &mut self,
         problem: &P,
