@@ -1,4 +1,4 @@
-//! Worlds of many bodies: time a frame and memory, against parry3d's `Bvh` over the boxes of the bodies.
+//! Worlds of many bodies: time a frame and memory, against parry3d's `Bvh` over the boxes of the bodies and rapier3d's broad phase.
 //!
 //! `cargo bench --bench world` runs everything and writes `docs/results/worlds.md`; started as a test it runs 300 bodies for three
 //! frames and writes nothing. A word after `--` runs the scenes whose names contain it, a number those of that many bodies, `first`
@@ -11,6 +11,7 @@ mod measure;
 #[path = "../page.rs"]
 mod page;
 mod peers;
+mod rapier;
 mod scenes;
 
 use first::{FirstRow, first_frame};
@@ -72,7 +73,7 @@ const INTRODUCTION: &str = "Spheres of 80 triangles and radius 0.4 that share on
     release build. Every moving body has a step of up to 0.005 along each axis; directions turn every eight frames. All methods \
     follow the same motion in one run, one after the other in every frame; times are medians over the frames, in milliseconds of processor time.
 
-- *bodies ms*: placing what moves and finding the pairs of bodies whose boxes meet (`World::place`, and a query of an empty region).
+- *bodies ms*: placing what moves and finding the pairs of bodies whose boxes meet (`World::place`, or `World::translate` where nothing turns, and a query of an empty region).
 - *worst*: the slowest of these frames, divided by *new*, the time of a world made anew (adding all bodies and finding the pairs).
 - *triangles ms*: the contacts of these pairs (`World::update` after that).
 - *parry kept*: what rapier3d's broad phase does. `Bvh::insert_or_update_partially` with a margin of 0.02 for what moves, \
@@ -81,6 +82,8 @@ taken whose boxes are apart now, so that it is known, as in a world, which pairs
 given; ours are computed from the placement in `f64`. *ratio*: the faster one, divided by *bodies ms*.
 - *parry boxes*: what it takes to compute the boxes that parry is given: `Aabb::transform_by` of the box of the mesh by a `Pose` in `f32`, as a collider with a mesh \
 has it, for what moves. *ratio with them*: *parry boxes* and the faster one of parry, divided by *bodies ms*.
+- *rapier*: rapier3d's own broad phase, `BroadPhaseBvh::update` with its defaults, after `Collider::set_position` of what moves; colliders \
+without bodies, boxes of the size of the meshes, prediction distance .01. It computes the boxes that it needs. Nothing is called in a frame in which nothing moves. *ratio to it*: *rapier* divided by *bodies ms*.
 - *bytes a body*: `World::bytes` beside meshes, of a scene of the same motion without pairs where there are many; *a pair*: what is \
 left, divided by the kept pairs.
 

@@ -8,6 +8,7 @@ use satisfice_collision::scene::{Body, BodyId, SharedMesh, World};
 use satisfice_collision::{Aabb, Placement, generate};
 
 use crate::peers::{self, Kept};
+use crate::rapier::Rapier;
 use crate::scenes::{Course, RADIUS, Scene};
 
 /// A row of the table.
@@ -21,6 +22,7 @@ pub(crate) struct Row {
     parry_kept: f64,
     parry_new: f64,
     parry_boxes: f64,
+    rapier: f64,
     contacts: usize,
     kept: usize,
     bytes: [f64; 2],
@@ -28,7 +30,7 @@ pub(crate) struct Row {
 
 impl Row {
     pub(crate) const HEADING: &'static str = "| scene | moved | bodies ms | worst / new | new ms | triangles ms | parry kept | \
-        parry new | ratio | parry boxes | ratio with them | contacts | kept pairs | bytes a body | a pair |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+        parry new | ratio | parry boxes | ratio with them | rapier | ratio to it | contacts | kept pairs | bytes a body | a pair |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 }
 
 impl fmt::Display for Row {
@@ -48,7 +50,7 @@ impl fmt::Display for Row {
         let [body, pair] = self.bytes;
         write!(
             f,
-            "| {} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {body:.0} | {} |",
+            "| {} | {} | {} | {:.2} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {body:.0} | {} |",
             self.name,
             self.moved,
             ms(self.bodies_ms),
@@ -60,6 +62,8 @@ impl fmt::Display for Row {
             ratio(fastest),
             ms(self.parry_boxes),
             ratio(fastest + self.parry_boxes),
+            ms(self.rapier),
+            ratio(self.rapier),
             self.contacts,
             self.kept,
             if pair > 0.0 {
@@ -151,7 +155,9 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
     let mut moved = Vec::new();
     let mut poses: Vec<_> = centres.iter().map(|&centre| peers::pose(centre, 0.0)).collect();
     let locals = [0, 1].map(|body| peers::local(scene.radius(body)));
-    let mut times: [Vec<f64>; 5] = [const { Vec::new() }; 5];
+    let places = scene.centres.iter().enumerate();
+    let mut rapier = Rapier::new(places.map(|(body, &centre)| (scene.radius(body), centre)));
+    let mut times: [Vec<f64>; 6] = [const { Vec::new() }; 6];
     for frame in 0..frames {
         course.step(scene, &mut centres, &mut moved);
         let angle = |body: usize| scene.turn * (frame as f64 + body as f64);
@@ -167,27 +173,44 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
             .collect();
         let ours = time(|| {
             for (&body, placement) in moved.iter().zip(&placements) {
-                world.place(bodies[body], *placement).expect("a body");
+                match scene.turn == 0.0 {
+                    true => world.translate(bodies[body], placement.translation()),
+                    false => world.place(bodies[body], *placement),
+                }
+                .expect("a body");
             }
             find_pairs(&mut world);
         });
         let triangles = time(|| scene.triangles.then(|| world.update().expect("a frame")));
         let posed = time(|| peers::posed(|body| locals[body.min(1)], &poses, &moved, &mut boxes));
         let parry = time(|| kept.follow(&boxes, &moved));
+        let (rapier_ms, rapier_pairs) = time(|| rapier.follow(&poses, &moved));
         // the first frames fill rooms that later ones reuse
         if frame >= frames / 8 {
             times[0].push(ours.0);
             times[1].push(triangles.0);
             times[2].push(parry.0);
             times[4].push(posed.0);
+            times[5].push(rapier_ms);
             if frame.is_multiple_of(4) || frames < 8 {
-                times[3].push(time(|| std::hint::black_box(peers::anew(&boxes))).0);
+                let (ms, meeting) = time(|| peers::anew(&boxes));
+                times[3].push(ms);
+                assert!(
+                    rapier_pairs >= meeting,
+                    "{rapier_pairs} of rapier, {meeting} of parry"
+                );
             }
         }
     }
     let worst = times[0].iter().copied().fold(0.0, f64::max);
-    let [bodies_ms, triangles_ms, parry_kept, parry_new, parry_boxes] =
-        times.map(|mut times| median(&mut times));
+    let [
+        bodies_ms,
+        triangles_ms,
+        parry_kept,
+        parry_new,
+        parry_boxes,
+        rapier,
+    ] = times.map(|mut times| median(&mut times));
     let (kept, bytes) = (world.kept_pairs(), world.bytes() as f64);
     let count = centres.len() as f64;
     let a_body = if kept > centres.len() / 2 {
@@ -205,6 +228,7 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
         parry_kept,
         parry_new,
         parry_boxes,
+        rapier,
         contacts: world.contacts().count(),
         kept,
         bytes: [a_body, (bytes - a_body * count) / kept.max(1) as f64],

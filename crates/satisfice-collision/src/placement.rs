@@ -125,6 +125,7 @@ impl Placement {
 
     /// The unit quaternion `[w, x, y, z]`.
     #[must_use]
+    #[inline]
     pub fn quaternion(&self) -> [f64; 4] {
         self.quaternion
     }
@@ -137,6 +138,7 @@ impl Placement {
 
     /// The translation.
     #[must_use]
+    #[inline]
     pub fn translation(&self) -> [f64; 3] {
         self.translation
     }
@@ -177,39 +179,22 @@ impl CompactPlacement {
         translation: Placement::IDENTITY.translation,
     };
 
-    #[inline]
-    pub(crate) fn translation(&self) -> [f64; 3] {
-        self.translation
+    /// A unit quaternion and a finite translation.
+    pub(crate) fn new(quaternion: [f64; 4], translation: [f64; 3]) -> Self {
+        Self {
+            quaternion,
+            translation,
+        }
     }
 
-    /// The image of a point under the rotation alone.
-    pub(crate) fn rotate(&self, p: [f64; 3]) -> [f64; 3] {
-        matrix(self.quaternion).map(|[x, y, z]| x * p[0] + y * p[1] + z * p[2])
-    }
-
-    /// Whether it rotates.
-    #[inline]
-    pub(crate) fn is_turned(&self) -> bool {
-        differ(&self.quaternion, &Placement::IDENTITY.quaternion)
-    }
-
-    /// Whether another placement has another rotation.
-    #[inline]
-    pub(crate) fn turns_to(&self, other: &Self) -> bool {
-        differ(&self.quaternion, &other.quaternion)
-    }
-
-    /// Whether another placement has another translation.
-    #[inline]
-    pub(crate) fn shifts_to(&self, other: &Self) -> bool {
-        differ(&self.translation, &other.translation)
+    pub(crate) const fn quaternion(&self) -> [f64; 4] {
+        self.quaternion
     }
 }
 
-/// `!=` without a branch for each number.
-#[inline]
-fn differ<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
-    (0..N).fold(false, |differ, k| differ | (a[k] != b[k]))
+/// The image of a point under a rotation alone.
+pub(crate) fn rotate(quaternion: [f64; 4], p: [f64; 3]) -> [f64; 3] {
+    matrix(quaternion).map(|[x, y, z]| x * p[0] + y * p[1] + z * p[2])
 }
 
 impl From<&Placement> for CompactPlacement {

@@ -168,32 +168,20 @@ impl BodyTree {
         }
     }
 
-    /// Where the centre of a body's ball may lie, in the frame, so that its box in the tree holds the ball and `half` around it.
-    pub(super) fn room(&self, known: &Box32, extent: &Extent, half: f64) -> Box32 {
-        let farthest =
-            |b: &Box32| (0..3).fold(0.0_f32, |most, k| most.max(b.min[k].abs()).max(b.max[k].abs()));
-        let far = f64::from(farthest(known)) / self.scale + largest(&self.origin);
-        let reach = (extent.radius() + half + 2.0 * extent.blur(far)) * self.scale;
-        let reach = (reach as f32).next_up();
-        // the conversion of the box, of the centre, and the sums here round once each
-        let slack = 4.0 * f32::EPSILON * (farthest(known) + reach) + f32::MIN_POSITIVE;
-        let room = Box32 {
-            min: known.min.map(|c| c + (reach + slack)),
-            max: known.max.map(|c| c - (reach + slack)),
-        };
-        match reach.is_finite() {
-            true => room,
-            false => Box32::EMPTY,
+    /// Where the centre of a body's ball may lie so that its box in the tree holds the ball and `half` around it.
+    pub(super) fn room(&self, known: &Box32, extent: &Extent, half: f64) -> Aabb {
+        let farthest = (0..3).fold(0.0_f32, |most, k| {
+            most.max(known.min[k].abs()).max(known.max[k].abs())
+        });
+        let far = f64::from(farthest) / self.scale + largest(&self.origin);
+        let reach = extent.radius() + half + 2.0 * extent.blur(far);
+        // the sums round once each
+        let by = (reach + 1e-15 * far) * (1.0 + 1e-15) + f64::MIN_POSITIVE;
+        let side = |c: f32, k: usize| f64::from(c) / self.scale + self.origin[k];
+        Aabb {
+            min: std::array::from_fn(|k| side(known.min[k], k) + by),
+            max: std::array::from_fn(|k| side(known.max[k], k) - by),
         }
-    }
-
-    /// Whether a point lies in a room.
-    #[inline]
-    pub(super) fn is_within(&self, room: &Box32, point: [f64; 3]) -> bool {
-        (0..3).all(|k| {
-            let at = ((point[k] - self.origin[k]) * self.scale) as f32;
-            room.min[k] <= at && at <= room.max[k]
-        })
     }
 
     fn adopt(&mut self, child: u32, level: u8, parent: u32) {

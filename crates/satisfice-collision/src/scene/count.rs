@@ -40,7 +40,7 @@ impl World {
             }
             self.ensure_trees(bodies)?;
             let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
-            let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
+            let filter = PairFilter::new(self.kind, one.state(), two.state(), bodies[0] == bodies[1]);
             let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
             let places = self.places(bodies);
             let Some(query) = self.pair_query(bodies, &places, self.threshold, &filter, &keep) else {

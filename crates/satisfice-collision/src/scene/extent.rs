@@ -77,6 +77,18 @@ impl Extent {
         }
     }
 
+    /// A box that holds the vertices after a translation.
+    pub(super) fn moved(&self, translation: &Point) -> Aabb {
+        if *translation == [0.0; 3] {
+            return self.bounds;
+        }
+        let slack = 1e-14 * (self.size + largest(translation));
+        Aabb {
+            min: std::array::from_fn(|i| self.centre[i] + translation[i] - (self.half[i] + slack)),
+            max: std::array::from_fn(|i| self.centre[i] + translation[i] + (self.half[i] + slack)),
+        }
+    }
+
     /// A bound on the motion of all vertices between two placements. The motion is an affine function of the point, so that it
     /// is longest at a corner; without a rotation it is the same everywhere.
     pub(super) fn motion(&self, one: &Placement, two: &Placement) -> f64 {

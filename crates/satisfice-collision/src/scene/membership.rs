@@ -92,11 +92,9 @@ impl World {
                 "less than 2^31 - 1",
             ));
         }
-        let state = State::new(body, vacant.map_or(0, |id| id.generation))?;
-        let id = BodyId {
-            slot,
-            generation: state.generation,
-        };
+        let generation = vacant.map_or(0, |id| id.generation);
+        let (state, whereabouts) = State::new(body, generation)?;
+        let id = BodyId { slot, generation };
         self.changing();
         self.membership.count(&state, true);
         let collides_with_itself = state
@@ -106,8 +104,10 @@ impl World {
         if vacant.is_some() {
             self.free.pop();
             self.states[slot as usize] = Some(state);
+            self.whereabouts[slot as usize] = whereabouts;
         } else {
             super::push(&mut self.states, Some(state));
+            super::push(&mut self.whereabouts, whereabouts);
         }
         if collides_with_itself {
             self.add_record([slot; 2]);
@@ -131,10 +131,10 @@ impl World {
         self.forget_pending(slot);
         if let Some(state) = self.states[slot as usize].take() {
             self.membership.count(&state, false);
-            self.free.push(BodyId {
-                slot,
-                generation: state.generation.wrapping_add(1),
-            });
+            // no handle names the place until it is given to another body
+            let generation = body.generation.wrapping_add(1);
+            self.whereabouts[slot as usize].generation = generation;
+            self.free.push(BodyId { slot, generation });
         }
         Ok(())
     }
@@ -156,10 +156,14 @@ impl World {
             ring: known.deforming.as_ref().and_then(|own| own.ring),
             counted: None,
         };
-        let state = State::new(new, known.generation)?;
+        let (state, whereabouts) = State::new(new, body.generation)?;
         let next = self.next_placement(body.slot);
         if let Some(placement) = &next {
-            state.check_placement(placement)?;
+            state.check_place(
+                &whereabouts,
+                Some(&placement.quaternion()),
+                &placement.translation(),
+            )?;
         }
         self.changing();
         self.workspaces.iter_mut().for_each(Workspace::forget);
@@ -171,9 +175,10 @@ impl World {
             self.add_record(bodies);
         }
         self.states[body.slot as usize] = Some(state);
+        self.whereabouts[body.slot as usize] = whereabouts;
         self.unpaired.push(body.slot);
         if let Some(placement) = &next {
-            self.move_to(body.slot, placement);
+            self.place(body, *placement)?;
         }
         Ok(())
     }

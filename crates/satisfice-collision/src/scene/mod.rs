@@ -29,6 +29,7 @@ mod extent;
 mod filter;
 mod measure;
 mod membership;
+mod movers;
 mod narrow;
 mod pairs;
 mod pass;
@@ -40,6 +41,7 @@ mod skips;
 mod slack;
 mod state;
 mod update;
+mod whereabouts;
 
 #[cfg(test)]
 mod tests;
@@ -58,10 +60,11 @@ use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement};
 use body_tree::BodyTree;
 use changes::Log;
 use membership::Membership;
+use movers::Movers;
 use narrow::Workspace;
 use pairs::{Pairs, Record};
-use settle::Pending;
-use state::State;
+use state::{Present, State};
+use whereabouts::Whereabouts;
 
 /// Bodies, a kind of feature pair and a threshold.
 ///
@@ -90,13 +93,15 @@ pub struct World {
     parallel: bool,
     /// By slot; `None` where a body was removed.
     states: Vec<Option<State>>,
+    /// By slot, those of removed bodies too.
+    whereabouts: Vec<Whereabouts>,
     /// The generations of the next bodies in free slots, and these slots.
     free: Vec<BodyId>,
     membership: Membership,
     tree: BodyTree,
     pairs: Pairs,
     /// What moves in the next frame.
-    pending: Vec<Pending>,
+    movers: Movers,
     /// Bodies whose partners must be found again.
     unpaired: Vec<u32>,
     /// Records to examine.
@@ -160,11 +165,12 @@ impl World {
             method: Method::Auto,
             parallel: false,
             states: Vec::new(),
+            whereabouts: Vec::new(),
             free: Vec::new(),
             membership: Membership::default(),
             tree: BodyTree::default(),
             pairs: Pairs::default(),
-            pending: Vec::new(),
+            movers: Movers::default(),
             unpaired: Vec::new(),
             dirty: Vec::new(),
             has_removed_dirty: false,
@@ -226,11 +232,11 @@ impl World {
 
     /// The bodies, by index.
     pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
-        let states = (0..).zip(&self.states);
-        states.filter_map(|(slot, state)| {
-            state.as_ref().map(|state| BodyId {
+        let states = (0..).zip(self.states.iter().zip(&self.whereabouts));
+        states.filter_map(|(slot, (state, whereabouts))| {
+            state.as_ref().map(|_| BodyId {
                 slot,
-                generation: state.generation,
+                generation: whereabouts.generation,
             })
         })
     }
@@ -238,8 +244,7 @@ impl World {
     /// Whether a handle names a body of this world.
     #[must_use]
     pub fn contains(&self, body: BodyId) -> bool {
-        let state = self.states.get(body.slot as usize).and_then(Option::as_ref);
-        state.is_some_and(|state| state.generation == body.generation)
+        self.known(body).is_ok()
     }
 
     /// The mesh of a body, as it was added or replaced.
@@ -247,7 +252,7 @@ impl World {
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
     pub fn mesh(&self, body: BodyId) -> Result<&SharedMesh, Error> {
-        Ok(&self.known(body)?.mesh)
+        Ok(&self.known(body)?.state().mesh)
     }
 
     /// The placement of a body in the last frame; the identity for a deforming body.
@@ -270,11 +275,12 @@ impl World {
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.states.capacity() * size_of::<Option<State>>()
+            + self.whereabouts.capacity() * size_of::<Whereabouts>()
             + self.tree.bytes()
             + self.pairs.bytes()
             + self.numbers.capacity() * 4
             + (self.unpaired.capacity() + self.dirty.capacity()) * 4
-            + self.pending.capacity() * size_of::<Pending>()
+            + self.movers.bytes()
             + self.came_from.capacity() * size_of::<(u32, CompactPlacement)>()
     }
 
@@ -290,7 +296,8 @@ impl World {
     /// [`Error::Parameter`] if a body or a feature does not exist.
     pub fn proximity(&self, contact: Contact) -> Result<Proximity, Error> {
         for (body, kind, feature) in self.sides(contact) {
-            exists(self.known(body)?, kind, feature)?;
+            let known = self.known(body)?;
+            exists(&known, kind, feature)?;
         }
         Ok(self.proximity_of(
             [contact.body_a.slot, contact.body_b.slot],
@@ -310,8 +317,8 @@ impl World {
             let [(body_a, kind_a, _), (body_b, kind_b, _)] = self.sides(run[0]);
             let (a, b) = (self.known(body_a)?, self.known(body_b)?);
             for contact in run {
-                exists(a, kind_a, contact.a)?;
-                exists(b, kind_b, contact.b)?;
+                exists(&a, kind_a, contact.a)?;
+                exists(&b, kind_b, contact.b)?;
                 distances.push(distance::distance(
                     &a.shape(kind_a, contact.a),
                     &b.shape(kind_b, contact.b),
@@ -338,9 +345,12 @@ impl World {
     }
 
     /// The body that a handle names.
-    fn known(&self, body: BodyId) -> Result<&State, Error> {
-        match self.states.get(body.slot as usize) {
-            Some(Some(state)) if state.generation == body.generation => Ok(state),
+    fn known(&self, body: BodyId) -> Result<Present<'_>, Error> {
+        let slot = body.slot as usize;
+        match (self.states.get(slot), self.whereabouts.get(slot)) {
+            (Some(Some(state)), Some(whereabouts)) if whereabouts.generation == body.generation => {
+                Ok(state.at(whereabouts, self.frame))
+            }
             _ => Err(unknown(body)),
         }
     }
@@ -351,8 +361,9 @@ impl World {
         clippy::expect_used,
         reason = "records, lists and the tree name only slots with a body"
     )]
-    fn state(&self, slot: u32) -> &State {
-        self.states[slot as usize].as_ref().expect("a body in its slot")
+    fn state(&self, slot: u32) -> Present<'_> {
+        let state = self.states[slot as usize].as_ref().expect("a body in its slot");
+        state.at(&self.whereabouts[slot as usize], self.frame)
     }
 
     #[expect(clippy::expect_used, reason = "as `state`")]
@@ -363,14 +374,14 @@ impl World {
     fn id(&self, slot: u32) -> BodyId {
         BodyId {
             slot,
-            generation: self.state(slot).generation,
+            generation: self.whereabouts[slot as usize].generation,
         }
     }
 
     /// How far no vertex of a body moved in the present frame.
     fn motion_of(&self, slot: u32) -> f64 {
         let state = self.state(slot);
-        if state.moved_at == self.frame {
+        if state.moved_at() == self.frame {
             state.motion
         } else {
             0.0

@@ -3,7 +3,7 @@
 use super::filter::PairFilter;
 use super::pairs::{Record, Status};
 use super::plan::{Plan, Situation};
-use super::state::State;
+use super::state::{Present, State};
 use super::{Skips, World};
 use crate::broad::{Dirty, Pair, PairQuery, PointGrid, TreeJoin, Watch, inflate, intersection};
 use crate::distance::{self, PairKind, Point, Threshold};
@@ -45,11 +45,11 @@ struct Posed {
 }
 
 impl Posed {
-    fn points<'p>(&'p mut self, slot: u32, state: &'p State) -> &'p [Point] {
+    fn points<'p>(&'p mut self, slot: u32, state: Present<'p>) -> &'p [Point] {
         if state.is_unplaced() {
-            return state.vertices();
+            return state.state().vertices();
         }
-        let of = Some((slot, state.generation, state.moved_at));
+        let of = Some((slot, state.generation(), state.moved_at()));
         if self.of != of {
             self.points.clear();
             let placement = state.placement();
@@ -144,7 +144,7 @@ impl World {
         } else {
             grid.between_until(points, posed_b.points(b, two), self.threshold, watch)?
         };
-        let filter = PairFilter::new(self.kind, one, two, a == b);
+        let filter = PairFilter::new(self.kind, one.state(), two.state(), a == b);
         let mut kept = Vec::new();
         let sparse = pairs.len() < one.vertices().len();
         if filter.is_needed() {
@@ -179,7 +179,7 @@ impl World {
         let [a, b] = record.bodies;
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
-        let filter = PairFilter::new(self.kind, one, two, a == b);
+        let filter = PairFilter::new(self.kind, one.state(), two.state(), a == b);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let places = self.places(record.bodies);
         let Some(mut query) = self.pair_query(record.bodies, &places, self.threshold, &filter, &keep) else {
@@ -204,11 +204,9 @@ impl World {
             };
             let found = pairs.len();
             let known = record.pairs.iter().copied();
-            pairs.extend(
-                known.filter(|pair| {
-                    rests(one, kind_a, moved[0], pair.a) && rests(two, kind_b, moved[1], pair.b)
-                }),
-            );
+            pairs.extend(known.filter(|pair| {
+                rests(&one, kind_a, moved[0], pair.a) && rests(&two, kind_b, moved[1], pair.b)
+            }));
             skips.unmoved_pairs += (pairs.len() - found) as u64;
             pairs.sort_unstable();
         }
@@ -233,8 +231,8 @@ impl World {
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
         Some(PairQuery {
-            a: (one.tree(kind_a)?, place_a),
-            b: (two.tree(kind_b)?, place_b),
+            a: (one.state().tree(kind_a)?, place_a),
+            b: (two.state().tree(kind_b)?, place_b),
             one_body: a == b && kind_a == kind_b,
             threshold,
             keep: filter.is_needed().then_some(keep),

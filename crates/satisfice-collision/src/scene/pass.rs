@@ -259,7 +259,7 @@ impl World {
     fn is_current(&self, pass: &Pass) -> bool {
         pass.frame == self.frame
             && pass.answers == self.answers
-            && self.pending.is_empty()
+            && self.movers.is_empty()
             && self.unpaired.is_empty()
     }
 
@@ -325,7 +325,7 @@ impl World {
                     link.verified = verified;
                 }
                 let (one, two) = (self.state(bodies[0]), self.state(bodies[1]));
-                let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
+                let filter = PairFilter::new(self.kind, one.state(), two.state(), bodies[0] == bodies[1]);
                 let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
                 let places = self.places(bodies);
                 if let Some(query) = self.pair_query(bodies, &places, self.threshold, &filter, &keep) {

@@ -1,111 +1,28 @@
 //! Going to the next frame: which bodies move, whose boxes meet now, and which records to examine. Linear in the bodies that
 //! move.
 
-use super::body::{BodyId, Motion};
+use super::World;
 use super::body_tree::{BodyTree, Change};
 use super::pairs::{NONE, Status};
 use super::state::State;
-use super::{World, unknown};
+use super::whereabouts::Whereabouts;
+use crate::Aabb;
 use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
-use crate::{Aabb, CompactPlacement, Error, Placement};
 
-/// The box of a moving body is widened by so many frames of its motion...
+/// The box of a moving body is widened by so many frames of its motion, where it goes...
 const FRAMES: f64 = 8.0;
-/// ...but by at most this share of its size.
+/// ...and by so many in every direction...
+const ASIDE: f64 = 4.0;
+/// ...but by at most these shares of its size.
 const MOST: f64 = 0.25;
+const MOST_ASIDE: f64 = 1.0 / 16.0;
 /// All records are looked through, in their order in memory, if more than this share of the bodies moves.
 const ALL_RECORDS: f64 = 0.2;
-
-/// A body that moves in the next frame.
-pub(super) struct Pending {
-    /// [`NONE`] if the body was removed since.
-    slot: u32,
-    /// Whether the body is rigid and goes there.
-    is_placed: bool,
-    to: CompactPlacement,
-}
-
-impl Pending {
-    #[inline]
-    fn place(slot: u32, placement: &Placement) -> Self {
-        Self {
-            slot,
-            is_placed: true,
-            to: placement.into(),
-        }
-    }
-
-    /// Lists what a body does in the next frame, in the place of what it was to do.
-    #[inline]
-    fn add(list: &mut Vec<Self>, state: &mut State, next: Self) {
-        match state.pending {
-            NONE => {
-                state.pending = list.len() as u32;
-                super::push(list, next);
-            }
-            at => list[at as usize] = next,
-        }
-    }
-}
+/// Bodies that leave their boxes are fetched from memory so many at a time, side by side.
+const SIDE_BY_SIDE: usize = 32;
 
 impl World {
-    /// Places a rigid body in the next frame. The last call before a query counts.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if there is no such body or it is not rigid; [`Error::NonFiniteVertex`] if a vertex would leave the
-    /// range of numbers. The world is then as before.
-    pub fn place(&mut self, body: BodyId, placement: Placement) -> Result<(), Error> {
-        // the world is looked up once: a frame calls this for every body that moves
-        let state = match self.states.get_mut(body.slot as usize) {
-            Some(Some(state)) if state.generation == body.generation => state,
-            _ => return Err(unknown(body)),
-        };
-        if state.kind != Motion::Rigid {
-            return Err(Error::parameter(
-                "body",
-                "not rigid",
-                "only a rigid body has a moving placement",
-            ));
-        }
-        state.check_placement(&placement)?;
-        Pending::add(&mut self.pending, state, Pending::place(body.slot, &placement));
-        Ok(())
-    }
-
-    pub(super) fn move_to(&mut self, slot: u32, placement: &Placement) {
-        self.pend(Pending::place(slot, placement));
-    }
-
-    /// Where a rigid body goes in the next frame, if it was placed since the last query.
-    pub(super) fn next_placement(&self, slot: u32) -> Option<Placement> {
-        let pending = self.pending.get(self.state(slot).pending as usize)?;
-        pending.is_placed.then(|| pending.to.into())
-    }
-
-    /// Gives the vertices of a deforming body in the next frame. The last call before a query counts. Cost: linear in them.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if there is no such body, or it is not deforming or has another number of vertices;
-    /// [`Error::NonFiniteVertex`]. The world is then as before.
-    pub fn deform(&mut self, body: BodyId, vertices: &[Point]) -> Result<(), Error> {
-        self.known(body)?;
-        let Some(deforming) = self.state_mut(body.slot).deforming.as_mut() else {
-            return Err(Error::parameter(
-                "body",
-                "not deforming",
-                "only a deforming body has moving vertices",
-            ));
-        };
-        deforming.deform(vertices)?;
-        self.pend(Pending {
-            slot: body.slot,
-            is_placed: false,
-            to: CompactPlacement::IDENTITY,
-        });
-        Ok(())
-    }
-
     /// Changes the threshold for the next frame, which searches all pairs of bodies again.
     pub fn set_threshold(&mut self, threshold: Threshold) {
         if threshold == self.threshold {
@@ -140,20 +57,6 @@ impl World {
         }
     }
 
-    fn pend(&mut self, next: Pending) {
-        if let Some(state) = self.states[next.slot as usize].as_mut() {
-            Pending::add(&mut self.pending, state, next);
-        }
-    }
-
-    pub(super) fn forget_pending(&mut self, slot: u32) {
-        let at = std::mem::replace(&mut self.state_mut(slot).pending, NONE);
-        if at != NONE {
-            self.pending[at as usize].slot = NONE;
-        }
-        self.unpaired.retain(|&other| other != slot);
-    }
-
     /// The known contacts are about to change: the changes of the last update are forgotten.
     pub(super) fn changing(&mut self) {
         self.answers += 1;
@@ -162,7 +65,7 @@ impl World {
 
     /// Goes to the next frame, if anything has changed.
     pub(super) fn settle(&mut self) {
-        if self.pending.is_empty() && self.unpaired.is_empty() {
+        if self.movers.is_empty() && self.unpaired.is_empty() {
             return;
         }
         self.changing();
@@ -177,10 +80,17 @@ impl World {
                 (known.status, known.slack) = (Status::Stale, None);
             }
         }
-        let many = self.pending.len() as f64 > ALL_RECORDS * self.len() as f64;
-        // by slot, if many move
-        let mut has_moved = vec![false; if many { self.states.len() } else { 0 }];
-        let mut changes = self.move_bodies(&mut has_moved);
+        let frame = self.frame;
+        let (states, whereabouts) = (&self.states, &self.whereabouts);
+        self.movers.clean(|slot| {
+            let slot = slot as usize;
+            states[slot].is_some() && (whereabouts[slot].moved_at == frame || whereabouts[slot].leaves)
+        });
+        let mut changes = Vec::new();
+        self.move_rigid(&mut changes);
+        self.move_deforming(&mut changes);
+        let many = self.movers.placed.len() + self.movers.deformed.len();
+        let many = many as f64 > ALL_RECORDS * self.len() as f64;
         self.add_unpaired(&mut changes);
         if self.tree.is_empty() || self.tree.has_left_frame() {
             changes = self.build_tree();
@@ -188,88 +98,91 @@ impl World {
             self.tree.follow(&mut changes);
         }
         if many {
-            self.go_through_records(&changes, &has_moved);
+            self.go_through_records(&changes);
         } else {
+            self.mark_records();
             self.end_pairs(&changes);
         }
         self.begin_pairs(&changes);
+        self.movers.placed.clear();
+        self.movers.deformed.clear();
     }
 
-    /// Moves the bodies, and lists those that leave their boxes in the tree, with new boxes. Notes which bodies move, or
-    /// marks their records if `has_moved` is empty.
-    fn move_bodies(&mut self, has_moved: &mut [bool]) -> Vec<Change> {
-        let half = self.half_threshold();
-        let mut changes = Vec::new();
-        let mut pending = std::mem::take(&mut self.pending);
+    /// Lists the rigid bodies that leave their boxes in the tree, with new boxes.
+    fn move_rigid(&mut self, changes: &mut Vec<Change>) {
         self.came_from.clear();
-        for Pending { slot, is_placed, to } in pending.drain(..).filter(|pending| pending.slot != NONE) {
-            let moved = match is_placed {
-                true => self.move_rigid(slot, &to, half, &mut changes),
-                false => self.move_deforming(slot, half, &mut changes),
-            };
-            if !moved {
-                continue;
-            }
-            match has_moved.get_mut(slot as usize) {
-                Some(has_moved) => *has_moved = true,
-                None => self.mark_records(slot),
-            }
-        }
-        self.pending = pending;
-        changes
-    }
-
-    /// Moves a rigid body, and lists it if it leaves its box in the tree. Returns whether it moves.
-    fn move_rigid(&mut self, slot: u32, to: &CompactPlacement, half: f64, changes: &mut Vec<Change>) -> bool {
-        let Some(state) = self.states[slot as usize].as_mut() else {
-            return false;
-        };
-        state.pending = NONE;
-        let from = state.place;
-        if !state.go_to(to) {
-            return false;
-        }
-        state.moved_at = self.frame;
         if self.predicts {
-            let from = Placement::from(from);
-            state.motion = state.mesh.extent().motion(&from, &state.placement());
-            self.came_from.push((slot, (&from).into()));
-        }
-        // the ball first: nothing else has to be known of a body that stays in its room
-        if !self.tree.is_within(&state.room, state.centre()) {
-            let placement = state.placement();
-            let extent = state.mesh.extent();
-            let new = extent.posed(&placement);
-            // a ball that fitted fills the box about as well as the body does
-            if state.fits || !self.tree.holds(slot, &inflate(&new, half)) {
-                let from = Placement::from(from);
-                let motion = extent.motion(&from, &placement);
-                let fat = fattened(&new, half, from.apply(extent.centre()), motion);
-                let fat = self.tree.place(&fat);
-                // at once: the body may be far away in memory later
-                give_room(&self.tree, state, &fat, half);
-                changes.push(Change::to(slot, fat));
+            for &slot in &self.movers.placed {
+                if let Some(state) = self.states[slot as usize].as_mut() {
+                    let whereabouts = &self.whereabouts[slot as usize];
+                    let from = state.placement_before(whereabouts);
+                    let to = state.last_placement(whereabouts);
+                    state.motion = state.mesh.extent().motion(&from, &to);
+                    self.came_from.push((slot, (&from).into()));
+                }
             }
         }
-        true
+        let half = self.half_threshold();
+        let mut leaving = std::mem::take(&mut self.movers.leaving);
+        let mut gone = Vec::with_capacity(SIDE_BY_SIDE);
+        for chunk in leaving.chunks(SIDE_BY_SIDE) {
+            gone.clear();
+            for &slot in chunk {
+                // a body that was removed, replaced or placed again may stay
+                let whereabouts = &mut self.whereabouts[slot as usize];
+                if std::mem::take(&mut whereabouts.leaves)
+                    && !whereabouts.is_in_room()
+                    && let Some(state) = &self.states[slot as usize]
+                {
+                    gone.push((slot, state.fits));
+                }
+            }
+            for &(slot, fits) in &gone {
+                self.leave(slot, fits, half, changes);
+            }
+        }
+        leaving.clear();
+        self.movers.leaving = leaving;
     }
 
-    /// The same for a deforming body.
-    fn move_deforming(&mut self, slot: u32, half: f64, changes: &mut Vec<Change>) -> bool {
-        let frame = self.frame;
-        let state = self.state_mut(slot);
-        state.pending = NONE;
-        let from = middle(&state.bounds());
-        let motion = state.deforming.as_mut().and_then(|deforming| deforming.advance());
-        let Some(motion) = motion else { return false };
-        (state.motion, state.moved_at) = (motion, frame);
-        let new = state.bounds();
-        let wanted = inflate(&new, half);
-        if !self.tree.holds(slot, &wanted) {
+    /// Gives a rigid body another box in the tree, unless it is in the one that it has.
+    fn leave(&mut self, slot: u32, fits: bool, half: f64, changes: &mut Vec<Change>) {
+        let Some(state) = self.states[slot as usize].as_mut() else {
+            return;
+        };
+        let whereabouts = &mut self.whereabouts[slot as usize];
+        let new = state.at(whereabouts, self.frame).bounds();
+        // a ball that fitted fills the box about as well as the body does
+        if fits || !self.tree.holds(slot, &inflate(&new, half)) {
+            let (from, motion) = state.came_from(whereabouts);
             let fat = fattened(&new, half, from, motion);
-            changes.push(Change::to(slot, self.tree.place(&fat)));
+            let fat = self.tree.place(&fat);
+            // at once: the body may be far away in memory later
+            give_room(&self.tree, state, whereabouts, &fat, half);
+            changes.push(Change::to(slot, fat));
         }
-        true
+    }
+
+    /// Moves the deforming bodies, and lists those that leave their boxes. What does not move is no mover.
+    fn move_deforming(&mut self, changes: &mut Vec<Change>) {
+        let (half, frame) = (self.half_threshold(), self.frame);
+        let mut deformed = std::mem::take(&mut self.movers.deformed);
+        deformed.retain(|&slot| {
+            let from = middle(&self.state(slot).bounds());
+            self.whereabouts[slot as usize].leaves = false;
+            let state = self.state_mut(slot);
+            let motion = state.deforming.as_mut().and_then(|deforming| deforming.advance());
+            let Some(motion) = motion else { return false };
+            state.motion = motion;
+            self.whereabouts[slot as usize].moved_at = frame;
+            let new = self.state(slot).bounds();
+            if !self.tree.holds(slot, &inflate(&new, half)) {
+                let fat = fattened(&new, half, from, motion);
+                changes.push(Change::to(slot, self.tree.place(&fat)));
+            }
+            true
+        });
+        self.movers.deformed = deformed;
     }
 
     /// Adds the bodies whose partners must be found again.
@@ -281,7 +194,13 @@ impl World {
         for body in std::mem::take(&mut self.unpaired) {
             let bounds = self.tree.place(&inflate(&self.state(body).bounds(), half));
             if let Some(state) = self.states[body as usize].as_mut() {
-                give_room(&self.tree, state, &bounds, half);
+                give_room(
+                    &self.tree,
+                    state,
+                    &mut self.whereabouts[body as usize],
+                    &bounds,
+                    half,
+                );
             }
             changes.push(Change {
                 is_recheck: self.tree.contains(body),
@@ -300,9 +219,9 @@ impl World {
     /// Rebuilds the tree over bodies in another frame.
     fn build_tree(&mut self) -> Vec<Change> {
         let half = self.half_threshold();
-        let states = (0..).zip(&self.states);
-        let boxes: Vec<(u32, Aabb)> = states
-            .filter_map(|(slot, state)| Some((slot, inflate(&state.as_ref()?.bounds(), half))))
+        let boxes: Vec<(u32, Aabb)> = self
+            .bodies()
+            .map(|body| (body.slot, inflate(&self.state(body.slot).bounds(), half)))
             .collect();
         let change = |&(body, _): &(u32, Aabb)| Change {
             is_recheck: self.tree.contains(body),
@@ -310,16 +229,30 @@ impl World {
         };
         let changes = boxes.iter().map(change).collect();
         self.tree.build(&boxes);
-        for (slot, state) in (0..).zip(&mut self.states) {
-            if let Some(state) = state {
-                give_room(&self.tree, state, &self.tree.box_of(slot), half);
+        for &(slot, _) in &boxes {
+            if let Some(state) = self.states[slot as usize].as_mut() {
+                let known = self.tree.box_of(slot);
+                give_room(
+                    &self.tree,
+                    state,
+                    &mut self.whereabouts[slot as usize],
+                    &known,
+                    half,
+                );
             }
         }
         changes
     }
 
     /// Marks the records of all bodies that have moved, and removes those whose boxes are apart now.
-    fn go_through_records(&mut self, changes: &[Change], has_moved: &[bool]) {
+    fn go_through_records(&mut self, changes: &[Change]) {
+        if self.pairs.len() == 0 {
+            return;
+        }
+        let mut has_moved = vec![false; self.states.len()];
+        for &slot in self.movers.placed.iter().chain(&self.movers.deformed) {
+            has_moved[slot as usize] = true;
+        }
         let mut has_changed = vec![false; self.states.len()];
         for change in changes {
             has_changed[change.body as usize] = true;
@@ -342,16 +275,18 @@ impl World {
         }
     }
 
-    /// A body has moved: its records are no longer current.
-    fn mark_records(&mut self, slot: u32) {
-        let mut member = self.pairs.first(slot);
-        while member != NONE {
-            let record = member / 2;
-            member = self.pairs.next(member);
-            let known = &mut self.pairs[record];
-            self.has_known_dirty |= known.has_moved();
-            if !std::mem::replace(&mut known.is_dirty, true) {
-                self.dirty.push(record);
+    /// Marks the records of the bodies that have moved: they are no longer current.
+    fn mark_records(&mut self) {
+        for &slot in self.movers.placed.iter().chain(&self.movers.deformed) {
+            let mut member = self.pairs.first(slot);
+            while member != NONE {
+                let record = member / 2;
+                member = self.pairs.next(member);
+                let known = &mut self.pairs[record];
+                self.has_known_dirty |= known.has_moved();
+                if !std::mem::replace(&mut known.is_dirty, true) {
+                    self.dirty.push(record);
+                }
             }
         }
     }
@@ -419,16 +354,16 @@ fn middle(bounds: &Aabb) -> Point {
 }
 
 /// Tells a body how far it may go in a box.
-fn give_room(tree: &BodyTree, state: &mut State, bounds: &Box32, half: f64) {
-    state.room = tree.room(bounds, state.mesh.extent(), half);
-    state.fits = tree.is_within(&state.room, state.centre());
+fn give_room(tree: &BodyTree, state: &mut State, whereabouts: &mut Whereabouts, bounds: &Box32, half: f64) {
+    state.set_room(whereabouts, tree.room(bounds, state.mesh.extent(), half));
 }
 
-/// A box that will hold a body, and `half` around it, for some frames if it continues as from a box around `from` to `new`, and for about
-/// one if it turns.
+/// A box that will hold a body, and `half` around it, for some frames if it continues as from a box around `from` to `new`, and for some
+/// fewer if it turns.
 fn fattened(new: &Aabb, half: f64, from: Point, motion: f64) -> Aabb {
     let (most, to) = (MOST * new.size(), middle(new));
-    let mut fat = inflate(new, (half + motion.min(most)).next_up());
+    let aside = (ASIDE * motion).min(MOST_ASIDE * new.size());
+    let mut fat = inflate(new, (half + aside).next_up());
     for k in 0..3 {
         let way = (FRAMES * (to[k] - from[k])).clamp(-most, most);
         fat.min[k] = (fat.min[k] + way.min(0.0)).max(f64::MIN);

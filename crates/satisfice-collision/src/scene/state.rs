@@ -1,41 +1,31 @@
 //! A body inside a world: where it is, and what moved.
 
+use std::ops::Deref;
 use std::sync::Arc;
 
 use super::SharedMesh;
 use super::body::{Body, Motion};
 use super::deforming::Deforming;
-use super::extent::{is_small, largest};
-use super::pairs::NONE;
-use crate::broad::{BlockBounds, Box32, Dirty, FeatureTree};
+use super::extent::largest;
+use super::whereabouts::{NOWHERE, Rotations, Step, Whereabouts};
+use crate::broad::{BlockBounds, Dirty, FeatureTree};
 use crate::mesh::Point;
-use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement, Shape};
+use crate::placement::{CompactPlacement, rotate};
+use crate::{Aabb, Error, FeatureKind, Placement, Shape};
 
-/// A body and its place at the last frame. What a frame reads of a rigid body that moves comes first, on two lines of memory.
-#[repr(C, align(64))]
+/// A body in its world, besides its whereabouts. What is read of a rigid body that leaves its box comes first, on one line of memory.
+#[repr(C, align(8))]
 pub(super) struct State {
-    pub(super) generation: u32,
-    /// Its place in the list of what moves in the next frame, or [`NONE`].
-    pub(super) pending: u32,
-    pub(super) kind: Motion,
-    /// Whether only a large translation takes a vertex out of the range of numbers.
-    is_small: bool,
-    /// Whether the placement rotates.
-    is_turned: bool,
-    /// Whether the placement is the identity.
-    rests: bool,
+    pub(super) mesh: SharedMesh,
     /// Where the centre of a rigid body may go so that its box in the tree still holds it, however it turns.
-    pub(super) room: Box32,
+    centre_room: Aabb,
+    pub(super) kind: Motion,
     /// Whether the centre was there when the box was chosen.
     pub(super) fits: bool,
-    /// The centre of the mesh, rotated.
-    offset: Point,
-    /// The frame in which it moved last.
-    pub(super) moved_at: u64,
-    pub(super) place: CompactPlacement,
-    /// No vertex moved further than this then; infinite where nobody asks.
+    /// The rotations of its places.
+    rotations: Rotations,
+    /// No vertex moved further than this in the frame in which it moved last; infinite where nobody asks.
     pub(super) motion: f64,
-    pub(super) mesh: SharedMesh,
     pub(super) groups: u32,
     pub(super) mask: u32,
     pub(super) deforming: Option<Box<Deforming>>,
@@ -44,23 +34,20 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn new(body: Body, generation: u32) -> Result<Self, Error> {
+    pub(super) fn new(body: Body, generation: u32) -> Result<(Self, Whereabouts), Error> {
         let bounds = body.mesh.extent().posed(&body.placement);
         check(&body.mesh, &body.placement, &bounds)?;
         let deforming =
             (body.motion == Motion::Deforming).then(|| Box::new(Deforming::new(body.mesh.mesh(), body.ring)));
-        let mut state = Self {
-            generation,
-            pending: NONE,
-            kind: body.motion,
-            is_small: body.mesh.extent().is_small(),
-            is_turned: false,
-            rests: false,
-            room: Box32::EMPTY,
+        let is_rigid = body.motion == Motion::Rigid;
+        let mut whereabouts = Whereabouts::new(generation, is_rigid, body.mesh.extent().is_small());
+        let mut rotations = Rotations::NONE;
+        whereabouts.begin(&mut rotations, &body.placement);
+        let state = Self {
+            rotations,
+            centre_room: NOWHERE,
             fits: false,
-            offset: [0.0; 3],
-            moved_at: 0,
-            place: (&body.placement).into(),
+            kind: body.motion,
             motion: f64::INFINITY,
             mesh: body.mesh,
             groups: body.groups,
@@ -68,84 +55,81 @@ impl State {
             deforming,
             counted: body.counted,
         };
-        state.note_rotation();
-        state.note_rest();
-        Ok(state)
+        Ok((state, whereabouts))
     }
 
-    /// Refuses a placement that takes a vertex out of the range of numbers.
-    #[inline]
-    pub(super) fn check_placement(&self, placement: &Placement) -> Result<(), Error> {
-        match self.is_small && is_small(&placement.translation()) {
-            true => Ok(()),
-            false => check(&self.mesh, placement, &self.mesh.extent().posed(placement)),
+    /// Refuses a place that takes a vertex out of the range of numbers.
+    #[cold]
+    pub(super) fn check_place(
+        &self,
+        whereabouts: &Whereabouts,
+        rotation: Option<&[f64; 4]>,
+        translation: &Point,
+    ) -> Result<(), Error> {
+        let last = || self.last_placement(whereabouts).quaternion();
+        let rotation = rotation.map_or_else(last, |rotation| *rotation);
+        let unmoved = Placement::from(CompactPlacement::new(rotation, [0.0; 3]));
+        let placement = unmoved.moved(*translation)?;
+        check(&self.mesh, &placement, &self.mesh.extent().posed(&placement))
+    }
+
+    /// Turns the body in the next frame, if that is another rotation than the one given last.
+    pub(super) fn turn(&mut self, whereabouts: &mut Whereabouts, rotation: &[f64; 4], frame: u64) -> Step {
+        if !whereabouts.turns_to(&self.rotations, rotation) {
+            return Step::Rests;
         }
+        let step = whereabouts.turn(&mut self.rotations, rotation, frame);
+        self.give_room(whereabouts);
+        step
     }
 
-    /// Goes to a placement. Returns whether that is another one.
-    #[inline]
-    pub(super) fn go_to(&mut self, to: &CompactPlacement) -> bool {
-        let (turns, shifts) = (self.place.turns_to(to), self.place.shifts_to(to));
-        self.place = *to;
-        if turns {
-            self.note_rotation();
-        }
-        self.note_rest();
-        turns | shifts
+    /// Chooses where the centre may go; a room that does not hold it says so.
+    pub(super) fn set_room(&mut self, whereabouts: &mut Whereabouts, centre_room: Aabb) {
+        self.centre_room = centre_room;
+        self.give_room(whereabouts);
+        self.fits = whereabouts.is_in_room();
     }
 
-    fn note_rotation(&mut self) {
-        self.is_turned = self.place.is_turned();
+    fn give_room(&self, whereabouts: &mut Whereabouts) {
+        let rotation = whereabouts.rotation(&self.rotations);
         let centre = self.mesh.extent().centre();
-        self.offset = match self.is_turned {
-            true => self.place.rotate(centre),
-            false => centre,
-        };
+        let offset = rotation.map_or(centre, |rotation| rotate(*rotation, centre));
+        whereabouts.give_room(&self.centre_room, &offset);
     }
 
-    #[inline]
-    fn note_rest(&mut self) {
-        self.rests = !self.is_turned && self.place.translation() == [0.0; 3];
+    /// The placement given last.
+    pub(super) fn last_placement(&self, whereabouts: &Whereabouts) -> Placement {
+        whereabouts.placement(&self.rotations, whereabouts.last())
     }
 
-    /// Its placement. Cost: that of a matrix.
-    pub(super) fn placement(&self) -> Placement {
-        match self.is_turned {
-            true => self.place.into(),
-            false => Placement::IDENTITY.at(self.place.translation()),
+    /// The placement before that.
+    pub(super) fn placement_before(&self, whereabouts: &Whereabouts) -> Placement {
+        whereabouts.placement(&self.rotations, 1 - whereabouts.last())
+    }
+
+    /// Where the centre of a rigid body was before the place given last, and about how far its vertices move from there.
+    pub(super) fn came_from(&self, whereabouts: &Whereabouts) -> (Point, f64) {
+        let (extent, last) = (self.mesh.extent(), whereabouts.last());
+        if whereabouts.is_upright(last) && whereabouts.is_upright(1 - last) {
+            let [from, to] = [1 - last, last].map(|place| whereabouts.translation(place));
+            let square: f64 = (0..3).map(|k| (to[k] - from[k]) * (to[k] - from[k])).sum();
+            let centre = extent.centre();
+            return (std::array::from_fn(|k| centre[k] + from[k]), square.sqrt());
         }
+        let from = self.placement_before(whereabouts);
+        (
+            from.apply(extent.centre()),
+            extent.motion(&from, &self.last_placement(whereabouts)),
+        )
     }
 
-    /// Where the centre of the ball around a rigid body lies.
+    /// The body where it is in this frame.
     #[inline]
-    pub(super) fn centre(&self) -> Point {
-        let translation = self.place.translation();
-        std::array::from_fn(|k| self.offset[k] + translation[k])
-    }
-
-    /// The box of the posed vertices, roundings included. Cost: constant.
-    pub(super) fn bounds(&self) -> Aabb {
-        let deforming = self.deforming.as_ref();
-        let moved = deforming
-            .and_then(|deforming| deforming.blocks())
-            .and_then(BlockBounds::whole);
-        moved.unwrap_or_else(|| self.mesh.extent().posed(&self.placement()))
-    }
-
-    /// What moved in frame `frame`, of the features of a kind.
-    pub(super) fn moved(&self, frame: u64, kind: FeatureKind) -> Dirty {
-        match &self.deforming {
-            _ if self.moved_at != frame => Dirty::None,
-            Some(deforming) if deforming.has_marks(kind) => Dirty::Marked,
-            _ => Dirty::All,
-        }
-    }
-
-    /// Whether so many vertices move one by one that a new grid beats a tree.
-    pub(super) fn moved_share(&self, frame: u64) -> f64 {
-        match &self.deforming {
-            Some(deforming) if self.moved_at == frame => deforming.share,
-            _ => 0.0,
+    pub(super) fn at<'a>(&'a self, whereabouts: &'a Whereabouts, frame: u64) -> Present<'a> {
+        Present {
+            state: self,
+            whereabouts,
+            place: whereabouts.present(frame),
         }
     }
 
@@ -175,25 +159,9 @@ impl State {
         }
     }
 
-    /// Whether the vertices are in the world as they are in the body.
-    pub(super) fn is_unplaced(&self) -> bool {
-        self.rests
-    }
-
     /// The boxes of the vertices, block by block, where they are known.
     pub(super) fn blocks(&self) -> Option<&BlockBounds> {
         self.deforming.as_ref()?.blocks()
-    }
-
-    /// Where a feature is in the world.
-    #[inline]
-    pub(super) fn shape(&self, kind: FeatureKind, feature: u32) -> Shape {
-        let (vertices, features) = (self.vertices(), self.mesh.mesh().features(kind));
-        if self.rests {
-            return features.shape(feature, |v| vertices[v as usize]);
-        }
-        let placement = self.placement();
-        features.shape(feature, |v| placement.apply(vertices[v as usize]))
     }
 
     /// The vertices of a feature, the last repeated to make three.
@@ -212,6 +180,99 @@ impl State {
         })
     }
 
+    /// How many features of a kind there are.
+    pub(super) fn count(&self, kind: FeatureKind) -> usize {
+        kind.count(self.mesh.mesh())
+    }
+}
+
+/// A body as it is in the present frame.
+#[derive(Clone, Copy)]
+pub(super) struct Present<'a> {
+    state: &'a State,
+    whereabouts: &'a Whereabouts,
+    /// The number of the present place.
+    place: usize,
+}
+
+impl Deref for Present<'_> {
+    type Target = State;
+
+    #[inline]
+    fn deref(&self) -> &State {
+        self.state
+    }
+}
+
+impl<'a> Present<'a> {
+    /// The body in any frame.
+    pub(super) fn state(self) -> &'a State {
+        self.state
+    }
+
+    pub(super) fn generation(&self) -> u32 {
+        self.whereabouts.generation
+    }
+
+    /// The frame in which it moved last, or that in which it will move.
+    pub(super) fn moved_at(&self) -> u64 {
+        self.whereabouts.moved_at
+    }
+
+    /// What moved in frame `frame`, of the features of a kind.
+    pub(super) fn moved(&self, frame: u64, kind: FeatureKind) -> Dirty {
+        match &self.deforming {
+            _ if self.moved_at() != frame => Dirty::None,
+            Some(deforming) if deforming.has_marks(kind) => Dirty::Marked,
+            _ => Dirty::All,
+        }
+    }
+
+    /// Whether so many vertices move one by one that a new grid beats a tree.
+    pub(super) fn moved_share(&self, frame: u64) -> f64 {
+        match &self.deforming {
+            Some(deforming) if self.moved_at() == frame => deforming.share,
+            _ => 0.0,
+        }
+    }
+
+    /// Its placement. Cost: that of a matrix, if it turns.
+    pub(super) fn placement(&self) -> Placement {
+        self.whereabouts.placement(&self.rotations, self.place)
+    }
+
+    fn translation(&self) -> Point {
+        self.whereabouts.translation(self.place)
+    }
+
+    /// The box of the posed vertices, roundings included. Cost: constant.
+    pub(super) fn bounds(&self) -> Aabb {
+        let deforming = self.deforming.as_ref();
+        let moved = deforming
+            .and_then(|deforming| deforming.blocks())
+            .and_then(BlockBounds::whole);
+        moved.unwrap_or_else(|| match self.whereabouts.is_upright(self.place) {
+            true => self.mesh.extent().moved(&self.translation()),
+            false => self.mesh.extent().posed(&self.placement()),
+        })
+    }
+
+    /// Whether the vertices are in the world as they are in the body.
+    pub(super) fn is_unplaced(&self) -> bool {
+        self.whereabouts.is_upright(self.place) && self.translation() == [0.0; 3]
+    }
+
+    /// Where a feature is in the world.
+    #[inline]
+    pub(super) fn shape(&self, kind: FeatureKind, feature: u32) -> Shape {
+        let (vertices, features) = (self.vertices(), self.mesh.mesh().features(kind));
+        if self.is_unplaced() {
+            return features.shape(feature, |v| vertices[v as usize]);
+        }
+        let placement = self.placement();
+        features.shape(feature, |v| placement.apply(vertices[v as usize]))
+    }
+
     /// How far no vertex of a rigid body is from where it is in another placement.
     pub(super) fn away_from(&self, placement: &Placement) -> f64 {
         let now = self.placement();
@@ -225,12 +286,7 @@ impl State {
     pub(super) fn extent(&self) -> f64 {
         let bounds = self.bounds();
         let [min, max] = [&bounds.min, &bounds.max].map(largest);
-        self.mesh.extent().size() + min + max + largest(&self.place.translation())
-    }
-
-    /// How many features of a kind there are.
-    pub(super) fn count(&self, kind: FeatureKind) -> usize {
-        kind.count(self.mesh.mesh())
+        self.mesh.extent().size() + min + max + largest(&self.translation())
     }
 }
 

@@ -271,6 +271,16 @@ fn wrong_calls_are_refused_and_change_nothing() {
         world.place(BodyId::nth(7), away),
         Err(Error::Parameter { .. })
     ));
+    for (body, to) in [
+        (fixed, 9.0),
+        (soft, 9.0),
+        (BodyId::nth(7), 9.0),
+        (rigid, f64::NAN),
+    ] {
+        let refused = world.translate(body, [to, 0.0, 0.0]);
+        assert!(matches!(refused, Err(Error::Parameter { .. })), "{body}");
+    }
+    assert!(world.translate(rigid, [f64::INFINITY, 0.0, 0.0]).is_err());
     assert!(matches!(
         world.deform(rigid, ball.vertices()),
         Err(Error::Parameter { .. })

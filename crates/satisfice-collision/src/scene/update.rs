@@ -163,6 +163,11 @@ impl World {
                 return Ok(());
             }
             let plan = self.prepare(record)?;
+            if plan == Plan::Apart {
+                self.part(record);
+                *done += 1;
+                return Ok(());
+            }
             let found = self.find(&self.pairs[record], plan, &mut workspaces[0], watch)?;
             self.take(record, found, skips, watch.stopped());
             *done += usize::from(!watch.stopped());
@@ -229,6 +234,17 @@ impl World {
         }
         self.pairs.set_apart(record, plan == Plan::Apart);
         Ok(plan)
+    }
+
+    /// Notes that a record has no contacts, for its boxes are apart.
+    fn part(&mut self, record: u32) {
+        let known = &mut self.pairs[record];
+        (known.status, known.is_dirty, known.slack) = (Status::Current, false, None);
+        if !known.pairs.is_empty() {
+            let before = std::mem::take(&mut known.pairs);
+            let bodies = known.bodies.map(|slot| self.id(slot));
+            self.log.note(bodies, record, before);
+        }
     }
 
     /// Takes over what was found about a record; if `cut`, there may be more.

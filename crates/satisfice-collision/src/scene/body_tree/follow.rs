@@ -155,30 +155,39 @@ impl<V: FnMut(u32, u32)> Work for ChangedPairs<'_, V> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, unit: L) {
         let nodes = &self.tree.nodes;
-        let mut stack: Vec<(u32, u32)> = self.tree.root.map(|root| (root, root)).into_iter().collect();
-        while let Some((a, b)) = stack.pop() {
+        // two nodes and what their boxes have in common, outside of which no pair of children meets
+        let mut stack: Vec<(u32, u32, Box32)> = Vec::new();
+        stack.extend(self.tree.root.map(|root| (root, root, Box32::EMPTY)));
+        while let Some((a, b, common)) = stack.pop() {
             let (one, two) = (&nodes[a as usize], &nodes[b as usize]);
-            let mut meet = |a: u32, b: u32| match one.level {
-                0 => (self.visit)(a, b),
-                _ => stack.push((a, b)),
+            let near = match a == b {
+                true => [0xff; 2],
+                false => [one.overlaps(unit, &common), two.overlaps(unit, &common)],
             };
-            let changed = [u32::from(one.changed), u32::from(two.changed)];
+            let changed = [u32::from(one.changed) & near[0], u32::from(two.changed) & near[1]];
+            let mut meet = |lane: usize, other: usize| match one.level {
+                0 => (self.visit)(one.child[lane], two.child[other]),
+                _ => {
+                    let common = one.lane_box(lane).intersection(&two.lane_box(other));
+                    stack.push((one.child[lane], two.child[other], common));
+                }
+            };
             for lane in lanes(changed[0]) {
-                let mut mask = two.overlaps(unit, &one.lane_box(lane));
+                let mut mask = two.overlaps(unit, &one.lane_box(lane)) & near[1];
                 if a == b {
                     // each pair once; a node with itself for its descendants, but no body
                     let later = u32::MAX << (lane + usize::from(one.level == 0));
                     mask &= later | !changed[0];
                 }
                 for other in lanes(mask) {
-                    meet(one.child[lane], two.child[other]);
+                    meet(lane, other);
                 }
             }
             if a != b {
                 for lane in lanes(changed[1]) {
-                    let mask = one.overlaps(unit, &two.lane_box(lane)) & !changed[0];
+                    let mask = one.overlaps(unit, &two.lane_box(lane)) & near[0] & !changed[0];
                     for other in lanes(mask) {
-                        meet(one.child[other], two.child[lane]);
+                        meet(other, lane);
                     }
                 }
             }

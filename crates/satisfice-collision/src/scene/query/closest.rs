@@ -274,7 +274,7 @@ impl World {
     ) -> Result<(), Error> {
         self.ensure_trees(bodies)?;
         let [one, two] = bodies.map(|slot| self.state(slot));
-        let filter = PairFilter::new(self.kind, one, two, bodies[0] == bodies[1]);
+        let filter = PairFilter::new(self.kind, one.state(), two.state(), bodies[0] == bodies[1]);
         let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
         let places = self.places(bodies);
         if let Some(query) = self.pair_query(bodies, &places, Threshold::LARGEST, &filter, &keep) {

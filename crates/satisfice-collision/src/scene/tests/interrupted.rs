@@ -128,7 +128,12 @@ fn a_stopped_enumeration_keeps_what_it_found() {
                 assert!(asked.into_inner() >= least, "{method:?} {delta}");
                 for at in [0, 2] {
                     // as if the bodies had just moved
-                    let to = world.state(0).vertices().iter().map(|&[x, y, z]| [x, y, -z]);
+                    let to = world
+                        .state(0)
+                        .state()
+                        .vertices()
+                        .iter()
+                        .map(|&[x, y, z]| [x, y, -z]);
                     let to: Vec<Point> = to.collect();
                     world.deform(BodyId::nth(0), &to).unwrap();
                     let asked = AtomicUsize::new(0);

@@ -216,7 +216,7 @@ impl Script {
         let ids: Vec<BodyId> = self.actors.keys().copied().collect();
         for id in ids {
             let corner = self.below(3) == 0;
-            let jitter = self.point(0.05);
+            let (jitter, by) = (self.point(0.05), self.below(3));
             let actor = self.actors.get_mut(&id).unwrap();
             if actor.way == [0.0; 3] {
                 continue;
@@ -235,7 +235,13 @@ impl Script {
                 self.world.deform(id, soft.vertices()).unwrap();
             } else {
                 actor.place = actor.place.moved(actor.way).unwrap();
-                self.world.place(id, actor.place).unwrap();
+                // either way, or both: the last one counts
+                if by != 1 {
+                    self.world.place(id, actor.place).unwrap();
+                }
+                if by != 0 {
+                    self.world.translate(id, actor.place.translation()).unwrap();
+                }
             }
         }
     }

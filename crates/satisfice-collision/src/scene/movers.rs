@@ -1,0 +1,163 @@
+//! What moves in the next frame: bodies are placed and deformed.
+
+use super::body::BodyId;
+use super::whereabouts::{Step, is_upright};
+use super::{World, unknown};
+use crate::distance::Point;
+use crate::{Error, Placement};
+
+/// Bodies that move in the next frame.
+#[derive(Default)]
+pub(super) struct Movers {
+    /// Rigid bodies that were placed elsewhere.
+    pub(super) placed: Vec<u32>,
+    /// Those of them that may leave their boxes in the tree.
+    pub(super) leaving: Vec<u32>,
+    /// Deforming bodies that got vertices.
+    pub(super) deformed: Vec<u32>,
+    /// Whether some may have been removed since, or be listed twice.
+    is_stale: bool,
+}
+
+impl Movers {
+    pub(super) fn is_empty(&self) -> bool {
+        self.placed.is_empty() && self.deformed.is_empty()
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        (self.placed.capacity() + self.leaving.capacity() + self.deformed.capacity()) * 4
+    }
+
+    /// Bodies may have been removed.
+    pub(super) fn forget(&mut self) {
+        self.is_stale = !self.is_empty();
+    }
+
+    /// Leaves out what is not `wanted`, and what is there twice.
+    pub(super) fn clean(&mut self, wanted: impl Fn(u32) -> bool) {
+        if std::mem::take(&mut self.is_stale) {
+            for list in [&mut self.placed, &mut self.deformed] {
+                list.sort_unstable();
+                list.dedup();
+                list.retain(|&slot| wanted(slot));
+            }
+        }
+    }
+}
+
+impl World {
+    /// Places a rigid body in the next frame. The last call before a query counts.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body or it is not rigid; [`Error::NonFiniteVertex`] if a vertex would leave the
+    /// range of numbers. The world is then as before.
+    pub fn place(&mut self, body: BodyId, placement: Placement) -> Result<(), Error> {
+        self.go_to(body, Some(&placement.quaternion()), placement.translation())
+    }
+
+    /// Places a rigid body in the next frame, turned as it is there already: as [`World::place`] with its rotation and this
+    /// translation, faster.
+    ///
+    /// ```
+    /// use satisfice_collision::distance::{PairKind, Threshold};
+    /// use satisfice_collision::scene::{Body, World};
+    /// use satisfice_collision::{Placement, generate};
+    /// let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.1)?);
+    /// let turned = Placement::from_axis_angle([0.0, 0.0, 1.0], 0.5)?;
+    /// let ball = world.add(Body::rigid(generate::icosphere(1.0, 2)?).at(turned))?;
+    /// world.translate(ball, [0.0, 0.0, 3.0])?;
+    /// world.update()?;
+    /// assert_eq!(world.placement(ball)?, turned.moved([0.0, 0.0, 3.0])?);
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`World::place`], and [`Error::Parameter`] if the translation is not finite.
+    pub fn translate(&mut self, body: BodyId, translation: [f64; 3]) -> Result<(), Error> {
+        self.go_to(body, None, translation)
+    }
+
+    #[inline(always)]
+    fn go_to(
+        &mut self,
+        body: BodyId,
+        rotation: Option<&[f64; 4]>,
+        translation: [f64; 3],
+    ) -> Result<(), Error> {
+        // a body is looked up once, and not when the frame begins if it stays in its box
+        let slot = body.slot as usize;
+        let whereabouts = match self.whereabouts.get_mut(slot) {
+            Some(whereabouts) if whereabouts.generation == body.generation => whereabouts,
+            _ => return Err(unknown(body)),
+        };
+        if !whereabouts.is_rigid {
+            return Err(not_rigid());
+        }
+        if !whereabouts.allows(&translation)
+            && let Some(state) = &self.states[slot]
+        {
+            state.check_place(whereabouts, rotation, &translation)?;
+        }
+        let mut step = Step::Rests;
+        if let Some(rotation) = rotation
+            && !(whereabouts.is_upright(whereabouts.last()) && is_upright(rotation))
+            && let Some(state) = &mut self.states[slot]
+        {
+            step = state.turn(whereabouts, rotation, self.frame);
+        }
+        let shifted = whereabouts.shift(translation, self.frame);
+        if step == Step::Rests {
+            step = shifted;
+        }
+        if step == Step::Rests {
+            return Ok(());
+        }
+        if step == Step::Begins {
+            super::push(&mut self.movers.placed, body.slot);
+        }
+        if !whereabouts.is_in_room() && !std::mem::replace(&mut whereabouts.leaves, true) {
+            super::push(&mut self.movers.leaving, body.slot);
+        }
+        Ok(())
+    }
+
+    /// Where a rigid body goes in the next frame, if it was placed since the last query.
+    pub(super) fn next_placement(&self, slot: u32) -> Option<Placement> {
+        let whereabouts = &self.whereabouts[slot as usize];
+        let is_pending = whereabouts.is_pending(self.frame);
+        is_pending.then(|| self.state(slot).state().last_placement(whereabouts))
+    }
+
+    /// Gives the vertices of a deforming body in the next frame. The last call before a query counts. Cost: linear in them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such body, or it is not deforming or has another number of vertices;
+    /// [`Error::NonFiniteVertex`]. The world is then as before.
+    pub fn deform(&mut self, body: BodyId, vertices: &[Point]) -> Result<(), Error> {
+        self.known(body)?;
+        let Some(deforming) = self.state_mut(body.slot).deforming.as_mut() else {
+            return Err(Error::parameter(
+                "body",
+                "not deforming",
+                "only a deforming body has moving vertices",
+            ));
+        };
+        deforming.deform(vertices)?;
+        let whereabouts = &mut self.whereabouts[body.slot as usize];
+        if !std::mem::replace(&mut whereabouts.leaves, true) {
+            super::push(&mut self.movers.deformed, body.slot);
+        }
+        Ok(())
+    }
+
+    /// A body is about to be removed or replaced.
+    pub(super) fn forget_pending(&mut self, slot: u32) {
+        self.movers.forget();
+        self.unpaired.retain(|&other| other != slot);
+    }
+}
+
+#[cold]
+fn not_rigid() -> Error {
+    Error::parameter("body", "not rigid", "only a rigid body has a moving placement")
+}
