@@ -178,12 +178,13 @@ impl Whereabouts {
     #[inline]
     pub(super) fn give_room(&mut self, centre_room: &Aabb, offset: &Point) {
         // each side is rounded twice, and the centre once
-        for k in 0..3 {
-            let slack = |side: f64| 1e-15 * (side.abs() + offset[k].abs()) + f64::MIN_POSITIVE;
-            let (min, max) = (centre_room.min[k], centre_room.max[k]);
-            self.room.min[k] = (min - offset[k]) + slack(min);
-            self.room.max[k] = (max - offset[k]) - slack(max);
-        }
+        let slack = |side: f64, off: f64| 1e-15 * (side.abs() + off.abs()) + f64::MIN_POSITIVE;
+        let low = |k: usize| (centre_room.min[k] - offset[k]) + slack(centre_room.min[k], offset[k]);
+        let high = |k: usize| (centre_room.max[k] - offset[k]) - slack(centre_room.max[k], offset[k]);
+        self.room = Aabb {
+            min: std::array::from_fn(low),
+            max: std::array::from_fn(high),
+        };
     }
 
     /// Whether the place given last lies in the room.
