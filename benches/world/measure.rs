@@ -164,18 +164,18 @@ pub(crate) fn measure(scene: &Scene, frames: usize) -> Row {
         for &body in &moved {
             poses[body] = peers::pose(centres[body], angle(body));
         }
-        let placements: Vec<Placement> = moved
-            .iter()
+        let turning = moved.iter().filter(|_| scene.turn != 0.0);
+        let placements: Vec<Placement> = turning
             .map(|&body| {
                 let turned = Placement::from_axis_angle([0.0, 0.0, 1.0], angle(body)).expect("finite");
                 turned.moved(centres[body]).expect("finite")
             })
             .collect();
         let ours = time(|| {
-            for (&body, placement) in moved.iter().zip(&placements) {
-                match scene.turn == 0.0 {
-                    true => world.translate(bodies[body], placement.translation()),
-                    false => world.place(bodies[body], *placement),
+            for (at, &body) in moved.iter().enumerate() {
+                match placements.get(at) {
+                    Some(placement) => world.place(bodies[body], *placement),
+                    None => world.translate(bodies[body], centres[body]),
                 }
                 .expect("a body");
             }
