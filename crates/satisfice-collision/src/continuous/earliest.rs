@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 use super::Separation;
 use super::advance::Goal;
 use super::looks::Looks;
-use super::meetings::{Meet, Meetings};
+use super::meetings::{FirstTimes, Meet, ONCE, ONCE_APART, PairBits, pairs};
 use super::query::Impact;
 use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MIXED, MovingBox, MovingTree};
@@ -74,6 +74,8 @@ struct Descent<'s> {
     /// Half of the least time up to which a look has proved a pair free.
     soon: f64,
     best: Earliest,
+    /// Of the groups compared last.
+    first_times: FirstTimes,
 }
 
 impl Step {
@@ -132,6 +134,7 @@ impl Step {
                 undecided: 0,
                 queries: 0,
             },
+            first_times: FirstTimes::default(),
         };
         for &kind in kinds {
             let lists = Self::lists(kind)?;
@@ -306,58 +309,43 @@ impl<'s> Descent<'s> {
 
     /// Replaces both groups; each pair of groups of one list once.
     fn open_both(&mut self, of: &Waiting, sides: &Sides<'s>) {
-        let meetings = self.meetings(of, sides);
-        let is_one_list = sides.is_one_list();
-        for (lane, mask) in meetings.masks.iter().enumerate() {
-            let child = |node: GroupOrFeature, lane: usize| GroupOrFeature {
-                level: node.level - 1,
-                group: node.group * LANES as u32 + lane as u32,
-            };
-            let a = child(of.a, lane);
-            for other in ones(*mask) {
-                let b = child(of.b, other);
-                if !(is_one_list && of.a == of.b && b.group < a.group) {
-                    self.wait(of.kind, f64::from(meetings.first[lane][other]), a, b);
-                }
-            }
+        let child = |node: GroupOrFeature, lane: usize| GroupOrFeature {
+            level: node.level - 1,
+            group: node.group * LANES as u32 + lane as u32,
+        };
+        for [lane, other] in pairs(self.meetings(of, sides, ONCE)) {
+            let time = f64::from(self.first_times[lane][other]);
+            self.wait(of.kind, time, child(of.a, lane), child(of.b, other));
         }
     }
 
-    fn meetings(&self, of: &Waiting, sides: &Sides<'s>) -> Meetings {
+    /// The pairs of boxes of two groups that meet before the first impact known; `once` names those to ask about in a group with itself.
+    fn meetings(&mut self, of: &Waiting, sides: &Sides<'s>, once: PairBits) -> PairBits {
         let [first, second] = sides.trees;
-        let group = |tree: &'s MovingTree, node: GroupOrFeature| {
-            &tree.levels[node.level as usize][node.group as usize]
-        };
         let is_same = sides.is_one_list() && of.a == of.b;
+        let (level, a, b) = (of.a.level as usize, of.a.group, of.b.group);
         let meet = Meet {
-            a: group(first, of.a),
-            lanes: first.lanes(of.a.level as usize, of.a.group),
-            b: group(second, of.b),
-            around_b: (!is_same).then(|| second.box_around(of.b.level as usize, of.b.group)),
+            a: &first.levels[level][a as usize],
+            b: &second.levels[level][b as usize],
+            around_b: second.place_of(level, b).filter(|_| !is_same),
             margin: self.margin,
-            corners: (of.a.level == 0).then(|| [first.corners(of.a.group), second.corners(of.b.group)]),
+            corners: (level == 0).then(|| [first.corners(a), second.corners(b)]),
         };
-        meet.until((self.best.time[1] as f32).next_up())
+        let until = (self.best.time[1] as f32).next_up();
+        meet.until(until, &mut self.first_times) & if is_same { once } else { !0 }
     }
 
     /// Looks at the pairs of features of two groups.
     fn look(&mut self, of: &Waiting, sides: &Sides<'s>) {
         let Sides { lists, trees } = *sides;
         let is_one_list = sides.is_one_list();
-        let meetings = self.meetings(of, sides);
-        for (lane, mask) in meetings.masks.iter().enumerate() {
-            let mask = match is_one_list && of.a == of.b {
-                true => mask & (!0 << (lane + 1)),
-                false => *mask,
-            };
+        for [lane, other] in pairs(self.meetings(of, sides, ONCE_APART)) {
+            let time = f64::from(self.first_times[lane][other]);
             let a = trees[0].order.get(of.a.group as usize * LANES + lane);
-            for other in ones(mask) {
-                let time = f64::from(meetings.first[lane][other]);
-                let b = trees[1].order.get(of.b.group as usize * LANES + other);
-                if let (Some(&a), Some(&b), true) = (a, b, time < self.best.time[1]) {
-                    let pair = if is_one_list && a > b { [b, a] } else { [a, b] };
-                    self.look_at(of.kind, lists, pair, time);
-                }
+            let b = trees[1].order.get(of.b.group as usize * LANES + other);
+            if let (Some(&a), Some(&b), true) = (a, b, time < self.best.time[1]) {
+                let pair = if is_one_list && a > b { [b, a] } else { [a, b] };
+                self.look_at(of.kind, lists, pair, time);
             }
         }
     }
@@ -431,17 +419,6 @@ impl<'s> Descent<'s> {
             self.best.first = Some((kind, contact, impact));
         }
     }
-}
-
-/// The bits that are set.
-fn ones(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let place = mask.trailing_zeros();
-        (mask != 0).then(|| {
-            mask &= mask - 1;
-            place as usize
-        })
-    })
 }
 
 /// A group within an opened one, and when its box first meets another box.

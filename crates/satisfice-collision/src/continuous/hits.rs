@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc;
 
 use super::advance::Goal;
-use super::meetings::Meet;
+use super::meetings::{Meet, ONCE, ONCE_APART, PairBits, pairs};
 use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MIXED, MovingTree};
 use super::{DecidedBy, Separation};
@@ -215,64 +215,44 @@ impl PairSearch<'_> {
     fn block(&self, block: u32, stack: &mut Vec<(u8, u32)>, found: &mut FoundPairs) {
         let [first, second] = self.trees;
         self.descend(1, block, stack, &mut |other| {
-            let masks = self.meet(1, block, other).masks();
-            let is_same = self.is_one_list() && block == other;
-            for (lane, mut mask) in masks.into_iter().enumerate() {
-                if is_same {
-                    mask &= !0 << lane;
-                }
-                let row = block * LANES as u32 + lane as u32;
+            let meeting = self.meet(1, block, other, ONCE);
+            for [row, group] in pairs(meeting) {
+                let row = block * LANES as u32 + row as u32;
+                let group = other * LANES as u32 + group as u32;
                 let own = first.rigid_body(0, row);
-                while mask != 0 {
-                    let group = other * LANES as u32 + mask.trailing_zeros();
-                    mask &= mask - 1;
-                    if own == MIXED || own != second.rigid_body(0, group) {
-                        self.groups(row, group, found);
-                    }
+                if own == MIXED || own != second.rigid_body(0, group) {
+                    self.groups(row, group, found);
                 }
             }
         });
     }
 
-    /// A group of a level of the first tree and one of the second.
-    fn meet(&self, level: u8, a: u32, b: u32) -> Meet<'_> {
+    /// The pairs of boxes of two groups of a level that meet; `once` names those to ask about in a group with itself.
+    fn meet(&self, level: usize, a: u32, b: u32, once: PairBits) -> PairBits {
         let [first, second] = self.trees;
-        let number = usize::from(level);
         let is_same = self.is_one_list() && a == b;
-        Meet {
-            a: &first.levels[number][a as usize],
-            lanes: first.lanes(number, a),
-            b: &second.levels[number][b as usize],
-            around_b: (!is_same).then(|| second.box_around(number, b)),
+        let meet = Meet {
+            a: &first.levels[level][a as usize],
+            b: &second.levels[level][b as usize],
+            around_b: second.place_of(level, b).filter(|_| !is_same),
             margin: self.margin,
             corners: (level == 0).then(|| [first.corners(a), second.corners(b)]),
-        }
+        };
+        meet.pairs() & if is_same { once } else { !0 }
     }
 
     /// The features of a row against those of a group.
     fn groups(&self, row: u32, group: u32, found: &mut FoundPairs) {
-        let is_same = self.is_one_list() && row == group;
-        let meet = self.meet(0, row, group);
-        let (own, boxes) = (meet.a, meet.b);
-        for (lane, mut mask) in meet.masks().into_iter().enumerate() {
-            if is_same {
-                // Only the features after this one.
-                mask &= !0 << (lane + 1);
-            }
-            if mask == 0 {
-                continue;
-            }
+        let [first, second] = self.trees;
+        let (own, boxes) = (&first.levels[0][row as usize], &second.levels[0][group as usize]);
+        for [lane, other] in pairs(self.meet(0, row, group, ONCE_APART)) {
             let of = own.lane(lane).grown(self.margin);
-            let a = self.trees[0].order[row as usize * LANES + lane];
-            while mask != 0 {
-                let other = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let Some(during) = boxes.lane(other).meeting(&of) else {
-                    continue;
-                };
-                let b = self.trees[1].order[group as usize * LANES + other];
-                self.pair(a, b, during, found);
-            }
+            let Some(during) = boxes.lane(other).meeting(&of) else {
+                continue;
+            };
+            let a = first.order[row as usize * LANES + lane];
+            let b = second.order[group as usize * LANES + other];
+            self.pair(a, b, during, found);
         }
     }
 

@@ -325,13 +325,11 @@ impl MovingTree {
         }
     }
 
-    /// The number of boxes in a group.
-    pub(super) fn lanes(&self, level: usize, group: u32) -> usize {
-        let below = match level {
-            0 => self.order.len(),
-            _ => self.levels[level - 1].len(),
-        };
-        below.saturating_sub(group as usize * LANES).min(LANES)
+    /// Where the box around a group of a level is: a group of the next level and a lane of it; `None` at the root.
+    #[inline(always)]
+    pub(super) fn place_of(&self, level: usize, group: u32) -> Option<(&MovingGroup, usize)> {
+        let above = self.levels.get(level + 1)?;
+        Some((&above[group as usize / LANES], group as usize % LANES))
     }
 
     /// Visits the groups of a level, from number `least` on, whose box is not apart from `of`, leaving out those of the
