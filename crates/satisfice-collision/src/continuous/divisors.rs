@@ -6,16 +6,12 @@
 use dashu_int::IBig;
 use dashu_int::ops::{Abs, Gcd};
 
-use super::form::Form;
+use super::form::{Form, sign};
 
 /// A form with the same roots inside the step, each once.
 pub(super) fn squarefree(form: &Form) -> Form {
     let polynomial = trimmed(form.coefficients());
-    let derivative: Vec<IBig> = (1..)
-        .zip(polynomial.iter().skip(1))
-        .map(|(power, c)| c * IBig::from(power))
-        .collect();
-    let repeated = gcd(polynomial.clone(), derivative);
+    let repeated = gcd(polynomial.clone(), derivative(&polynomial));
     Form::new(quotient(polynomial, &repeated))
 }
 
@@ -43,6 +39,33 @@ pub(super) fn common(forms: &[Form]) -> Option<Form> {
         .reduce(gcd)?;
     common.resize(common.len() + at_the_end, IBig::ZERO);
     Some(Form::new(common))
+}
+
+/// The sign of `form` at the root of `equation` inside the step, of which there is exactly one: the number of roots at which it is above
+/// 0, less those at which it is below, by the signs of a remainder sequence (Tarski; Basu, Pollack and Roy 2006, theorem 2.61).
+pub(super) fn sign_at_root(equation: &Form, form: &Form) -> i32 {
+    let polynomial = trimmed(equation.coefficients());
+    let product = &Form::new(derivative(&polynomial)) * form;
+    let mut previous = polynomial.clone();
+    let mut next = primitive(pseudo_remainder(product.into_coefficients(), &polynomial));
+    let ends = |polynomial: &[IBig]| [sign(&polynomial[0]), sign(&polynomial[polynomial.len() - 1])];
+    let (mut last, mut difference) = (ends(&previous), 0);
+    while !next.is_empty() {
+        let now = ends(&next);
+        // a sign of 0 at the start is passed over
+        let now = [if now[0] == 0 { last[0] } else { now[0] }, now[1]];
+        difference += i32::from(now[0] != last[0]) - i32::from(now[1] != last[1]);
+        last = now;
+        let rest = primitive(pseudo_remainder(previous, &next));
+        previous = next;
+        next = rest.into_iter().map(|c| -c).collect();
+    }
+    difference
+}
+
+fn derivative(polynomial: &[IBig]) -> Vec<IBig> {
+    let powers = (1..).zip(polynomial.iter().skip(1));
+    powers.map(|(power, c)| c * IBig::from(power)).collect()
 }
 
 /// Without the factors `x` (roots at the start) and the zero leading coefficients (roots at the end).
@@ -93,12 +116,17 @@ fn gcd(mut a: Vec<IBig>, mut b: Vec<IBig>) -> Vec<IBig> {
     primitive(a)
 }
 
+/// A positive multiple of the remainder of `a / b`.
 fn pseudo_remainder(mut a: Vec<IBig>, b: &[IBig]) -> Vec<IBig> {
     let lead = &b[b.len() - 1];
+    let (size, is_negative) = (lead.clone().abs(), sign(lead) < 0);
     while a.len() >= b.len() {
-        let top = a.pop().unwrap_or_default();
+        let mut top = a.pop().unwrap_or_default();
+        if is_negative {
+            top = -top;
+        }
         for c in &mut a {
-            *c *= lead;
+            *c *= &size;
         }
         let offset = a.len() + 1 - b.len();
         for (c, d) in a[offset..].iter_mut().zip(b) {
@@ -151,6 +179,26 @@ mod tests {
         // A root at the start and one at the end are no roots inside.
         let ends = &(&form(&[0, 1]) * &form(&[1, 0])) * &p;
         assert!(proportional(&squarefree(&ends), &p));
+    }
+
+    #[test]
+    fn the_sign_at_a_root_is_found() {
+        // the root of the first is at x = 7/3, that of 3 x^2 - 7 at sqrt(7/3)
+        let (linear, square) = (form(&[-7, 3]), form(&[-7, 0, 3]));
+        for (root, is_below_two) in [(&linear, false), (&square, true)] {
+            for sign in [1, -1] {
+                let root = Form::new(root.coefficients().iter().map(|c| c * IBig::from(sign)).collect());
+                assert_eq!(sign_at_root(&root, &form(&[2, -1])) == 1, is_below_two);
+                assert_eq!(sign_at_root(&root, &form(&[-2, 1])) == 1, !is_below_two);
+                assert_eq!(sign_at_root(&root, &(&root * &form(&[1, 5]))), 0);
+                // x (x^2 - 2) (x^2 + 1), 0 at the start
+                let quintic = &(&form(&[-2, 0, 1]) * &form(&[1, 0, 1])) * &form(&[0, 1]);
+                assert_eq!(sign_at_root(&root, &quintic), 1);
+                assert_eq!(sign_at_root(&(&root * &form(&[0, 1])), &quintic), 1);
+                assert_eq!(sign_at_root(&root, &form(&[0, 0])), 0);
+                assert_eq!(sign_at_root(&root, &form(&[-3])), -1);
+            }
+        }
     }
 
     #[test]

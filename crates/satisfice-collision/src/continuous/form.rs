@@ -8,12 +8,11 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use dashu_int::{IBig, Sign};
 
+use super::conditions::Polynomial;
+
 /// A form of degree `len - 1`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Form(Vec<IBig>);
-
-/// A vector whose components are forms of one degree.
-pub(super) type FormVector = [Form; 3];
 
 impl Form {
     pub(super) fn new(coefficients: Vec<IBig>) -> Self {
@@ -27,6 +26,10 @@ impl Form {
 
     pub(super) fn coefficients(&self) -> &[IBig] {
         &self.0
+    }
+
+    pub(super) fn into_coefficients(self) -> Vec<IBig> {
+        self.0
     }
 
     pub(super) fn is_zero(&self) -> bool {
@@ -153,16 +156,22 @@ impl Neg for Form {
     }
 }
 
-pub(super) fn difference(p: &FormVector, q: &FormVector) -> FormVector {
-    [0, 1, 2].map(|k| &p[k] - &q[k])
-}
+impl Polynomial for Form {
+    fn plus(&self, other: &Self) -> Self {
+        self + other
+    }
 
-pub(super) fn dot(p: &FormVector, q: &FormVector) -> Form {
-    &(&(&p[0] * &q[0]) + &(&p[1] * &q[1])) + &(&p[2] * &q[2])
-}
+    fn minus(&self, other: &Self) -> Self {
+        self - other
+    }
 
-pub(super) fn cross(p: &FormVector, q: &FormVector) -> FormVector {
-    [(1, 2), (2, 0), (0, 1)].map(|(k, l)| &(&p[k] * &q[l]) - &(&p[l] * &q[k]))
+    fn times(&self, other: &Self) -> Self {
+        self * other
+    }
+
+    fn negated(&self) -> Self {
+        -self.clone()
+    }
 }
 
 #[cfg(test)]

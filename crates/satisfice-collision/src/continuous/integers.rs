@@ -2,7 +2,8 @@
 
 use dashu_int::IBig;
 
-use super::form::{Form, FormVector};
+use super::conditions::Conditions;
+use super::form::Form;
 use super::motion::PairMotion;
 use crate::distance::exact::{integer, mantissa};
 
@@ -35,48 +36,45 @@ impl Interval {
 
     /// The start as a time.
     pub(super) fn start(&self) -> f64 {
-        self.from as f64 / (1_u64 << self.shift) as f64
+        self.from as f64 * 0.5_f64.powi(self.shift as i32)
     }
 
     /// The end as a time.
     pub(super) fn end(&self) -> f64 {
-        self.to as f64 / (1_u64 << self.shift) as f64
+        self.to as f64 * 0.5_f64.powi(self.shift as i32)
     }
 }
 
-/// The differences `a_i - b_j` over a part of the step as linear forms, and delta in the same unit.
-pub(super) struct Differences {
-    pub(super) corners: Vec<FormVector>,
-    pub(super) delta: IBig,
-}
-
-impl Differences {
-    pub(super) fn new<const M: usize, const N: usize>(
-        motion: &PairMotion<M, N>,
-        delta: f64,
-        part: Interval,
-    ) -> Self {
-        let unit = motion
-            .coordinates()
-            .chain([delta])
-            .filter(|&x| x != 0.0)
-            .map(|x| mantissa(x).1)
-            .min()
-            .unwrap_or(0);
-        // Times 2^shift, so that the ends of the part are integers too.
-        let all = IBig::ONE << part.shift as usize;
-        let at = |from: &IBig, to: &IBig, time: u64| from * (&all - IBig::from(time)) + to * IBig::from(time);
-        let difference = |i: usize, j: usize, k: usize| {
-            let from = integer(motion.from_a[i][k], unit) - integer(motion.from_b[j][k], unit);
-            let to = integer(motion.to_a[i][k], unit) - integer(motion.to_b[j][k], unit);
-            Form::linear(at(&from, &to, part.from), at(&from, &to, part.to))
-        };
-        Self {
-            corners: (0..M)
-                .flat_map(|i| (0..N).map(move |j| (i, j)))
-                .map(|(i, j)| [0, 1, 2].map(|k| difference(i, j, k)))
-                .collect(),
-            delta: integer(delta, unit) << part.shift as usize,
-        }
+/// The conditions of a motion over a part of the step.
+pub(super) fn exact<const M: usize, const N: usize>(
+    motion: &PairMotion<M, N>,
+    delta: f64,
+    during: Interval,
+) -> Conditions<Form> {
+    let unit = motion
+        .coordinates()
+        .chain([delta])
+        .filter(|&x| x != 0.0)
+        .map(|x| mantissa(x).1)
+        .min()
+        .unwrap_or(0);
+    // Times 2^shift, so that the ends of the part are integers too.
+    let all = IBig::ONE << during.shift as usize;
+    let at = |from: &IBig, to: &IBig, time: u64| from * (&all - IBig::from(time)) + to * IBig::from(time);
+    let difference = |i: usize, j: usize, k: usize| {
+        let from = integer(motion.from_a[i][k], unit) - integer(motion.from_b[j][k], unit);
+        let to = integer(motion.to_a[i][k], unit) - integer(motion.to_b[j][k], unit);
+        Form::linear(at(&from, &to, during.from), at(&from, &to, during.to))
+    };
+    let delta_squared = (delta != 0.0).then(|| {
+        let delta = integer(delta, unit) << during.shift as usize;
+        Form::new(vec![&delta * &delta]).raised(2)
+    });
+    Conditions {
+        corners: (0..M)
+            .flat_map(|i| (0..N).map(move |j| (i, j)))
+            .map(|(i, j)| [0, 1, 2].map(|k| difference(i, j, k)))
+            .collect(),
+        delta_squared,
     }
 }

@@ -22,6 +22,7 @@
 //! ```
 
 mod advance;
+mod conditions;
 mod cubic;
 mod divisors;
 mod earliest;
@@ -41,7 +42,9 @@ mod problem;
 mod query;
 mod resolve;
 mod rigid;
+mod rounded;
 mod separation;
+mod sight;
 mod step;
 mod swept;
 mod system;

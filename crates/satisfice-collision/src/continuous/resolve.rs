@@ -47,45 +47,50 @@ pub(super) fn solve<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
             by: DecidedBy::Filter,
         };
     }
-    Solved {
-        time: exactly::<H, K, M, N>(motion, delta, goal, reached),
-        by: DecidedBy::Exact,
-    }
+    by_conditions::<H, K, M, N>(motion, delta, goal, reached)
 }
 
 #[cold]
-fn exactly<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
+fn by_conditions<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
     motion: &PairMotion<M, N>,
     delta: f64,
     goal: Goal,
     reached: Reached,
-) -> Option<[f64; 2]> {
+) -> Solved {
     let end = reached.hit.unwrap_or(goal.until);
     let part = Interval::around(reached.free, end, SHIFT);
     if goal.tolerance.is_infinite() {
-        return exact::is_hit(motion, delta, H::PARTS, part).then(|| [reached.free, part.end()]);
+        let (is_hit, by) = exact::is_hit(motion, delta, H::PARTS, part);
+        let time = is_hit.then(|| [reached.free, part.end()]);
+        return Solved { time, by };
     }
-    if reached.free == 0.0 && exact::is_hit(&motion.at_rest(), delta, H::PARTS, Interval::WHOLE) {
-        return Some([0.0, 0.0]);
+    if reached.free == 0.0 {
+        let (is_hit, by) = exact::is_hit(&motion.at_rest(), delta, H::PARTS, Interval::WHOLE);
+        if is_hit {
+            let time = Some([0.0, 0.0]);
+            return Solved { time, by };
+        }
     }
     let length = part.end() - part.start();
     let levels = (length / goal.tolerance)
         .log2()
         .ceil()
         .clamp(0.0, f64::from(FINEST - SHIFT)) as u32;
-    let piece = exact::earliest(motion, delta, H::PARTS, part, levels)?;
-    // Exact: short binary fractions.
-    let unit = length / (1_u64 << levels) as f64;
-    let from = part.start() + piece as f64 * unit;
-    let low = from.max(reached.free);
-    if low == 0.0 {
-        return Some(soon::<H, K, M, N>(motion, delta, from + unit));
-    }
-    Some([low, from + unit])
+    let (piece, by) = exact::earliest(motion, delta, H::PARTS, part, levels);
+    let time = piece.map(|piece| {
+        // Exact: short binary fractions.
+        let unit = length / (1_u64 << levels) as f64;
+        let from = part.start() + piece as f64 * unit;
+        let low = from.max(reached.free);
+        if low == 0.0 {
+            soon::<H, K, M, N>(motion, delta, from + unit)
+        } else {
+            [low, from + unit]
+        }
+    });
+    Solved { time, by }
 }
 
-/// The same for the infimum of hits from 0 to `end` that is not a hit itself: bounds that are powers of two, the upper one twice the
-/// lower. The lower one is 0 if there are hits before `2^-LATEST`, as where the distance at the start is delta.
 #[cold]
 fn soon<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
     motion: &PairMotion<M, N>,
@@ -98,7 +103,7 @@ fn soon<H: Hull<K>, const K: usize, const M: usize, const N: usize>(
             to: 1,
             shift,
         };
-        exact::is_hit(motion, delta, H::PARTS, part)
+        exact::is_hit(motion, delta, H::PARTS, part).0
     };
     let time = |shift: u32| 0.5_f64.powi(shift as i32);
     if is_hit(LATEST) {

@@ -1,11 +1,12 @@
 //! Whether a polynomial equation and strict inequalities of the time have a common solution: exact, and always decided.
 //!
 //! The step is halved. A piece is discarded if the signs of a form's coefficients exclude a solution, and accepted if they
-//! prove one. What is left after a few halvings has repeated or common roots, as a rule. It is prepared: roots are made
-//! simple and roots that violate an inequality are divided out. The halving of what remains ends, because close to a simple
-//! root the signs of the coefficients change exactly once (Vincent's theorem; Collins and Akritas 1976).
+//! prove one. Where an equation has one root, the signs of the inequalities there decide. What is left after a few halvings has repeated or
+//! common roots, as a rule. It is prepared: roots are made simple and roots that violate an inequality are divided out. The halving of
+//! what remains ends, because close to a simple root the signs of the coefficients change exactly once (Vincent's theorem; Collins and
+//! Akritas 1976).
 
-use super::divisors::{squarefree, without_roots_of};
+use super::divisors::{sign_at_root, squarefree, without_roots_of};
 use super::form::Form;
 
 /// Halvings before roots are made simple: few where an equation leaves only its roots to look at, more where the boundaries of
@@ -51,6 +52,9 @@ impl System {
             Sight::Solvable if self.equation.is_none() => return Some(number << levels),
             Sight::Solvable | Sight::Unclear => {}
         }
+        if let Some(equation) = self.only_root() {
+            return holds_at_root(equation, &self.positive).then(|| piece_of_root(equation, levels, number));
+        }
         if levels == 0 {
             return self.is_solvable_inside(self.plain_halvings()).then_some(number);
         }
@@ -91,6 +95,9 @@ impl System {
             Sight::Unsolvable => return false,
             Sight::Unclear => {}
         }
+        if let Some(equation) = self.only_root() {
+            return holds_at_root(equation, &self.positive);
+        }
         if halvings == 0 {
             return self.is_solvable_with_simple_roots();
         }
@@ -98,6 +105,11 @@ impl System {
         first.holds_at_end()
             || first.is_solvable_inside(halvings - 1)
             || second.is_solvable_inside(halvings - 1)
+    }
+
+    /// The equation, if it has exactly one root with `0 < t < 1`.
+    fn only_root(&self) -> Option<&Form> {
+        self.equation.as_ref().filter(|form| form.sign_changes() == 1)
     }
 
     fn sight(&self) -> Sight {
@@ -152,6 +164,31 @@ fn is_positive_everywhere(form: &Form) -> bool {
     form.is_positive_inside() && form.sign_at_start() > 0 && form.sign_at_end() > 0
 }
 
+/// Whether all `positive` are above 0 at the only root of an equation with `0 < t < 1`.
+fn holds_at_root(equation: &Form, positive: &[Form]) -> bool {
+    let mut unclear = positive.iter().filter(|form| !form.is_positive_inside());
+    unclear.all(|form| sign_at_root(equation, form) > 0)
+}
+
+/// The piece, of `2^levels` of this one, that contains the only root of an equation with `0 < t < 1`, or begins with it.
+fn piece_of_root(equation: &Form, levels: u32, mut number: u64) -> u64 {
+    let mut equation = equation.clone();
+    for level in (0..levels).rev() {
+        let first = equation.first_half();
+        number *= 2;
+        if first.sign_at_end() == 0 {
+            return (number + 1) << level;
+        }
+        if first.sign_changes() == 1 {
+            equation = first;
+        } else {
+            equation = equation.second_half();
+            number += 1;
+        }
+    }
+    number
+}
+
 /// Whether all `positive` are above 0 at a root of `roots` with `0 < t < 1`. The roots are simple and no roots of `positive`.
 fn has_accepted_root(roots: &Form, positive: &[Form]) -> bool {
     if positive.iter().any(Form::is_nowhere_positive) {
@@ -159,7 +196,7 @@ fn has_accepted_root(roots: &Form, positive: &[Form]) -> bool {
     }
     match roots.sign_changes() {
         0 => return false,
-        1 if positive.iter().all(Form::is_positive_inside) => return true,
+        1 => return holds_at_root(roots, positive),
         _ => {}
     }
     let first: Vec<Form> = positive.iter().map(Form::first_half).collect();
