@@ -58,7 +58,9 @@ pub(super) fn earliest<const M: usize, const N: usize>(
         return (first, DecidedBy::Filter);
     }
     let conditions = exact(motion, delta, during);
-    let pieces = open.iter().filter_map(|part| part.system(&conditions).earliest(levels));
+    let pieces = open
+        .iter()
+        .filter_map(|part| part.system(&conditions).earliest(levels));
     pieces.for_each(found);
     (first, DecidedBy::Exact)
 }
@@ -111,6 +113,87 @@ impl OpenPart {
                 _ => common(&zero),
             },
             positive: positive.map(|(_, form)| form).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::Point;
+
+    const EDGES: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
+
+    /// Edges that move, by numbers that look random: small integers, which meet in every degenerate way, or any numbers.
+    fn motion(state: &mut u64, any: bool) -> PairMotion<2, 2> {
+        let mut number = || {
+            *state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            match any {
+                true => (*state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5,
+                false => ((*state >> 33) % 5) as f64 - 2.0,
+            }
+        };
+        let mut edge = || -> [Point; 2] { [0, 1].map(|_| [0, 1, 2].map(|_| number())) };
+        PairMotion {
+            from_a: edge(),
+            to_a: edge(),
+            from_b: edge(),
+            to_b: edge(),
+        }
+    }
+
+    #[test]
+    fn floating_point_says_what_integers_say_or_leaves_it_open() {
+        let parts = Parts {
+            edges: &EDGES,
+            face: Some(super::super::hull::Face {
+                corners: [0, 2, 1],
+                is_parallelogram: true,
+            }),
+        };
+        let part = Interval {
+            from: 1,
+            to: 7,
+            shift: 3,
+        };
+        let mut state = 1;
+        for (any, delta) in [(false, 0.0), (false, 0.5), (true, 0.0), (true, 0.1)] {
+            let (mut solved, mut unsolved, mut open) = (0, 0, 0);
+            for _ in 0..150 {
+                let motion = motion(&mut state, any);
+                let conditions = rounded(&motion, delta, part).expect("in range");
+                let all = exact(&motion, delta, part);
+                for of in parts.all(4) {
+                    let question = || Question::new(&conditions.of(of));
+                    let without = OpenPart { part: of, holding: 0 }.system(&all);
+                    let system = OpenPart {
+                        part: of,
+                        holding: question().holding(),
+                    }
+                    .system(&all);
+                    assert_eq!(system.is_solvable(), without.is_solvable(), "{motion:?} {of:?}");
+                    assert_eq!(system.earliest(9), without.earliest(9), "{motion:?} {of:?}");
+                    match question().has_solution() {
+                        Sight::Some(()) => {
+                            assert!(without.is_solvable(), "{motion:?} {of:?}");
+                            solved += 1;
+                        }
+                        Sight::None => assert!(!without.is_solvable(), "{motion:?} {of:?}"),
+                        Sight::Open => {}
+                    }
+                    match question().first(9) {
+                        Sight::Some(piece) => {
+                            assert_eq!(without.earliest(9), Some(piece), "{motion:?} {of:?}");
+                        }
+                        Sight::None => {
+                            assert_eq!(without.earliest(9), None, "{motion:?} {of:?}");
+                            unsolved += 1;
+                        }
+                        Sight::Open => open += 1,
+                    }
+                }
+            }
+            assert!(solved > 0 && unsolved > 300, "{solved} {unsolved} {open}");
         }
     }
 }

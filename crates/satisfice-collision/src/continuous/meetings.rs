@@ -228,7 +228,11 @@ fn row<F: Floats<Scalar = f32, Array = Eight>>(
 
 /// The lanes that are apart at the start.
 #[inline(always)]
-fn late<F: Floats<Scalar = f32, Array = Eight>>(s: F, group: &MovingGroup, of: &Everywhere<F::Number>) -> u32 {
+fn late<F: Floats<Scalar = f32, Array = Eight>>(
+    s: F,
+    group: &MovingGroup,
+    of: &Everywhere<F::Number>,
+) -> u32 {
     let mut late = s.splat(0.0);
     for k in 0..3 {
         for side in 0..2 {
@@ -240,7 +244,11 @@ fn late<F: Floats<Scalar = f32, Array = Eight>>(s: F, group: &MovingGroup, of: &
 
 /// Lower bounds of the times at which the boxes of a group first meet a box, where they do.
 #[inline(always)]
-fn first<F: Floats<Scalar = f32, Array = Eight>>(s: F, group: &MovingGroup, of: &Everywhere<F::Number>) -> Eight {
+fn first<F: Floats<Scalar = f32, Array = Eight>>(
+    s: F,
+    group: &MovingGroup,
+    of: &Everywhere<F::Number>,
+) -> Eight {
     let zero = s.splat(0.0);
     let mut first = zero;
     for k in 0..3 {

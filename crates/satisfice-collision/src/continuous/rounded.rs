@@ -163,7 +163,10 @@ pub(super) fn rounded<const M: usize, const N: usize>(
             ]);
         }
     }
-    let size = ends.as_flattened().iter().fold(0.0_f64, |size, p| size.max(largest(*p)));
+    let size = ends
+        .as_flattened()
+        .iter()
+        .fold(0.0_f64, |size, p| size.max(largest(*p)));
     let is_in_range = size < RANGE && size > 1.0 / RANGE;
     if !is_in_range {
         return None;

@@ -40,7 +40,10 @@ pub(super) struct Question {
 impl Question {
     pub(super) fn new(posed: &Posed<Rounded>) -> Self {
         let zero = posed.zero.iter().map(|form| Condition::Zero(form.bernstein()));
-        let positive = posed.positive.iter().map(|form| Condition::Positive(form.bernstein()));
+        let positive = posed
+            .positive
+            .iter()
+            .map(|form| Condition::Positive(form.bernstein()));
         let mut conditions = [None; MOST];
         for (place, condition) in conditions.iter_mut().zip(zero.chain(positive)) {
             *place = Some(condition);
@@ -125,7 +128,9 @@ impl Question {
             return None;
         }
         self.pieces -= 1;
-        let mut halves = [Piece { conditions: [None; MOST] }; 2];
+        let mut halves = [Piece {
+            conditions: [None; MOST],
+        }; 2];
         for (place, condition) in piece.conditions.iter().enumerate() {
             let forms = match condition {
                 Some(Condition::Zero(form)) => form.halves().map(Condition::Zero),
