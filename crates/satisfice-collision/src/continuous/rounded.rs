@@ -40,8 +40,9 @@ impl Rounded {
     fn combined(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         debug_assert_eq!(self.len, other.len, "sums are of one degree");
         let mut sums = [0.0; MOST];
-        for k in 0..self.len {
-            sums[k] = f(self.coefficients[k], other.coefficients[k]);
+        let pairs = self.coefficients.iter().zip(&other.coefficients);
+        for (sum, (&a, &b)) in sums.iter_mut().zip(pairs).take(self.len) {
+            *sum = f(a, b);
         }
         let exact = Self::new(sums, self.len, 0.0);
         let error = self.error + other.error + U * exact.largest();
@@ -134,11 +135,11 @@ impl Bernstein {
         let len = self.0.len;
         let mut first = self.0.coefficients;
         let mut second = first;
-        for round in 1..len {
+        for (round, coefficient) in first.iter_mut().enumerate().take(len).skip(1) {
             for k in 0..len - round {
                 second[k] = 0.5 * (second[k] + second[k + 1]);
             }
-            first[round] = second[0];
+            *coefficient = second[0];
         }
         let error = self.0.error + (len - 1) as f64 * U * self.0.largest();
         [first, second].map(|half| Self(Rounded::new(half, len, error)))
