@@ -87,6 +87,7 @@ engines! {
     Descent,
     DescentFlood,
     RestartedCmaEs,
+    Niching,
     Pso1995,
     PsoInertia,
     Pso,

@@ -3,8 +3,11 @@
 mod bandit;
 pub(super) mod descent;
 mod descent_flood;
+mod ends;
 pub(super) mod flood;
 pub(super) mod luby;
+mod matrix_adaptation;
+mod niching;
 pub(super) mod one_plus_one;
 mod random;
 pub(super) mod recombination;
@@ -13,6 +16,7 @@ mod walk;
 
 pub use descent::Descent;
 pub use descent_flood::DescentFlood;
+pub use niching::Niching;
 pub use random::Random;
 pub use restarted_cma_es::RestartedCmaEs;
 pub use walk::Walk;

@@ -1,0 +1,495 @@
+//! Local searches by generations that end where they come near a known end, and go on from good ends: for optima that are hard to
+//! reach.
+
+use super::bandit::Arm;
+use super::ends::Ends;
+use super::matrix_adaptation::{Distribution, usual_size};
+use super::recombination::Pairs;
+use crate::batch::{Batch, Outcome};
+use crate::context::{Context, points_between_looks};
+use crate::engine::compiled::both_scalars;
+use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine_settings;
+use crate::error::Error;
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::Space;
+use crate::state::{Part, Reader, State};
+
+engine_settings! {
+    /// Local searches by an evolution strategy (Beyer, Sendhoff 2017) of three kinds, and recombinations of all pairs of hits:
+    ///
+    /// - from uniform points;
+    /// - from near misses of recombinations;
+    /// - from beside the ends of searches that were no hits. A length is drawn log-uniformly, then one of the ends that have no better
+    ///   one within it: good ends more often. A search that will not come below its origin ends early.
+    ///
+    /// A search ends at a hit, when it hardly comes nearer to delta any more, or when a known end is within the spread of its samples
+    /// and no hill lies between (Ursem 1999), so that it costs little to be on the way to a known optimum.
+    ///
+    /// Steps on integer axes are rounded, so this engine suits continuous axes. Hits are deleted.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Niching, from_fn};
+    /// let disc = from_fn(Space::lattice(2, 100)?, 10.0, |x: &[f64]| (x[0] - 50.0).hypot(x[1] - 20.0));
+    /// let engine = Niching { hops: 0.2, ..Default::default() };
+    /// let report = Search::with(engine).run(&disc, &Budget::evaluations(3000))?;
+    /// assert!(report.hit_count() > 10);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    pub struct Niching {
+        /// Largest first step from a uniform point, as a share of the axes.
+        pub step: f64 = 0.2, 1e-12..=1.0;
+        /// Smallest first step from a uniform point, as a share of the axes; first steps are drawn log-uniformly.
+        pub smallest_step: f64 = 0.05, 1e-12..=1.0;
+        /// Share of the searches' evaluations that start beside known ends.
+        pub hops: f64 = 0.5, 0.0..=1.0;
+    }
+}
+
+impl EngineConfig for Niching {
+    const NAME: &'static str = "niching";
+    const SUMMARY: &'static str = "evolution strategies that turn away from known optima and go on from good ends, and recombination of hits";
+    const CITATION: &'static str = "this project; parts after Beyer, Sendhoff 2017, doi 10.1109/TEVC.2017.2680320, and Ursem 1999, doi 10.1109/CEC.1999.785498";
+
+    both_scalars!();
+}
+
+impl Niching {
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(Searches::new(self.clone()))
+    }
+}
+
+/// Displacements from known ends, as shares of the axes: drawn log-uniformly.
+const HOPS: (f64, f64) = (0.01, 0.2);
+/// First steps after a displacement are this share of it or more.
+const SETTLING: f64 = 0.1;
+/// The first step from a near miss.
+const REFINING_STEP: f64 = 0.003;
+/// Near misses that are kept to be searched from.
+const MISSES: usize = 16;
+/// Recombinations that are examined for one that is not a known hit, for each candidate of a batch.
+const LOOKS: usize = 8;
+/// How often a generation is of twice the usual size, and how often again; up to so many coordinates.
+const DOUBLING: f64 = 0.25;
+const COORDINATES: usize = 1 << 20;
+/// Spreads within which a known end has to be to be looked at: a hit, and another end. Around those, F is often rugged.
+const SCOPE: (f64, f64) = (1.0, 0.2);
+/// Points between a search and a known end that tell whether there is a hill.
+const PROBES: usize = 3;
+/// A search is judged after so many generations and, divided by their size, so many evaluations an axis; it goes on if the distance
+/// to delta has become smaller by this share.
+const WINDOW: (f64, f64) = (20.0, 30.0);
+const PROGRESS: f64 = 0.05;
+
+/// What the points of a batch are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+enum Asked {
+    #[default]
+    Samples,
+    /// Points between the search and a known end.
+    Probes,
+    Recombinations,
+}
+
+/// A recombination that was no hit.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+struct Miss {
+    place: Vec<f64>,
+    fitness: f64,
+}
+
+/// What is known of the search that runs.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+struct Run {
+    running: bool,
+    /// Whether it started beside a known end, of which this is F.
+    is_hop: bool,
+    origin: f64,
+    /// Samples of a generation.
+    size: usize,
+    generations: u64,
+    /// Samples of this generation that were known hits.
+    deleted: usize,
+    best: Vec<f64>,
+    fitness: f64,
+    /// The best fitness when it was judged last.
+    before: f64,
+    /// The spread at the last look for a hill.
+    looked: f64,
+}
+
+/// The engine of [`Niching`]. Places are shares of the axes' widths.
+#[derive(Debug)]
+struct Searches<S> {
+    settings: Niching,
+    ends: Ends,
+    hits: Vec<S>,
+    pairs: Pairs,
+    /// The best near misses, the best one last.
+    misses: Vec<Miss>,
+    /// What searches and recombinations have yielded.
+    arms: [Arm; 2],
+    restarts: u64,
+    /// Evaluations of searches from known ends, and of the others.
+    spent: [u64; 2],
+    start: Vec<f64>,
+    run: Run,
+    distribution: Distribution,
+    asked: Asked,
+    position: Vec<S>,
+}
+
+fn to_place<S: Real>(space: &Space<S>, position: &[S], place: &mut [f64]) {
+    for ((x, axis), p) in position.iter().zip(space.axes()).zip(place) {
+        let width = axis.width().f64();
+        *p = if width > 0.0 {
+            (x.f64() - axis.start().f64()) / width
+        } else {
+            0.5
+        };
+    }
+}
+
+fn to_position<S: Real>(space: &Space<S>, place: impl Iterator<Item = f64>, position: &mut [S]) {
+    for ((x, axis), p) in position.iter_mut().zip(space.axes()).zip(place) {
+        *x = S::of(axis.start().f64() + p * axis.width().f64());
+    }
+}
+
+fn log_uniform(rng: &mut SearchRng, (smallest, largest): (f64, f64)) -> f64 {
+    largest * (smallest / largest).powf(rng.uniform())
+}
+
+impl<S: Real> Searches<S> {
+    fn new(settings: Niching) -> Self {
+        Self {
+            settings,
+            ends: Ends::default(),
+            hits: Vec::new(),
+            pairs: Pairs::default(),
+            misses: Vec::new(),
+            arms: [Arm::default(); 2],
+            restarts: 0,
+            spent: [0; 2],
+            start: Vec::new(),
+            run: Run::default(),
+            distribution: Distribution::default(),
+            asked: Asked::default(),
+            position: Vec::new(),
+        }
+    }
+
+    /// Appends the next recombinations that are no known hits.
+    fn recombine(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
+        let dimension = self.position.len();
+        let count = usual_size(dimension).min(points_between_looks(dimension));
+        for _ in 0..LOOKS * count {
+            if out.len() == count {
+                return;
+            }
+            let Some(is_new) = self.pairs.next(&self.hits, rng, &mut self.position) else {
+                return;
+            };
+            if is_new && !context.is_deleted(&self.position) {
+                out.push(&self.position);
+            } else {
+                // Paid like a miss: looking costs time, and a source that has run dry is not to be asked for ever.
+                self.arms[1].count(false);
+            }
+        }
+    }
+
+    /// Starts the next search: from the best near miss every other time, else beside a known end or from a uniform point.
+    fn begin_run(&mut self, rng: &mut SearchRng) {
+        let dimension = self.start.len();
+        self.restarts += 1;
+        self.run = Run {
+            running: true,
+            is_hop: false,
+            origin: f64::INFINITY,
+            size: usual_size(dimension),
+            generations: 0,
+            deleted: 0,
+            best: core::mem::take(&mut self.run.best),
+            fitness: f64::INFINITY,
+            before: f64::INFINITY,
+            looked: f64::INFINITY,
+        };
+        if self.restarts.is_multiple_of(2)
+            && let Some(miss) = self.misses.pop()
+        {
+            self.distribution.reset(&miss.place, REFINING_STEP, self.run.size);
+            return;
+        }
+        let step = self.hop(rng).unwrap_or_else(|| {
+            self.start.fill_with(|| rng.uniform());
+            log_uniform(rng, (self.settings.smallest_step, self.settings.step))
+        });
+        while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
+            self.run.size *= 2;
+        }
+        self.distribution.reset(&self.start, step, self.run.size);
+    }
+
+    /// Writes a start beside a known end, if it is the turn of one, and returns the first step.
+    fn hop(&mut self, rng: &mut SearchRng) -> Option<f64> {
+        let (share, [hops, others]) = (self.settings.hops, self.spent.map(|count| count as f64));
+        if hops * (1.0 - share) >= others * share {
+            return None;
+        }
+        let dimension = self.start.len();
+        let length = log_uniform(rng, HOPS);
+        let end = self.ends.promising(length * (dimension as f64).sqrt())?;
+        self.start.copy_from_slice(self.ends.place(end, dimension));
+        for x in &mut self.start {
+            *x = (*x + length * rng.normal()).clamp(0.0, 1.0);
+        }
+        self.run.is_hop = true;
+        self.run.origin = self.ends.fitness(end);
+        Some(log_uniform(rng, (SETTLING * length, length)))
+    }
+
+    /// A known end that the search seems to be on its way to, if it is time to look.
+    fn approached(&self) -> Option<usize> {
+        let spread = self.distribution.spread();
+        if !(spread <= 0.5 * self.run.looked) || !self.run.fitness.is_finite() {
+            return None;
+        }
+        let (index, distance) = self.ends.nearest(&self.distribution.mean)?;
+        let scope = if self.ends.is_hit(index) { SCOPE.0 } else { SCOPE.1 };
+        (distance < scope * spread && self.ends.fitness(index) < self.run.fitness).then_some(index)
+    }
+
+    /// Keeps a near miss, if it is among the best.
+    fn keep(&mut self, space: &Space<S>, position: &[S], fitness: f64) {
+        let at = self.misses.partition_point(|miss| miss.fitness > fitness);
+        if !fitness.is_finite() || (self.misses.len() == MISSES && at == 0) {
+            return;
+        }
+        let mut place = vec![0.0; position.len()];
+        to_place(space, position, &mut place);
+        self.misses.insert(at, Miss { place, fitness });
+        if self.misses.len() > MISSES {
+            self.misses.remove(0);
+        }
+    }
+
+    /// Takes what became of samples.
+    fn learn(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+        let space = context.space();
+        let run = &mut self.run;
+        self.spent[usize::from(!run.is_hop)] += outcomes.len() as u64;
+        for (position, outcome) in batch.points().zip(outcomes) {
+            self.arms[0].count(outcome.is_hit());
+            run.deleted += usize::from(*outcome == Outcome::Deleted);
+            let fitness = outcome.fitness().f64();
+            self.distribution.tell(fitness);
+            if fitness < run.fitness {
+                run.fitness = fitness;
+                to_place(space, position, &mut run.best);
+            }
+        }
+        if outcomes.iter().any(|outcome| outcome.is_hit()) {
+            run.running = false;
+            return;
+        }
+        if self.distribution.told() < run.size {
+            return;
+        }
+        if 2 * run.deleted >= run.size {
+            run.running = false;
+            return;
+        }
+        run.deleted = 0;
+        self.distribution.adapt();
+        for (m, axis) in self.distribution.mean.iter_mut().zip(space.axes()) {
+            *m = match *m {
+                m if !m.is_finite() => 0.5,
+                m if axis.is_periodic() => m.rem_euclid(1.0),
+                m => m.clamp(0.0, 1.0),
+            };
+        }
+        run.generations += 1;
+        let an_axis = WINDOW.1 * space.dimension() as f64 / run.size as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "positive and small"
+        )]
+        let window = (WINDOW.0 + an_axis) as u64;
+        if run.generations.is_multiple_of(window) {
+            self.judge(context.threshold().f64());
+        }
+    }
+
+    /// Ends the search if it does not come forward.
+    fn judge(&mut self, threshold: f64) {
+        let run = &mut self.run;
+        let moved = run.before - run.fitness;
+        run.before = run.fitness;
+        if run.fitness - moved > run.origin || !run.fitness.is_finite() {
+            run.running = false;
+        } else if moved < PROGRESS * (run.fitness - threshold) {
+            run.running = false;
+            self.ends.add(&run.best, run.fitness, false);
+        }
+    }
+}
+
+impl<S: Real> Engine<S> for Searches<S> {
+    fn begin(&mut self, context: &dyn Context<S>) {
+        let dimension = context.space().dimension();
+        *self = Self {
+            start: vec![0.5; dimension],
+            run: Run {
+                best: vec![0.5; dimension],
+                ..Run::default()
+            },
+            position: vec![S::zero(); dimension],
+            ..Self::new(self.settings.clone())
+        };
+    }
+
+    fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        let space = context.space();
+        let dimension = self.position.len();
+        if !self.run.running || self.distribution.sampled() == 0 {
+            if dimension > 1
+                && self.pairs.is_left(self.hits.len() / dimension)
+                && self.arms[1].draw(rng) > self.arms[0].draw(rng)
+            {
+                self.recombine(context, rng, out);
+                if !out.is_empty() {
+                    self.asked = Asked::Recombinations;
+                    return Ask::More;
+                }
+            }
+            if !self.run.running {
+                self.begin_run(rng);
+            } else if let Some(index) = self.approached() {
+                self.run.looked = self.distribution.spread();
+                for probe in 1..=PROBES.min(points_between_looks(dimension)) {
+                    let share = probe as f64 / (PROBES as f64 + 1.0);
+                    let ends = self.run.best.iter().zip(self.ends.place(index, dimension));
+                    let between = ends.map(|(a, b)| a + share * (b - a));
+                    out.push_with(|position| to_position(space, between, position));
+                }
+                self.asked = Asked::Probes;
+                return Ask::More;
+            }
+        }
+        self.asked = Asked::Samples;
+        let left = self.run.size - self.distribution.sampled();
+        for _ in 0..left.min(points_between_looks(dimension)) {
+            let sample = self.distribution.sample(rng);
+            out.push_with(|position| to_position(space, sample, position));
+        }
+        Ask::More
+    }
+
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        let space = context.space();
+        for (position, outcome) in batch.points().zip(outcomes) {
+            if outcome.is_hit() {
+                // Hits are kept at the centres of their cells.
+                let axes = space.axes().iter().zip(position);
+                self.hits
+                    .extend(axes.map(|(axis, &x)| axis.position(axis.value(x))));
+                let mut place = vec![0.0; position.len()];
+                to_place(space, position, &mut place);
+                self.ends.add(&place, outcome.fitness().f64(), true);
+            }
+        }
+        let is_recombined = origin == Origin::Engine && self.asked == Asked::Recombinations;
+        if is_recombined || origin == Origin::Start {
+            for (position, outcome) in batch.points().zip(outcomes) {
+                if let Outcome::Miss(fitness) = *outcome {
+                    self.keep(space, position, fitness.f64());
+                }
+            }
+        }
+        if origin != Origin::Engine {
+            return;
+        }
+        match self.asked {
+            Asked::Samples => self.learn(context, batch, outcomes),
+            Asked::Probes => {
+                let is_low = |outcome: &Outcome<S>| {
+                    *outcome == Outcome::Deleted || outcome.fitness().f64() <= self.run.fitness
+                };
+                self.run.running = !outcomes.iter().all(is_low);
+                for outcome in outcomes {
+                    self.arms[0].count(outcome.is_hit());
+                }
+            }
+            Asked::Recombinations => {
+                for outcome in outcomes {
+                    self.arms[1].count(outcome.is_hit());
+                }
+            }
+        }
+        Arm::fade(&mut self.arms, outcomes.len());
+    }
+
+    fn save(&self, state: &mut State) {
+        Part::save(self, state);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        Part::restore(self, from)?;
+        let dimension = self.position.len();
+        let fits = self.start.len() == dimension
+            && self.run.best.len() == dimension
+            && (!self.run.running || self.distribution.fit(dimension, self.run.size))
+            && self.ends.fit(dimension)
+            && self.misses.iter().all(|miss| miss.place.len() == dimension)
+            && self.pairs.fit(self.hits.len() / dimension.max(1), dimension);
+        fits.then_some(())
+            .ok_or_else(|| Error::State("its parts do not fit each other".to_owned()))
+    }
+}
+
+impl<S: Real> Part for Searches<S> {
+    crate::saved_fields!(
+        ends,
+        hits,
+        pairs,
+        misses,
+        arms,
+        restarts,
+        spent,
+        start,
+        run,
+        distribution,
+        asked,
+        position
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Budget, Search, from_fn};
+
+    /// A wide basin that catches nearly all searches, and narrow ones.
+    #[test]
+    fn narrow_basins_beside_a_wide_one_are_found() {
+        let narrow = [[0.1, 0.1, 0.9], [0.9, 0.2, 0.1], [0.15, 0.9, 0.2]];
+        let space = Space::new((0..3).map(|_| Axis::continuous(0.0, 1.0))).unwrap();
+        let fitness = move |x: &[f64]| {
+            let square = |y: &[f64; 3]| y.iter().zip(x).map(|(y, x)| (y - x) * (y - x)).sum::<f64>();
+            let wide = square(&[0.6, 0.6, 0.6]);
+            narrow.iter().map(|y| 100.0 * square(y)).fold(wide, f64::min)
+        };
+        for seed in 0..10 {
+            let problem = from_fn(space.clone(), 1e-6, fitness).separation(0.01);
+            let mut search = Search::with(Niching::default()).seed(seed);
+            let report = search
+                .run(&problem, &Budget::evaluations(40_000).and_hits(4))
+                .unwrap();
+            assert_eq!(report.hit_count(), 4, "seed {seed}");
+        }
+    }
+}
