@@ -481,7 +481,7 @@ mod tests {
         let fitness = move |x: &[f64]| {
             let square = |y: &[f64; 3]| y.iter().zip(x).map(|(y, x)| (y - x) * (y - x)).sum::<f64>();
             let wide = square(&[0.6, 0.6, 0.6]);
-            narrow.iter().map(|y| 100.0 * square(y)).fold(wide, f64::min)
+            narrow.iter().map(|y| 16.0 * square(y)).fold(wide, f64::min)
         };
         for seed in 0..10 {
             let problem = from_fn(space.clone(), 1e-6, fitness).separation(0.01);
