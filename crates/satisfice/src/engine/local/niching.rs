@@ -254,7 +254,7 @@ impl<S: Real> Searches<S> {
     /// A known end that the search seems to be on its way to, if it is time to look.
     fn approached(&self) -> Option<usize> {
         let spread = self.distribution.spread();
-        if !(spread <= 0.5 * self.run.looked) || !self.run.fitness.is_finite() {
+        if spread > 0.5 * self.run.looked || !self.run.fitness.is_finite() {
             return None;
         }
         let (index, distance) = self.ends.nearest(&self.distribution.mean)?;
