@@ -29,6 +29,9 @@ const ROUNDS: usize = 3;
 const AT_FULL_EFFORT: usize = 128;
 /// New points at which the next fit is due, at most.
 const MOST_NEW: usize = 40;
+/// Deviations of the penalty around hits: so many reaches, and at least this share of a length scale.
+const REACHES: f64 = 2.0;
+const SCALES: f64 = 0.5;
 /// Candidates that are examined for one proposal.
 const EXAMINED: usize = 4096;
 
@@ -247,16 +250,18 @@ impl Model {
         best
     }
 
-    /// Where no candidate is hopeful, what is left next to a hit is its slope: candidates lose by being close to one.
+    /// Where no candidate is hopeful, what is left next to a hit is its slope, the lowest there is: candidates lose by being close to one.
     fn spread<S>(&self, score: Score, x: &[f64], given: &Given<'_, S>) -> Score {
         if score.hopeful {
             return score;
         }
         let record = given.record;
+        let deviations = |(&reach, length): (&f64, f64)| (REACHES * reach).max(SCALES * length.min(0.5));
+        let slope: Vec<f64> = self.reach.iter().zip(self.lengths()).map(deviations).collect();
         let hits = record
             .hits
             .iter()
-            .map(|&hit| square(given.units, record.point(hit), x, &self.reach));
+            .map(|&hit| square(given.units, record.point(hit), x, &slope));
         let nearest = hits.fold(f64::INFINITY, f64::min);
         Score {
             value: score.value - (-nearest / 2.0).exp(),

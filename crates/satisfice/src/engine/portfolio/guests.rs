@@ -37,6 +37,9 @@ const MODEL_WEIGHT: f64 = 40.0;
 /// evaluations. Where hits are many, the model is as good as descents; of isolated hits it knows only what descents tell it.
 const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
 const FIRST_SHARE: f64 = 0.5;
+/// Weights of the model and of descents by quadratic models where F is a step function.
+const MODEL_WEIGHT_ON_STEPS: f64 = 4.0;
+const QUADRATIC_WEIGHT_ON_STEPS: f64 = 0.5;
 /// With at most this many axes, a matrix takes no more memory and time than a few steps.
 const CMA_AXES: usize = 200;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
@@ -297,14 +300,15 @@ impl<S: Real> Guests<S> {
     }
 
     /// The credits and weights of the engines that are worth trying and have no part of the batch yet. `modelled`: whether a model of F is
-    /// at work.
+    /// at work. `steps`: whether F is a step function.
     pub(super) fn arms<'a>(
         &'a self,
         all: &'a Credit,
         trial: Trial,
         modelled: bool,
+        steps: bool,
     ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
-        let descends_first = modelled && self.continuous;
+        let descends_first = modelled && self.continuous && !steps;
         let ready = self.guests.iter().enumerate();
         ready.filter_map(move |(index, guest)| {
             if !guest.open || !guest.own.is_empty() {
@@ -313,11 +317,13 @@ impl<S: Real> Guests<S> {
             let is_worth_trying = guest.arm.is_worth_trying(all, trial);
             let weight = match (guest.kind, &guest.engine) {
                 (Kind::Cma, _) => is_worth_trying.then_some(2.0),
+                (Kind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
                 (Kind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
                 (Kind::Flood, _) => is_worth_trying.then_some(1.0),
                 (Kind::Regions, _) => is_worth_trying.then_some(0.3),
                 (Kind::Model, Member::Model(model)) => match model.is_useful() {
                     None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
+                    None | Some(true) if steps => Some(MODEL_WEIGHT_ON_STEPS),
                     None | Some(true) => Some(MODEL_WEIGHT),
                     Some(false) => guest.arm.is_within(all, trial).then_some(1.0),
                 },

@@ -3,6 +3,7 @@
 mod climbers;
 pub(super) mod credit;
 mod guests;
+mod levels;
 mod moves;
 mod near_misses;
 mod neighbourhoods;
@@ -82,7 +83,8 @@ engine_settings! {
     /// 18 %, except for descents on a lattice and uniform points. So does the model, once it is known to predict less than a quarter of the
     /// variance of F; until then the others together take at most 6 % beside it. On continuous axes the model and descents, by quadratic models
     /// and without, look for the first hit together with up to half of the evaluations: the more a source has lowered the least F, the
-    /// more it is asked. All sources learn the hits of the others. No parameter depends on the problem.
+    /// more it is asked; not so where most values of F repeat others: of a step function uniform points and swarms know as much as descents.
+    /// All sources learn the hits of the others. No parameter depends on the problem.
     ///
     /// ```
     /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};

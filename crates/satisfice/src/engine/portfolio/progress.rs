@@ -1,6 +1,7 @@
 //! Which source looks for the first hit beside a model of F: the one that brings the search closer to it.
 
 use super::credit::draw;
+use super::levels::Levels;
 use crate::batch::Outcome;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -23,8 +24,10 @@ pub(super) enum Seeker {
 }
 
 /// How much each source has lowered the least `F - delta` of the search, as the logarithm of the ratio.
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct Progress {
+    /// Values of F, where an axis is continuous.
+    pub(super) levels: Levels,
     least: f64,
     gains: [f64; 3],
     evaluations: [f64; 3],
@@ -33,6 +36,7 @@ pub(super) struct Progress {
 impl Default for Progress {
     fn default() -> Self {
         Self {
+            levels: Levels::default(),
             least: f64::INFINITY,
             gains: [0.0; 3],
             evaluations: [0.0; 3],

@@ -1,18 +1,19 @@
 //! The engine of the portfolio: it chooses a source, and learns from the outcomes.
 
+mod choice;
 mod proposals;
 
 use proposals::SCANNED;
 
 use super::climbers::Climbers;
-use super::credit::{Credit, Patches, Trial, draw};
+use super::credit::{Credit, Patches};
 use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
-use super::progress::{Progress, Seeker};
+use super::progress::Progress;
 use super::scan::Scan;
-use super::source::{ARMS, CROSS, DESCENT, MEMBER, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag, Tally, arm_of};
+use super::source::{ARMS, Source, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -34,9 +35,6 @@ const FIRST: usize = 4;
 /// Batches grow by one point every `SLOW` evaluations, up to `LARGEST`: small ones learn sooner, large ones cost less time.
 const SLOW: usize = 2048;
 const LARGEST: usize = 32;
-/// A choice of source lasts for one more candidate every `TURN` evaluations, up to `LONGEST_TURN`: choosing costs time.
-const TURN: u64 = 128;
-const LONGEST_TURN: u64 = 8;
 /// Share of the evaluations that serve to estimate how complete the result is.
 const PROBES: f64 = 0.02;
 
@@ -121,100 +119,6 @@ impl<S: Real> Sources<S> {
 
     fn hit_count(&self) -> usize {
         self.hits.len() / self.position.len().max(1)
-    }
-
-    /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
-    fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
-        if let Some((tag, left @ 1..)) = self.chosen
-            && !(tag.0 == Source::Guest && self.guests.has_part(tag.1))
-        {
-            return (tag, left);
-        }
-        let turn = (self.whole.evaluations() / TURN).min(LONGEST_TURN);
-        let chosen = (self.choose(rng), turn.max(self.block as u64));
-        self.chosen = Some(chosen);
-        chosen
-    }
-
-    /// Draws a source, with the index of the step for [`Source::Step`].
-    fn choose(&self, rng: &mut SearchRng) -> Tag {
-        let uses = |source: Omitted| self.without != source;
-        let price = self.whole.price();
-        // The model proposes one point; the other workers are for the other sources.
-        let modelled = self.batch == 1 && self.guests.has_model();
-        if modelled && let Some([model, quadratic]) = self.guests.seekers(&self.whole, self.planned) {
-            return match self.progress.choose(rng) {
-                Seeker::Model => (Source::Guest, model),
-                Seeker::Quadratic => (Source::Guest, quadratic),
-                Seeker::Direct => (Source::Descent, 0),
-            };
-        }
-        let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
-        let mut offer = |yields: f64, tag: Tag| {
-            let worth = self.patches.worth(self.role(tag), yields);
-            if worth > best.0 {
-                best = (worth, tag);
-            }
-        };
-        let trial = if modelled {
-            Trial::beside_model(self.barren())
-        } else {
-            Trial::new(self.planned, self.barren())
-        };
-        let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
-        if !modelled || is_worth(0) {
-            offer(self.arms[0].draw(price, 0.3, rng), (Source::Uniform, 0));
-        }
-        if (self.visited.is_some() && !modelled) || is_worth(DESCENT) {
-            offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
-        }
-        if uses(Omitted::Swarms) && is_worth(1) {
-            offer(self.arms[1].draw(price, 0.5, rng), (Source::Swarm, 0));
-        }
-        if uses(Omitted::Climbers) && is_worth(2) {
-            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
-        }
-        if uses(Omitted::Populations) && self.populations.are_usable() && is_worth(MEMBER) {
-            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
-        }
-        let hits = self.hit_count();
-        if uses(Omitted::Learning) && hits >= 3 && is_worth(TRIAL) {
-            offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));
-        }
-        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && is_worth(CROSS) {
-            offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
-        }
-        if uses(Omitted::Steps)
-            && (!modelled || is_worth(STEP))
-            && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
-        {
-            offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
-        }
-        if self.neighbourhoods.has_more() && (!modelled || is_worth(NEIGHBOUR)) {
-            offer(self.arms[NEIGHBOUR].draw(price, 2.0, rng), (Source::Neighbour, 0));
-        }
-        if uses(Omitted::NearMisses)
-            && let Some((good, all)) = self.near_misses.posterior()
-        {
-            offer(draw(rng, good, all), (Source::NearMiss, 0));
-        }
-        for (index, arm, weight) in self.guests.arms(&self.whole, trial, modelled) {
-            offer(arm.draw(price, weight, rng), (Source::Guest, index));
-        }
-        best.1
-    }
-
-    /// Number of sources without a hit.
-    fn barren(&self) -> usize {
-        let arms = self.arms.iter().chain(self.guests.credits());
-        arms.filter(|arm| arm.is_barren()).count()
-    }
-
-    fn role(&self, (source, index): Tag) -> Role {
-        match source {
-            Source::Guest => self.guests.role(index),
-            _ => source.role(),
-        }
     }
 }
 
@@ -405,6 +309,11 @@ impl<S: Real> Engine<S> for Sources<S> {
                 Source::Uniform | Source::Trial | Source::Guest => {}
             }
         }
+        if self.visited.is_none() {
+            outcomes
+                .iter()
+                .for_each(|outcome| self.progress.levels.count(*outcome));
+        }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
             if *outcome == Outcome::NotEvaluated {
                 continue;
@@ -444,7 +353,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
-        (self.whole, self.patches, self.progress).save(state);
+        (self.whole, self.patches, self.progress.clone()).save(state);
         (self.chosen, self.planned).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);

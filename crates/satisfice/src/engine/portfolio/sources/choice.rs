@@ -1,0 +1,116 @@
+//! Which source is next.
+
+use super::Sources;
+use crate::engine::portfolio::Omitted;
+use crate::engine::portfolio::credit::{Trial, draw};
+use crate::engine::portfolio::progress::Seeker;
+use crate::engine::portfolio::source::{CROSS, DESCENT, MEMBER, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+
+/// A choice of source lasts for one more candidate every `TURN` evaluations, up to `LONGEST_TURN`: choosing costs time.
+const TURN: u64 = 128;
+const LONGEST_TURN: u64 = 8;
+/// Weight of uniform points and swarms where F is a step function, which has no slope to descend.
+const BLIND: f64 = 4.0;
+impl<S: Real> Sources<S> {
+    /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
+    pub(super) fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
+        if let Some((tag, left @ 1..)) = self.chosen
+            && !(tag.0 == Source::Guest && self.guests.has_part(tag.1))
+        {
+            return (tag, left);
+        }
+        let turn = (self.whole.evaluations() / TURN).min(LONGEST_TURN);
+        let chosen = (self.choose(rng), turn.max(self.block as u64));
+        self.chosen = Some(chosen);
+        chosen
+    }
+
+    /// Draws a source, with the index of the step for [`Source::Step`].
+    fn choose(&self, rng: &mut SearchRng) -> Tag {
+        let uses = |source: Omitted| self.without != source;
+        let price = self.whole.price();
+        // The model proposes one point; the other workers are for the other sources.
+        let modelled = self.batch == 1 && self.guests.has_model();
+        let steps = self.progress.levels.are_few();
+        let blind = |weight| if steps { BLIND } else { weight };
+        let seekers = self.guests.seekers(&self.whole, self.planned);
+        if modelled
+            && !steps
+            && let Some([model, quadratic]) = seekers
+        {
+            return match self.progress.choose(rng) {
+                Seeker::Model => (Source::Guest, model),
+                Seeker::Quadratic => (Source::Guest, quadratic),
+                Seeker::Direct => (Source::Descent, 0),
+            };
+        }
+        let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
+        let mut offer = |yields: f64, tag: Tag| {
+            let worth = self.patches.worth(self.role(tag), yields);
+            if worth > best.0 {
+                best = (worth, tag);
+            }
+        };
+        let trial = if modelled {
+            Trial::beside_model(self.barren())
+        } else {
+            Trial::new(self.planned, self.barren())
+        };
+        let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
+        if !modelled || steps || is_worth(0) {
+            offer(self.arms[0].draw(price, blind(0.3), rng), (Source::Uniform, 0));
+        }
+        if (self.visited.is_some() && !modelled) || is_worth(DESCENT) {
+            offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
+        }
+        if uses(Omitted::Swarms) && (steps || is_worth(1)) {
+            offer(self.arms[1].draw(price, blind(0.5), rng), (Source::Swarm, 0));
+        }
+        if uses(Omitted::Climbers) && is_worth(2) {
+            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
+        }
+        if uses(Omitted::Populations) && self.populations.are_usable() && is_worth(MEMBER) {
+            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
+        }
+        let hits = self.hit_count();
+        if uses(Omitted::Learning) && hits >= 3 && is_worth(TRIAL) {
+            offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));
+        }
+        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && is_worth(CROSS) {
+            offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
+        }
+        if uses(Omitted::Steps)
+            && (!modelled || is_worth(STEP))
+            && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
+        {
+            offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
+        }
+        if self.neighbourhoods.has_more() && (!modelled || is_worth(NEIGHBOUR)) {
+            offer(self.arms[NEIGHBOUR].draw(price, 2.0, rng), (Source::Neighbour, 0));
+        }
+        if uses(Omitted::NearMisses)
+            && let Some((good, all)) = self.near_misses.posterior()
+        {
+            offer(draw(rng, good, all), (Source::NearMiss, 0));
+        }
+        for (index, arm, weight) in self.guests.arms(&self.whole, trial, modelled, steps) {
+            offer(arm.draw(price, weight, rng), (Source::Guest, index));
+        }
+        best.1
+    }
+
+    /// Number of sources without a hit.
+    fn barren(&self) -> usize {
+        let arms = self.arms.iter().chain(self.guests.credits());
+        arms.filter(|arm| arm.is_barren()).count()
+    }
+
+    pub(super) fn role(&self, (source, index): Tag) -> Role {
+        match source {
+            Source::Guest => self.guests.role(index),
+            _ => source.role(),
+        }
+    }
+}
