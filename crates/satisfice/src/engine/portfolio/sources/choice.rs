@@ -13,6 +13,7 @@ const TURN: u64 = 128;
 const LONGEST_TURN: u64 = 8;
 /// Weight of uniform points and swarms where F is a step function, which has no slope to descend.
 const BLIND: f64 = 4.0;
+
 impl<S: Real> Sources<S> {
     /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
     pub(super) fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
