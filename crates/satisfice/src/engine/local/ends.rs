@@ -12,6 +12,9 @@ pub(super) struct Ends {
     ends: Vec<End>,
     /// Where the next one is written, once there is no room.
     oldest: usize,
+    /// Memory of one choice.
+    #[serde(skip)]
+    list: Vec<usize>,
 }
 
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -87,14 +90,13 @@ impl Ends {
     /// An end from which to search on: no hit, none better within `apart`, a good one from which few have searched. That one more
     /// has is noted. Cost: O(n log n).
     pub(super) fn promising(&mut self, apart: f64) -> Option<usize> {
-        let mut list: Vec<usize> = (0..self.ends.len())
-            .filter(|&index| !self.ends[index].is_hit && self.ends[index].apart >= apart)
-            .collect();
-        list.sort_by(|&a, &b| self.ends[a].fitness.total_cmp(&self.ends[b].fitness));
-        let cost =
-            |&(rank, &index): &(usize, &usize)| (rank as u64 + 1) * (u64::from(self.ends[index].tries) + 1);
+        let Self { ends, list, .. } = self;
+        list.clear();
+        list.extend((0..ends.len()).filter(|&index| !ends[index].is_hit && ends[index].apart >= apart));
+        list.sort_unstable_by(|&a, &b| ends[a].fitness.total_cmp(&ends[b].fitness).then(a.cmp(&b)));
+        let cost = |&(rank, &index): &(usize, &usize)| (rank as u64 + 1) * (u64::from(ends[index].tries) + 1);
         let (_, &index) = list.iter().enumerate().min_by_key(cost)?;
-        let tries = &mut self.ends[index].tries;
+        let tries = &mut ends[index].tries;
         *tries = tries.saturating_add(1);
         Some(index)
     }

@@ -3,6 +3,8 @@
 //! Beyer, Sendhoff 2017, doi 10.1109/TEVC.2017.2680320, with weights and rates as published there. In many dimensions only the
 //! variances are adapted, in O(D), at the faster rates of Ros, Hansen 2008, doi 10.1007/978-3-540-87700-4_30.
 
+use core::mem;
+
 use crate::seed::SearchRng;
 
 /// In more dimensions than this, M is diagonal: a full matrix would take 8 D^2 bytes and every sample D^2 operations.
@@ -22,6 +24,11 @@ pub(super) struct Distribution {
     draws: Vec<f64>,
     steps: Vec<f64>,
     fitness: Vec<f64>,
+    /// Memory of one adaptation: the samples from the best on, and the mean draw of the better half.
+    #[serde(skip)]
+    order: Vec<usize>,
+    #[serde(skip)]
+    centre: Vec<f64>,
 }
 
 /// The usual size of a generation.
@@ -143,10 +150,13 @@ impl Distribution {
         }
         let many = many.min(1.0 - one);
 
-        let mut order: Vec<usize> = (0..self.fitness.len()).collect();
-        order.sort_by(|&a, &b| self.fitness[a].total_cmp(&self.fitness[b]));
+        let (mut order, mut centre) = (mem::take(&mut self.order), mem::take(&mut self.centre));
+        order.clear();
+        order.extend(0..self.fitness.len());
+        order.sort_unstable_by(|&a, &b| self.fitness[a].total_cmp(&self.fitness[b]).then(a.cmp(&b)));
         order.truncate(self.weights.len());
-        let mut centre = vec![0.0; n];
+        centre.clear();
+        centre.resize(n, 0.0);
         for (&k, &weight) in order.iter().zip(&self.weights) {
             let row = k * n..(k + 1) * n;
             for (c, z) in centre.iter_mut().zip(&self.draws[row.clone()]) {
@@ -193,6 +203,7 @@ impl Distribution {
         self.draws.clear();
         self.steps.clear();
         self.fitness.clear();
+        (self.order, self.centre) = (order, centre);
     }
 }
 

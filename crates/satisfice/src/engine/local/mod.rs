@@ -7,6 +7,7 @@ mod ends;
 pub(super) mod flood;
 pub(super) mod luby;
 mod matrix_adaptation;
+mod misses;
 mod niching;
 pub(super) mod one_plus_one;
 mod random;

@@ -4,6 +4,7 @@
 use super::bandit::Arm;
 use super::ends::Ends;
 use super::matrix_adaptation::{Distribution, usual_size};
+use super::misses::Misses;
 use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_between_looks};
@@ -67,13 +68,13 @@ const HOPS: (f64, f64) = (0.01, 0.2);
 const SETTLING: f64 = 0.1;
 /// The first step from a near miss.
 const REFINING_STEP: f64 = 0.003;
-/// Near misses that are kept to be searched from.
-const MISSES: usize = 16;
 /// Recombinations that are examined for one that is not a known hit, for each candidate of a batch.
 const LOOKS: usize = 8;
 /// How often a generation is of twice the usual size, and how often again; up to so many coordinates.
 const DOUBLING: f64 = 0.25;
 const COORDINATES: usize = 1 << 20;
+/// Samples at once: the rest of a larger generation is left out if one of these hits.
+const AT_ONCE: usize = 64;
 /// Spreads within which a known end has to be to be looked at: a hit, and another end. Around those, F is often rugged.
 const SCOPE: (f64, f64) = (1.0, 0.2);
 /// Points between a search and a known end that tell whether there is a hill.
@@ -91,13 +92,6 @@ enum Asked {
     /// Points between the search and a known end.
     Probes,
     Recombinations,
-}
-
-/// A recombination that was no hit.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-struct Miss {
-    place: Vec<f64>,
-    fitness: f64,
 }
 
 /// What is known of the search that runs.
@@ -127,8 +121,8 @@ struct Searches<S> {
     ends: Ends,
     hits: Vec<S>,
     pairs: Pairs,
-    /// The best near misses, the best one last.
-    misses: Vec<Miss>,
+    /// Recombinations that were no hits.
+    misses: Misses,
     /// What searches and recombinations have yielded.
     arms: [Arm; 2],
     restarts: u64,
@@ -139,6 +133,8 @@ struct Searches<S> {
     distribution: Distribution,
     asked: Asked,
     position: Vec<S>,
+    /// Memory of one place.
+    place: Vec<f64>,
 }
 
 fn to_place<S: Real>(space: &Space<S>, position: &[S], place: &mut [f64]) {
@@ -169,7 +165,7 @@ impl<S: Real> Searches<S> {
             ends: Ends::default(),
             hits: Vec::new(),
             pairs: Pairs::default(),
-            misses: Vec::new(),
+            misses: Misses::default(),
             arms: [Arm::default(); 2],
             restarts: 0,
             spent: [0; 2],
@@ -178,6 +174,7 @@ impl<S: Real> Searches<S> {
             distribution: Distribution::default(),
             asked: Asked::default(),
             position: Vec::new(),
+            place: Vec::new(),
         }
     }
 
@@ -217,10 +214,9 @@ impl<S: Real> Searches<S> {
             before: f64::INFINITY,
             looked: f64::INFINITY,
         };
-        if self.restarts.is_multiple_of(2)
-            && let Some(miss) = self.misses.pop()
-        {
-            self.distribution.reset(&miss.place, REFINING_STEP, self.run.size);
+        let (size, distribution) = (self.run.size, &mut self.distribution);
+        let start = |place: &[f64]| distribution.reset(place, REFINING_STEP, size);
+        if self.restarts.is_multiple_of(2) && self.misses.take_best(start) {
             return;
         }
         let step = self.hop(rng).unwrap_or_else(|| {
@@ -260,20 +256,6 @@ impl<S: Real> Searches<S> {
         let (index, distance) = self.ends.nearest(&self.distribution.mean)?;
         let scope = if self.ends.is_hit(index) { SCOPE.0 } else { SCOPE.1 };
         (distance < scope * spread && self.ends.fitness(index) < self.run.fitness).then_some(index)
-    }
-
-    /// Keeps a near miss, if it is among the best.
-    fn keep(&mut self, space: &Space<S>, position: &[S], fitness: f64) {
-        let at = self.misses.partition_point(|miss| miss.fitness > fitness);
-        if !fitness.is_finite() || (self.misses.len() == MISSES && at == 0) {
-            return;
-        }
-        let mut place = vec![0.0; position.len()];
-        to_place(space, position, &mut place);
-        self.misses.insert(at, Miss { place, fitness });
-        if self.misses.len() > MISSES {
-            self.misses.remove(0);
-        }
     }
 
     /// Takes what became of samples.
@@ -382,7 +364,7 @@ impl<S: Real> Engine<S> for Searches<S> {
         }
         self.asked = Asked::Samples;
         let left = self.run.size - self.distribution.sampled();
-        for _ in 0..left.min(points_between_looks(dimension)) {
+        for _ in 0..left.min(AT_ONCE).min(points_between_looks(dimension)) {
             let sample = self.distribution.sample(rng);
             out.push_with(|position| to_position(space, sample, position));
         }
@@ -397,16 +379,18 @@ impl<S: Real> Engine<S> for Searches<S> {
                 let axes = space.axes().iter().zip(position);
                 self.hits
                     .extend(axes.map(|(axis, &x)| axis.position(axis.value(x))));
-                let mut place = vec![0.0; position.len()];
-                to_place(space, position, &mut place);
-                self.ends.add(&place, outcome.fitness().f64(), true);
+                self.place.resize(position.len(), 0.0);
+                to_place(space, position, &mut self.place);
+                self.ends.add(&self.place, outcome.fitness().f64(), true);
             }
         }
         let is_recombined = origin == Origin::Engine && self.asked == Asked::Recombinations;
         if is_recombined || origin == Origin::Start {
             for (position, outcome) in batch.points().zip(outcomes) {
                 if let Outcome::Miss(fitness) = *outcome {
-                    self.keep(space, position, fitness.f64());
+                    self.misses.keep(position.len(), fitness.f64(), |place| {
+                        to_place(space, position, place);
+                    });
                 }
             }
         }
@@ -444,7 +428,7 @@ impl<S: Real> Engine<S> for Searches<S> {
             && self.run.best.len() == dimension
             && (!self.run.running || self.distribution.fit(dimension, self.run.size))
             && self.ends.fit(dimension)
-            && self.misses.iter().all(|miss| miss.place.len() == dimension)
+            && self.misses.fit(dimension)
             && self.pairs.fit(self.hits.len() / dimension.max(1), dimension);
         fits.then_some(())
             .ok_or_else(|| Error::State("its parts do not fit each other".to_owned()))
