@@ -9,6 +9,9 @@ use crate::space::Space;
 /// Lattices of at most this many points are enumerated from the start.
 const SMALL: u64 = 4096;
 
+/// The pace of fewer evaluations says little: the first ones may take a hundred times as long.
+const PACED: u64 = 256;
+
 /// A search is stale when it has gone without a new hit for as long as an enumeration takes to meet this many, by the hits known:
 /// a search that still finds has such pauses, too.
 const PATIENCE: u64 = 16;
@@ -75,7 +78,7 @@ impl Scan {
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
             let (takes, left) = (rest * used, (1.0 - used) * made as f64);
-            takes <= left && (due || takes > left / 2.0)
+            takes <= left && (due || (made >= PACED && takes > left / 2.0))
         } else {
             self.points <= SMALL
         };
