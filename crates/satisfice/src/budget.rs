@@ -1,4 +1,4 @@
-//! When to stop: time, evaluations, hits, cancellation, in any combination.
+//! When to stop: time, evaluations, hits, patience, cancellation, in any combination.
 
 use core::time::Duration;
 
@@ -25,6 +25,9 @@ pub struct Budget {
     pub evaluations: Option<u64>,
     /// Distinct hits.
     pub hits: Option<u64>,
+    /// Evaluations in succession without a new hit.
+    #[serde(default)]
+    pub patience: Option<u64>,
     /// Evaluations to which schedules relate, if not the budget itself.
     pub horizon: Option<u64>,
     /// How many evaluations can go on at once, where that is known.
@@ -95,6 +98,24 @@ impl Budget {
         self.hits = Some(hits);
         self
     }
+    /// Also ends after so many evaluations in succession without a new hit, those before the first hit included.
+    ///
+    /// Deleted candidates count as evaluations. The slice up to there is the same as without this limit. Several
+    /// [islands](crate::Search::islands) count all their evaluations, and end when they exchange their hits.
+    ///
+    /// ```
+    /// use satisfice::{from_fn, Budget, Search, Space, StopReason};
+    ///
+    /// let disc = from_fn(Space::lattice(2, 1000)?, 2.5, |x: &[f64]| (x[0] - 500.0).hypot(x[1] - 200.0));
+    /// let report = Search::named("descent-flood")?.run(&disc, &Budget::millis(10_000).and_patience(5_000))?;
+    /// assert_eq!((report.hit_count(), report.stop_reason), (21, StopReason::Patience));
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn and_patience(mut self, evaluations: u64) -> Self {
+        self.patience = Some(evaluations);
+        self
+    }
     /// Also ends when the flag is raised.
     #[must_use]
     pub fn and_until(mut self, cancel: &Cancel) -> Self {
@@ -133,9 +154,10 @@ impl Budget {
     /// # Errors
     /// [`Error::Budget`] if nothing limits the slice, or if a limit is zero.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        if self.time.is_none() && self.evaluations.is_none() && self.hits.is_none() && self.cancel.is_none() {
+        let counts = [self.evaluations, self.hits, self.patience];
+        if self.time.is_none() && counts.iter().all(Option::is_none) && self.cancel.is_none() {
             return Err(Error::Budget(
-                "nothing limits it: give a time, a number of evaluations or of hits",
+                "nothing limits it: give a time, a number of evaluations or of hits, or a patience",
             ));
         }
         if self.time.is_some() && !crate::clock::PASSES {
@@ -153,6 +175,11 @@ impl Budget {
         }
         if self.hits == Some(0) {
             return Err(Error::Budget("the number of hits is zero: give at least 1"));
+        }
+        if self.patience == Some(0) {
+            return Err(Error::Budget(
+                "the patience is zero: give at least 1 evaluation without a new hit",
+            ));
         }
         if self.horizon == Some(0) {
             return Err(Error::Budget("the horizon is zero: give at least 1 evaluation"));
@@ -190,6 +217,8 @@ pub enum StopReason {
     Evaluations,
     /// Enough hits.
     Hits,
+    /// Too many evaluations in succession brought no new hit.
+    Patience,
     /// [`Cancel::cancel`] was called.
     Cancelled,
     /// An observer asked to stop.
@@ -209,6 +238,7 @@ impl core::fmt::Display for StopReason {
             Self::Time => "stopped by time",
             Self::Evaluations => "stopped by evaluations",
             Self::Hits => "stopped by hits",
+            Self::Patience => "stopped by patience",
             Self::Cancelled => "cancelled",
             Self::Observer => "stopped by an observer",
             Self::Exhausted => "ended because the engine has nothing more to propose",

@@ -42,6 +42,10 @@ pub(crate) struct Ledger<T> {
     pub(crate) at_once: usize,
     /// When the next points of the trace are due, by evaluations and by time.
     next_count: u64,
+    /// The evaluation that ends the slice unless there is a new hit before.
+    stale_at: u64,
+    /// The first evaluation at which either is to be looked at.
+    next_event: u64,
     next_time: Duration,
     next_progress: Duration,
     /// Whether `next_time` or `next_progress` has come, as of the last look at the clock.
@@ -82,6 +86,7 @@ impl<T> Ledger<T> {
         while next <= counts.evaluations {
             next = next_count(next);
         }
+        let stale_at = stale_at(budget, &reached.archive);
         Self {
             budget: budget.clone(),
             counts,
@@ -98,6 +103,8 @@ impl<T> Ledger<T> {
             hold: None,
             at_once: 1,
             next_count: next,
+            stale_at,
+            next_event: next.min(stale_at),
             next_time: next_time(budget, elapsed),
             next_progress: elapsed.saturating_add(PROGRESS_EVERY),
             tick_is_due: false,
@@ -210,9 +217,28 @@ impl<T> Ledger<T> {
 
     #[inline]
     fn trace_if_due(&mut self) {
-        if self.counts.evaluations == self.next_count {
+        if self.counts.evaluations >= self.next_event {
+            self.trace_up_to_now();
+            self.stop_if_stale();
+        }
+    }
+
+    /// Enters the point of the trace that is due, if one is.
+    #[cold]
+    fn trace_up_to_now(&mut self) {
+        if self.counts.evaluations >= self.next_count {
             self.record();
-            self.next_count = next_count(self.next_count);
+            while self.next_count <= self.counts.evaluations {
+                self.next_count = next_count(self.next_count);
+            }
+        }
+        self.next_event = self.next_count.min(self.stale_at);
+    }
+
+    /// Ends the slice if too many evaluations have brought no new hit.
+    pub(crate) fn stop_if_stale(&mut self) {
+        if self.counts.evaluations >= self.stale_at {
+            self.stop.get_or_insert(StopReason::Patience);
         }
     }
 
@@ -293,6 +319,15 @@ impl<T> Ledger<T> {
 /// The next evaluation count of the trace: 1, 2, 3, …, 10, 12, 15, 19, 24, …: about ten a decade, the same in every run.
 pub(crate) fn next_count(count: u64) -> u64 {
     count.saturating_add((count / 4).max(1))
+}
+
+/// The evaluation that ends a slice unless there is a new hit before.
+fn stale_at<T>(budget: &Budget, archive: &Archive<T>) -> u64 {
+    let last = archive.len().checked_sub(1).and_then(|index| archive.get(index));
+    let last = last.map_or(0, |hit| hit.evaluation);
+    budget
+        .patience
+        .map_or(u64::MAX, |evaluations| last.saturating_add(evaluations))
 }
 
 /// The first hundredth of the time budget after `elapsed`.

@@ -2,7 +2,7 @@
 
 use num_traits::Float;
 
-use super::{Ledger, next_count};
+use super::{Ledger, stale_at};
 use crate::archive::{Hit, Insertion};
 use crate::batch::Outcome;
 use crate::best::Best;
@@ -144,10 +144,13 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         }
     }
 
-    /// Whether no later candidate of the batch is settled: there are enough hits, or an observer has stopped the slice. Time
+    /// Whether no later candidate of the batch is settled: there are enough hits or too many misses, or an observer has stopped the slice. Time
     /// that runs out in the middle of a batch loses nothing that was computed.
     pub(crate) fn stops_before_more(&self) -> bool {
-        matches!(self.stop, Some(StopReason::Hits | StopReason::Observer))
+        matches!(
+            self.stop,
+            Some(StopReason::Hits | StopReason::Observer | StopReason::Patience)
+        )
     }
 
     /// Judges an evaluated solution. Only one below the threshold is looked up in the archive.
@@ -247,12 +250,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let new = counts.evaluations.saturating_sub(self.counts.evaluations);
         self.counts = counts;
         self.pass(usize::try_from(new).unwrap_or(usize::MAX));
-        if self.counts.evaluations >= self.next_count {
-            self.record();
-            while self.next_count <= self.counts.evaluations {
-                self.next_count = next_count(self.next_count);
-            }
-        }
+        self.trace_up_to_now();
         self.look_at_limits(observer);
     }
 
@@ -283,6 +281,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// Tells the observer of the latest hit, and stops the slice if there are enough.
     #[cold]
     fn notify_hit(&mut self, observer: &mut dyn Observer<T>) {
+        self.stale_at = stale_at(&self.budget, &self.archive);
         let count = self.archive.len();
         if let Some(hit) = self.archive.get(count - 1)
             && observer.hit(hit, count).is_break()

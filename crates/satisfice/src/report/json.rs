@@ -39,6 +39,8 @@ struct Limits {
     hits: Option<u64>,
     slices: u64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    patience: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     horizon: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     parallel: Option<usize>,
@@ -64,6 +66,7 @@ impl Run {
                 evaluations: report.budget.evaluations,
                 hits: report.budget.hits,
                 slices: 1,
+                patience: report.budget.patience,
                 horizon: report.budget.horizon,
                 parallel: report.budget.parallel,
             },
@@ -114,6 +117,7 @@ impl<'de, T: Deserialize<'de> + Identity> Deserialize<'de> for Report<T> {
                 time: run.spec.budget.time_seconds.map(duration).transpose()?,
                 evaluations: run.spec.budget.evaluations,
                 hits: run.spec.budget.hits,
+                patience: run.spec.budget.patience,
                 horizon: run.spec.budget.horizon,
                 parallel: run.spec.budget.parallel,
                 cancel: None,

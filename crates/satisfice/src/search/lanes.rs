@@ -80,6 +80,7 @@ pub(super) fn share_of(budget: &Budget, lane: usize, count: usize, probes: f64) 
         let engines = all - probes_of(all, probes).min(all.saturating_sub(1));
         engines / count + u64::from(lane < engines % count)
     });
+    own.patience = None; // that of all lanes together
     own.horizon = budget.horizon.map(|all| all.div_ceil(count));
     own.time = budget
         .time
@@ -186,18 +187,19 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
             }
             progress.told[i] = ledger.archive.len();
         }
+        common.ledger.stop_if_stale();
         common.ledger.stops_before_more()
     }
 
     /// Ends the lanes; returns why.
     fn end(&mut self, lanes: &[RunningLane<S, T>]) -> StopReason {
-        use StopReason::{Cancelled, Covered, Evaluations, Hits, Observer, Panicked, Time};
+        use StopReason::{Cancelled, Covered, Evaluations, Hits, Observer, Panicked, Patience, Time};
         let sum = total(lanes.iter().map(|lane| lane.slice.counts()));
         let common = &mut self.common;
         common.calls.neighbours.set(sum.neighbour_calls);
         common.calls.bounds.set(sum.bound_calls);
         common.ledger.counts.bound_calls = sum.bound_calls;
-        if let Some(reason @ (Hits | Observer)) = common.ledger.stop {
+        if let Some(reason @ (Hits | Observer | Patience)) = common.ledger.stop {
             return reason;
         }
         // A lane that has covered the space has covered it for all.

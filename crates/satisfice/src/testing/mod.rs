@@ -37,6 +37,7 @@ pub fn difference<T: PartialEq + Debug>(a: &Report<T>, b: &Report<T>) -> Option<
         (
             r.budget.evaluations,
             r.budget.hits,
+            r.budget.patience,
             r.budget.horizon,
             r.budget.time,
         )

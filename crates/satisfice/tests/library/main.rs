@@ -5,6 +5,7 @@ mod best;
 mod equations;
 mod lanes;
 mod panics;
+mod patience;
 mod portfolio;
 mod problem_suite;
 mod rounds;

@@ -94,7 +94,7 @@ fn budget_is_kept<T>(report: &Report<T>) -> bool {
         .evaluations
         .is_none_or(|limit| match report.stop_reason {
             StopReason::Evaluations => spent == limit,
-            StopReason::Exhausted | StopReason::Covered => spent <= limit,
+            StopReason::Exhausted | StopReason::Covered | StopReason::Patience => spent <= limit,
             _ => false,
         })
 }
