@@ -17,6 +17,8 @@ pub struct RunOption {
     set: fn(&mut RunSpec, &str) -> Result<(), String>,
     /// Takes the value from another specification.
     copy: fn(&mut RunSpec, &RunSpec),
+    /// The value as JSON, where it is not what a run has by default.
+    shown: fn(&RunSpec) -> Option<String>,
 }
 
 impl RunOption {
@@ -31,6 +33,12 @@ impl RunOption {
     /// Takes the value from another specification.
     pub fn copy(&self, to: &mut RunSpec, from: &RunSpec) {
         (self.copy)(to, from);
+    }
+
+    /// The value, for people, where it is not what a run has by default.
+    #[must_use]
+    pub fn shown(&self, spec: &RunSpec) -> Option<String> {
+        (self.shown)(spec)
     }
 }
 
@@ -53,6 +61,10 @@ macro_rules! option {
                 Ok(())
             },
             copy: |to, from| to.$($field).+ = from.$($field).+,
+            shown: |spec| {
+                let value = &spec.$($field).+;
+                (*value != RunSpec::new("").$($field).+).then(|| serde_json::json!(value).to_string())
+            },
         }
     };
 }

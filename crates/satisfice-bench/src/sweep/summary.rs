@@ -10,6 +10,7 @@ use super::row::Row;
 use crate::statistics::{Estimate, Paired};
 use crate::table;
 use satisfice_catalogue::RunSpec;
+use satisfice_catalogue::options::OPTIONS;
 use satisfice_catalogue::quantity::shown;
 
 /// One problem of one part under its budget.
@@ -184,17 +185,11 @@ fn budget(spec: &RunSpec) -> String {
             .map(|count| format!("{} evaluations", shown::count(count))),
     );
     words.extend(limits.hits.map(|hits| format!("{hits} hits")));
-    let mut text = words.join(" or ");
-    if limits.slices > 1 {
-        text.push_str(&format!(", {} slices", limits.slices));
-    }
-    if let Some(share) = spec.probes {
-        text.push_str(&format!(", {share} probes"));
-    }
-    if spec.islands > 1 {
-        text.push_str(&format!(", {} islands", spec.islands));
-    }
-    text
+    let others = OPTIONS
+        .iter()
+        .filter(|option| !["time", "evaluations", "hits", "seed"].contains(&option.name));
+    let shown = others.filter_map(|option| Some(format!(", {} {}", option.name, option.shown(spec)?)));
+    words.join(" or ") + &shown.collect::<String>()
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts below 2^53")]
@@ -391,6 +386,24 @@ pub(super) fn legend(group: &Group) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_of_other_options_are_other_groups() {
+        let spec = RunSpec::new("random").evaluations(5000);
+        assert_eq!(budget(&spec), "5,000 evaluations");
+        for option in OPTIONS.iter().filter(|option| option.name != "seed") {
+            let mut other = spec.clone();
+            let value = match option.name {
+                "time" => "3s",
+                "probes" => "0.25",
+                _ => "7",
+            };
+            option.set(&mut other, value).unwrap();
+            assert_ne!(budget(&other), budget(&spec), "{}", option.name);
+        }
+        let spec = spec.slices(2).hits(9);
+        assert_eq!(budget(&spec), "5,000 evaluations or 9 hits, slices 2");
+    }
 
     #[test]
     fn a_comparison_is_in_words() {
