@@ -73,10 +73,12 @@ macro_rules! option {
 pub static OPTIONS: &[RunOption] = &[
     option!("time", "TIME", true, time => budget.time,
         "Limit the wall time of a slice, with its unit: 100us, 100ms, 1.5s, 3min, 1h [default: 1s for an engine, unless \
-         --evaluations is given]"),
+         --evaluations or --patience is given]"),
     option!("evaluations", "N", true, count => budget.evaluations,
         "Limit the evaluations of a slice, such as 5000 or 1e6; repeated solutions count as well"),
     option!("hits", "N", true, count => budget.hits, "Stop at this number of distinct hits"),
+    option!("patience", "N", true, count => budget.patience,
+        "Stop after this number of evaluations in succession without a new hit"),
     option!("seed", "N", true, seed => seed, "Set the seed of the random numbers, 0 to 2^64 - 1 [default: 0]"),
     option!("probes", "SHARE", true, share => probes,
         "Spend this share of the evaluations, 0 to 0.5, on uniform probes, from which the number of hits not seen is estimated \

@@ -61,6 +61,9 @@ pub struct Limits {
     pub evaluations: Option<u64>,
     /// The number of distinct hits at which the run ends.
     pub hits: Option<u64>,
+    /// Evaluations in succession without a new hit after which a slice ends ([`Budget::and_patience`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub patience: Option<u64>,
     /// The number of slices, each warm from the previous one. The run ends earlier when the space is covered, enough hits
     /// are found, or it is cancelled.
     pub slices: u64,
@@ -75,6 +78,7 @@ impl Default for Limits {
             time: None,
             evaluations: None,
             hits: None,
+            patience: None,
             slices: 1,
             parallel: None,
         }
@@ -188,6 +192,7 @@ impl RunSpec {
             time: self.budget.time,
             evaluations: self.budget.evaluations,
             hits: self.budget.hits,
+            patience: self.budget.patience,
             parallel: self.budget.parallel,
             ..Budget::until(cancel)
         }

@@ -209,7 +209,7 @@ impl SearchArguments {
     pub(crate) fn spec(&self, engine: &str) -> anyhow::Result<RunSpec> {
         let mut spec = RunSpec::new(engine);
         self.enter(&mut spec);
-        if spec.budget.time.is_none() && spec.budget.evaluations.is_none() {
+        if spec.budget.time.is_none() && spec.budget.evaluations.is_none() && spec.budget.patience.is_none() {
             spec.budget.time = Some(DEFAULT_TIME);
         }
         // A wrong engine or parameter is an error before any file is opened.

@@ -60,6 +60,7 @@ fn mistakes_are_told_in_one_line() {
         "run teapots --evaluations -5",
         "run teapots --evaluations 1.5",
         "run teapots --hits 0",
+        "run teapots --patience 0",
         "run teapots --slices 0",
         "run teapots --seed -1",
         "run teapots --probes 0.9",
@@ -154,6 +155,25 @@ fn islands_find_the_same_on_any_number_of_threads() {
     assert_eq!(one["evaluations"], 30_000);
     assert!(one["hits"].as_u64().unwrap() > 3_000, "{}", one["hits"]);
     assert_eq!(without_times(one), without_times(run("--threads 2")));
+}
+
+#[test]
+fn patience_ends_a_run_and_its_report_is_checked() {
+    let mut report = report("run himmelblau --patience 700 --seed 1 --json -");
+    let hits = report["hits"].as_u64().unwrap() as usize;
+    let last = report["solutions"][hits - 1]["evaluation"].as_u64().unwrap();
+    assert_eq!(report["budget"]["time_seconds"], Value::Null);
+    assert_eq!(
+        (&report["budget"]["patience"], &report["stop_reason"]),
+        (&700.into(), &"Patience".into())
+    );
+    assert_eq!(report["evaluations"], last + 700);
+    report["budget"]["patience"] = 600.into();
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("impatient.json"), report.to_string()).unwrap();
+    let wrong = satisfice_in(folder.path(), "verify impatient.json");
+    assert_eq!(wrong.code, 1);
+    assert!(wrong.stdout.contains("patience of 600"), "{}", wrong.stdout);
 }
 
 #[test]

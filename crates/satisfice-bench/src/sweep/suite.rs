@@ -24,7 +24,7 @@ use crate::error::Error;
 /// name = "small swarms"
 /// engines = ["random", { name = "latest-hit-qpso", particles = [10, 30] }]   # all values of a list are run
 /// problems = [{ name = "rastrigin", dimension = [2, 3] }, "queens"]
-/// evaluations = 100_000                           # and / or: time = "100ms", hits, slices, probes, islands, parallel; lists as well
+/// evaluations = 100_000                           # and / or: time = "100ms", hits, patience, slices, probes, islands, parallel; lists as well
 /// at-evaluations = [1000, 10_000]                 # where hits are counted; at-times = ["10ms"]
 /// against = "random"                              # the engine that the others are compared with, seed by seed
 /// beside = { queens = "backtracking: all 92 in 2,057 nodes" }   # printed beside the figures of a problem

@@ -87,6 +87,22 @@ fn limits(report: &RunReport, wrong: &mut Vec<Mismatch>) {
             format!("at most the budget of {limit}"),
         ));
     }
+    if let Some(limit) = budget.patience
+        && budget.slices == 1
+        && report.spec.islands == 1
+    {
+        let found = report.solutions.iter().map(|solution| solution.evaluation);
+        let ends = found.chain([evaluations]);
+        let longest = ends
+            .scan(0, |last, evaluation| {
+                Some(evaluation.saturating_sub(std::mem::replace(last, evaluation)))
+            })
+            .max();
+        if let Some(gap) = longest.filter(|&gap| gap > limit) {
+            let expected = format!("at most the patience of {limit}");
+            wrong.push(Mismatch::new("evaluations without a hit", gap, expected));
+        }
+    }
     for (place, seconds) in [
         ("elapsed_seconds", report.elapsed_seconds),
         ("overshoot_seconds", report.overshoot_seconds),
