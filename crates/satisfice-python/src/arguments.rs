@@ -18,6 +18,7 @@ pub(crate) struct Run {
     time: Option<f64>,
     evaluations: Option<u64>,
     hits: Option<u64>,
+    patience: Option<u64>,
     slices: u64,
     probes: Option<f64>,
     islands: usize,
@@ -42,6 +43,7 @@ impl Run {
         };
         spec.budget.evaluations = self.evaluations;
         spec.budget.hits = self.hits;
+        spec.budget.patience = self.patience;
         spec.budget.parallel = self.parallel;
         spec.probes = self.probes;
         spec.islands = self.islands;

@@ -15,21 +15,23 @@ from ._names import texts
 
 
 def run_arguments(
+    *,
     engine: str,
     options: Mapping[str, Any] | None,
     seed: int | None,
     time: float | None,
     evaluations: int | None,
     hits: int | None,
-    slices: int,
+    patience: int | None,
     probes: float | None,
     islands: int,
-    threads: int,
     parallel: int | None,
+    slices: int = 1,
+    threads: int = 1,
 ) -> dict[str, Any]:
     """Engine, seed and budget, as the native part takes them."""
-    if time is None and evaluations is None:
-        raise ValueError("nothing limits the search: give time= in seconds or evaluations=")
+    if time is None and evaluations is None and patience is None:
+        raise ValueError("nothing limits the search: give time= in seconds, evaluations= or patience=")
     return {
         "engine": engine,
         "options": texts(options or {}),
@@ -37,6 +39,7 @@ def run_arguments(
         "time": None if time is None else _real("time", time),
         "evaluations": None if evaluations is None else _whole("evaluations", evaluations),
         "hits": None if hits is None else _whole("hits", hits),
+        "patience": None if patience is None else _whole("patience", patience),
         "slices": _whole("slices", slices),
         "probes": None if probes is None else _real("probes", probes),
         "islands": _whole("islands", islands),

@@ -40,6 +40,7 @@ def find(
     time: float | None = None,
     evaluations: int | None = None,
     hits: int | None = None,
+    patience: int | None = None,
     slices: int = 1,
     engine: str = "portfolio",
     options: Mapping[str, Any] | None = None,
@@ -83,12 +84,14 @@ def find(
         axis it is a distance of natural logarithms: 0.01 is about one percent. Without it,
         different coordinates are different hits: on continuous axes nearly every hit then is a new one.
     time : float, optional
-        Wall time in seconds. `time` or `evaluations` is required.
+        Wall time in seconds. `time`, `evaluations` or `patience` is required.
     evaluations : int, optional
         Evaluations. Candidates that are known already count, so that the search ends. With it and without `time`, the
         same seed gives the same report, apart from times, on every machine.
     hits : int, optional
         Also end at this number of distinct hits.
+    patience : int, optional
+        Also end after this number of evaluations in succession without a new hit.
     slices : int, default 1
         For a problem of the catalogue: the number of time slices, each with the budget above and warm from the one before.
     engine : str, default "portfolio"
@@ -188,7 +191,20 @@ def find(
             workers, executor = executor, None
     if parallel is None and isinstance(workers, int) and not _is_one(workers) and not ordered:
         parallel = workers
-    run = run_arguments(engine, options, seed, time, evaluations, hits, slices, probes, islands, threads, parallel)
+    run = run_arguments(
+        engine=engine,
+        options=options,
+        seed=seed,
+        time=time,
+        evaluations=evaluations,
+        hits=hits,
+        patience=patience,
+        probes=probes,
+        islands=islands,
+        parallel=parallel,
+        slices=slices,
+        threads=threads,
+    )
     if isinstance(f, _satisfice.Problem):
         given = {
             "bounds": bounds is not None,

@@ -47,7 +47,7 @@ class Search:
 
     Parameters
     ----------
-    bounds, delta, separation, evaluations, hits, engine, options, seed, probes, islands, parallel, integrality, logarithmic, periodic, categories, permutations, x0
+    bounds, delta, separation, evaluations, hits, patience, engine, options, seed, probes, islands, parallel, integrality, logarithmic, periodic, categories, permutations, x0
         As for `find`.
     time : float, optional
         Wall time in seconds from now on.
@@ -76,6 +76,7 @@ class Search:
         time: float | None = None,
         evaluations: int | None = None,
         hits: int | None = None,
+        patience: int | None = None,
         engine: str = "portfolio",
         options: Any = None,
         seed: int | None = None,
@@ -104,7 +105,18 @@ class Search:
                 categories=categories,
                 permutations=permutations,
             ),
-            run_arguments(engine, options, seed, time, evaluations, hits, 1, probes, islands, 1, parallel),
+            run_arguments(
+                engine=engine,
+                options=options,
+                seed=seed,
+                time=time,
+                evaluations=evaluations,
+                hits=hits,
+                patience=patience,
+                probes=probes,
+                islands=islands,
+                parallel=parallel,
+            ),
             bool(ordered),
         )
         self._deadline = math.inf if time is None else clock.monotonic() + float(time)
