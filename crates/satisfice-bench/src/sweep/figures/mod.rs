@@ -34,7 +34,7 @@ struct Runs<'a> {
 type Draw = fn(&Group, &[Runs<'_>]) -> Option<Figure>;
 
 /// All charts, in the order of a report: a new one is a file beside this one and a line here.
-const CHARTS: [Draw; 4] = [
+const CHARTS: &[Draw] = &[
     recall::recall,
     error::error,
     run_lengths::run_lengths,
