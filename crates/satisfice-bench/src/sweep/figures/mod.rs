@@ -1,8 +1,9 @@
-//! The figures of a group: recall against evaluations and time, run time against error, run-length distributions, r(t).
+//! The figures of a group: recall against evaluations and time, run time against error, run-length distributions, seeds, r(t).
 
 mod error;
 mod recall;
 mod run_lengths;
+mod seeds;
 mod shares;
 
 use super::metrics::Moment;
@@ -38,6 +39,7 @@ const CHARTS: &[Draw] = &[
     recall::recall,
     error::error,
     run_lengths::run_lengths,
+    seeds::seeds,
     shares::shares,
 ];
 
