@@ -146,7 +146,7 @@ impl<T: Identity> Archive<T> {
     }
 
     /// Whether a solution is the same as the hit at `recent`: a hit that is found again is often found many times in a row.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn is_again(&self, solution: &T, recent: usize) -> bool {
         self.solutions.get(recent).is_some_and(|hit| hit.same(solution)) && !self.is_probe_only(recent)
     }

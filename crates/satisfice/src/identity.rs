@@ -87,6 +87,7 @@ impl<S: Real> Located<S> {
 
     /// Becomes the solution at other coordinates, in the same memory.
     #[inline]
+    #[inline]
     pub fn set(&mut self, coordinates: &[S], separation: &Separation<S>) {
         if self.coordinates.len() == coordinates.len() {
             copy_row(&mut self.coordinates, coordinates);
@@ -131,9 +132,7 @@ impl<S: Real> Located<S> {
                 let d = (a - b) / *radius;
                 sum + d * d
             }),
-            Separation::Axes(axes) => pairs
-                .zip(axes.iter())
-                .fold(S::zero(), |sum, ((&a, b), axis)| sum + axis.square(a, b)),
+            Separation::Axes(axes) => squares(pairs, axes),
         };
         square <= S::one()
     }
@@ -262,6 +261,15 @@ const COARSE: f64 = 1.0 / 4096.0;
 /// Edge of a cell in radii. A ball then meets one cell or two on each axis, or three where the scalar's rounding is as
 /// coarse as the radius.
 const EDGE: f64 = 4.0;
+
+/// The squared distance, axis by axis in units of the axes' radii. Apart from [`Located::is_within`], so that this is inlined where
+/// all axes have one radius.
+#[inline(never)]
+fn squares<'a, S: Real>(pairs: impl Iterator<Item = (&'a S, S)>, axes: &[AxisSeparation<S>]) -> S {
+    pairs
+        .zip(axes)
+        .fold(S::zero(), |sum, ((&a, b), axis)| sum + axis.square(a, b))
+}
 
 /// One word after the other: hashing them as an array costs three times as much.
 #[inline]
