@@ -87,7 +87,6 @@ impl<S: Real> Located<S> {
 
     /// Becomes the solution at other coordinates, in the same memory.
     #[inline]
-    #[inline]
     pub fn set(&mut self, coordinates: &[S], separation: &Separation<S>) {
         if self.coordinates.len() == coordinates.len() {
             copy_row(&mut self.coordinates, coordinates);

@@ -146,7 +146,6 @@ impl<S: Real> Separation<S> {
 
     /// Becomes another one, without counting references to the same axes.
     #[inline]
-    #[inline]
     pub(super) fn set(&mut self, other: &Self) {
         match (&mut *self, other) {
             (Self::Radius(radius), Self::Radius(other)) => *radius = *other,
