@@ -12,7 +12,7 @@ CIRCLE = {"delta": 0.01, "separation": 0.2, "seed": 1}
 def test_patience_ends_the_search(circle):
     report = satisfice.find(circle, [(-2, 2)] * 2, delta=0.05, separation=0.1, patience=300, seed=1)
     assert report.hits > 10
-    assert report.evaluations == report.trace["evaluations"][-1] == report.solutions[-1]["evaluation"] + 300
+    assert report.evaluations == report.trace["evaluations"][-1] == int(report.evaluation[-1]) + 300
 
 
 def test_hits_are_distinct_and_below_delta(circle):
