@@ -300,7 +300,7 @@ fn two_bodies_of_one_name_are_told_apart() {
     );
     assert_eq!(
         names("collide one/ball.obj one/ball.obj --threshold 0.1"),
-        ["one/ball.obj#0", "one/ball.obj#1"]
+        ["ball.obj#0", "ball.obj#1"]
     );
     fs::copy(
         folder.path().join("one/ball.obj"),

@@ -28,10 +28,14 @@ impl Names {
             })
             .collect();
         let mut names: Vec<String> = also.iter().map(|[_, file, _]| file.clone()).collect();
-        for number in repeated(&names) {
-            names[number].clone_from(&also[number][0]);
+        for same in repeated(&names) {
+            // Folders tell files apart; a file that is there twice is not told from itself by them.
+            if same.iter().any(|&number| also[number][0] != also[same[0]][0]) {
+                same.iter()
+                    .for_each(|&number| names[number].clone_from(&also[number][0]));
+            }
         }
-        for number in repeated(&names) {
+        for number in repeated(&names).into_iter().flatten() {
             names[number] = format!("{}#{number}", names[number]);
         }
         Self { names, also }
@@ -84,16 +88,12 @@ fn file_name(path: &Path) -> String {
         .into_owned()
 }
 
-/// The places of names that stand there more than once.
-fn repeated(names: &[String]) -> Vec<usize> {
+/// The places of each name that stands there more than once.
+fn repeated(names: &[String]) -> Vec<Vec<usize>> {
     let mut places: Vec<usize> = (0..names.len()).collect();
     places.sort_by_key(|&place| &names[place]);
-    let mut repeated: Vec<usize> = places
-        .chunk_by(|&a, &b| names[a] == names[b])
-        .filter(|same| same.len() > 1)
-        .flatten()
-        .copied()
-        .collect();
-    repeated.sort_unstable();
-    repeated
+    let same = places.chunk_by(|&a, &b| names[a] == names[b]);
+    same.filter(|same| same.len() > 1)
+        .map(<[usize]>::to_vec)
+        .collect()
 }
