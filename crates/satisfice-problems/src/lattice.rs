@@ -149,10 +149,15 @@ impl Neighbourhood<Vec<u32>> for Lattice {
     }
 
     fn neighbour(&self, of: &Vec<u32>, index: usize) -> Option<Vec<u32>> {
+        let mut changed = Vec::with_capacity(of.len());
+        self.neighbour_into(of, index, &mut changed).then_some(changed)
+    }
+
+    fn neighbour_into(&self, of: &Vec<u32>, index: usize, changed: &mut Vec<u32>) -> bool {
         if index >= self.count(of) || of.len() != self.space.dimension() {
-            return None;
+            return false;
         }
-        let mut changed = of.clone();
+        changed.clone_from(of);
         if self.keys {
             let (i, j) = Self::exchange(index);
             changed.swap(i, j);
@@ -161,7 +166,7 @@ impl Neighbourhood<Vec<u32>> for Lattice {
             let there = (index - self.changes_before[j]) as u32;
             changed[j] = there + u32::from(there >= of[j]);
         }
-        Some(changed)
+        true
     }
 }
 

@@ -82,6 +82,15 @@ pub trait Neighbourhood<T> {
     /// The neighbour at an index; `None` if there is none, which is common at the borders of a space, and for an index from
     /// `count` on. Always the same for the same solution and index.
     fn neighbour(&self, of: &T, index: usize) -> Option<T>;
+
+    /// Writes the neighbour at an index over another solution; `false`, with any solution, if there is none. To be written for solutions
+    /// that hold memory, which is then reused: an engine may look at dozens of neighbours for each evaluation.
+    fn neighbour_into(&self, of: &T, index: usize, neighbour: &mut T) -> bool {
+        self.neighbour(of, index).is_some_and(|found| {
+            *neighbour = found;
+            true
+        })
+    }
 }
 
 /// Lower bounds of the fitness, by which engines exclude regions and prove that no hit is missing.

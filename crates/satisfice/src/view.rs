@@ -24,6 +24,7 @@ pub(crate) struct Calls {
 pub(crate) struct Scratch<S, T> {
     values: Vec<S>,
     solution: Option<T>,
+    neighbour: Option<T>,
 }
 
 /// Memory not in use: a list, because an engine may ask again while it visits neighbours.
@@ -48,6 +49,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         let mut scratch = free.unwrap_or(Scratch {
             values: Vec::new(),
             solution: None,
+            neighbour: None,
         });
         scratch.values.clear();
         scratch.values.extend_from_slice(position);
@@ -62,7 +64,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         &self,
         scratch: &'s mut Scratch<P::Scalar, P::Solution>,
     ) -> (&'s P::Solution, &'s mut [P::Scalar]) {
-        let Scratch { values, solution } = scratch;
+        let Scratch { values, solution, .. } = scratch;
         self.problem.space().to_values(values);
         let solution = match solution {
             Some(solution) => {
@@ -74,22 +76,29 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         (solution, values)
     }
 
-    /// Lets `use_it` see the problem's neighbourhood with the solution at a position and memory for values; `None` without
-    /// a neighbourhood, an encoding, or values that the solution is encoded by.
+    /// Lets `use_it` see the problem's neighbourhood with the solution at a position, and memory for values and for a neighbour; `None`
+    /// without a neighbourhood, an encoding, or values that the solution is encoded by.
     fn with_own_neighbourhood<R>(
         &self,
         of: &[P::Scalar],
-        use_it: impl FnOnce(&OwnNeighbourhood<'_, P>, &P::Solution, &mut [P::Scalar]) -> R,
+        use_it: impl FnOnce(
+            &OwnNeighbourhood<'_, P>,
+            &P::Solution,
+            &mut [P::Scalar],
+            &mut Option<P::Solution>,
+        ) -> R,
     ) -> Option<R> {
         let own = OwnNeighbourhood {
             neighbourhood: self.problem.neighbourhood()?,
             encoding: self.problem.encoding()?,
         };
         self.with_scratch(of, |scratch| {
+            let mut neighbour = scratch.neighbour.take();
             let (solution, values) = self.decode(scratch);
-            own.encoding
-                .encode(solution, values)
-                .then(|| use_it(&own, solution, values))
+            let encoded = own.encoding.encode(solution, values);
+            let result = encoded.then(|| use_it(&own, solution, values, &mut neighbour));
+            scratch.neighbour = neighbour;
+            result
         })
     }
 
@@ -225,7 +234,7 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
             })
     }
     fn neighbour_count(&self, of: &[P::Scalar]) -> usize {
-        self.with_own_neighbourhood(of, |own, solution, _| own.neighbourhood.count(solution))
+        self.with_own_neighbourhood(of, |own, solution, _, _| own.neighbourhood.count(solution))
             .unwrap_or_else(|| lattice_count(self.problem.space().axes()))
     }
     fn neighbours(
@@ -236,10 +245,12 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     ) {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
         let space = self.problem.space();
-        let own = self.with_own_neighbourhood(of, |own, solution, values| {
+        let own = self.with_own_neighbourhood(of, |own, solution, values, neighbour| {
+            let neighbour = neighbour.get_or_insert_with(|| solution.clone());
             for index in indices.clone() {
-                let neighbour = own.neighbourhood.neighbour(solution, index);
-                if neighbour.is_some_and(|neighbour| own.encoding.encode(&neighbour, values)) {
+                if own.neighbourhood.neighbour_into(solution, index, neighbour)
+                    && own.encoding.encode(neighbour, values)
+                {
                     space.positions(values);
                     visit(index, values);
                 }

@@ -223,7 +223,7 @@ impl<S: Real> Axis<S> {
             AxisKind::Integer | AxisKind::Categorical => {
                 // Where halves are not representable, the value itself.
                 let centre = value + S::of(0.5);
-                if centre.floor() == value { centre } else { value }
+                if floor(centre) == value { centre } else { value }
             }
             AxisKind::Continuous if self.logarithmic => value.ln().max(self.start).min(self.end),
             AxisKind::Continuous | AxisKind::Place => value,

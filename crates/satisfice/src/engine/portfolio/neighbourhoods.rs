@@ -238,10 +238,21 @@ impl<S: Real> Neighbourhoods<S> {
     }
 }
 
-/// A hash of a position; two that share one are taken for the same, at odds of 2^-64.
+/// A hash of a position; two that share one are taken for the same, at odds of 2^-64. In four lanes, so that many axes do not wait for
+/// each other.
 fn key<S: Real>(position: &[S]) -> u64 {
-    position.iter().fold(0, |hash: u64, x| {
-        let hash = (hash.rotate_left(23) ^ x.to_word()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mix = |hash: u64, word: u64| {
+        let hash = (hash.rotate_left(23) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         hash ^ (hash >> 32)
-    })
+    };
+    let mut lanes = [0, 1, 2, 3];
+    let groups = position.chunks_exact(lanes.len());
+    let rest = groups.remainder();
+    for group in groups {
+        for (lane, x) in lanes.iter_mut().zip(group) {
+            *lane = mix(*lane, x.to_word());
+        }
+    }
+    let words = rest.iter().map(|x| x.to_word());
+    lanes.into_iter().chain(words).fold(0, mix)
 }

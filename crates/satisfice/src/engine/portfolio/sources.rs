@@ -243,7 +243,11 @@ impl<S: Real> Engine<S> for Sources<S> {
         // Every draw was known. Propose uniform points, known or not.
         let least = if self.visited.is_some() { 1 } else { wanted };
         while out.len() < least {
-            out.push_with(|position| rng.position(context.space(), position));
+            rng.position(context.space(), &mut self.position);
+            if let Some(visited) = &mut self.visited {
+                visited.insert(context.space(), &self.position);
+            }
+            out.push(&self.position);
             self.tags.push((Source::Uniform, 0));
         }
         Ask::More
@@ -263,8 +267,17 @@ impl<S: Real> Engine<S> for Sources<S> {
             } else if let Outcome::Miss(fitness) = *outcome {
                 self.near_misses.keep(position, fitness);
             }
-            if let Some(visited) = &mut self.visited {
-                visited.insert(space, position);
+        }
+        if let Some(visited) = &mut self.visited {
+            // Its own candidates are in it since they were proposed, but for those of whole engines.
+            let own = |i: usize| {
+                let tag = self.tags.get(i).filter(|_| origin == Origin::Engine);
+                tag.is_some_and(|tag| tag.0 != Source::Guest)
+            };
+            for (i, position) in batch.points().enumerate() {
+                if !own(i) {
+                    visited.insert(space, position);
+                }
             }
         }
         if self.without != Omitted::Neighbours && context.offers_neighbours() {

@@ -11,15 +11,21 @@ const FIRST: usize = 1 << 6;
 const MOST: usize = 1 << 18;
 /// An empty slot; no point has this key.
 const EMPTY: u64 = u64::MAX;
+/// A lattice of at most this many points has a bit for each: at most 1 MiB, of which only the parts in use take memory.
+const BITS: u64 = 1 << 23;
 
 /// A set of lattice points, exact up to 2^21 points. Beyond, a new point takes the place of an old one, so that a point may be
 /// proposed again but none is ever taken for visited that was not (but for 64-bit collisions in spaces of 2^63 points and
-/// more).
+/// more). A lattice of at most 2^23 points has a bit for each point instead.
 ///
 /// Cost: a multiplication an axis and a cache line or two. Memory: about 16 to 32 bytes a point, 8 KiB at least.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Visited {
+    /// A bit for each point, or none and tables instead.
+    bits: Vec<u64>,
     shards: Vec<Shard>,
+    /// The number of cells of each axis.
+    cells: Vec<u64>,
     points: usize,
     forgot: bool,
     /// Number of points of the space, if it is below 2^63.
@@ -102,11 +108,24 @@ impl Visited {
             clippy::cast_sign_loss,
             reason = "checked; exact below 2^53"
         )]
+        let cardinality = count.map(|count| count as u64);
+        let few = cardinality.filter(|&count| count <= BITS);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole numbers, few words"
+        )]
         Self {
-            shards: vec![shard; SHARDS],
+            bits: vec![0; few.map_or(0, |count| count.div_ceil(64) as usize)],
+            shards: vec![shard; if few.is_some() { 0 } else { SHARDS }],
+            cells: space
+                .axes()
+                .iter()
+                .map(|axis| axis.width().f64() as u64)
+                .collect(),
             points: 0,
             forgot: false,
-            cardinality: count.map(|count| count as u64),
+            cardinality,
         }
     }
 
@@ -114,6 +133,17 @@ impl Visited {
     #[inline]
     pub(super) fn insert<S: Real>(&mut self, space: &Space<S>, position: &[S]) -> bool {
         let key = self.key(space, position);
+        if !self.bits.is_empty() {
+            let (word, bit) = bit_of(key);
+            // A damaged state may have too few.
+            let Some(word) = self.bits.get_mut(word) else {
+                return false;
+            };
+            let is_new = *word & bit == 0;
+            *word |= bit;
+            self.points += usize::from(is_new);
+            return is_new;
+        }
         let hash = spread(key);
         let entered = self.shards[shard_of(hash)].insert(hash, key);
         self.points += usize::from(entered == Entered::New);
@@ -125,6 +155,10 @@ impl Visited {
     #[inline]
     pub(super) fn contains<S: Real>(&self, space: &Space<S>, position: &[S]) -> bool {
         let key = self.key(space, position);
+        if !self.bits.is_empty() {
+            let (word, bit) = bit_of(key);
+            return self.bits.get(word).is_none_or(|word| word & bit != 0);
+        }
         let hash = spread(key);
         let shard = &self.shards[shard_of(hash)];
         shard.slots[shard.slot(hash, key)] == key
@@ -158,12 +192,14 @@ impl Visited {
             reason = "a cell of an axis is a whole number"
         )]
         let cell = |(axis, &x): (&crate::Axis<S>, &S)| (axis.value(x) - axis.lower()).f64() as u64;
-        let cells = space.axes().iter().zip(position).map(|pair| (pair.0, cell(pair)));
+        let cells = space.axes().iter().zip(position).map(cell);
         if self.cardinality.is_some() {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "likewise")]
-            cells.fold(0, |key, (axis, cell)| key * (axis.width().f64() as u64) + cell)
+            let cells = cells.zip(&self.cells);
+            cells.fold(0, |key, (cell, count)| {
+                key.wrapping_mul(*count).wrapping_add(cell)
+            })
         } else {
-            cells.fold(1, |key, (_, cell)| spread(key ^ cell)) & !(1 << 63)
+            cells.fold(1, |key, cell| spread(key ^ cell)) & !(1 << 63)
         }
     }
 
@@ -181,6 +217,13 @@ impl Visited {
             index /= count;
         }
     }
+}
+
+/// The word of a key, and its bit there.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "at most 2^23 points have bits")]
+fn bit_of(key: u64) -> (usize, u64) {
+    ((key / 64) as usize, 1 << (key % 64))
 }
 
 #[inline]
