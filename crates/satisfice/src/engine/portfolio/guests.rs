@@ -116,8 +116,8 @@ impl<S> core::fmt::Debug for Guests<S> {
 
 /// The result of asking an engine.
 pub(super) enum Answer {
-    /// It proposed candidates, or worked on bounds.
-    Worked,
+    /// It proposed candidates, or worked on bounds: so many evaluations.
+    Worked(u64),
     /// These candidates complete the cover of the space.
     Covered,
     /// It has nothing to propose at the moment.
@@ -362,7 +362,7 @@ impl<S: Real> Guests<S> {
             guest.arm.count(false);
             return Answer::Nothing;
         }
-        Answer::Worked
+        Answer::Worked(calls + guest.own.len() as u64)
     }
 
     /// Tells each engine the outcomes of its part, if the portfolio proposed the batch, and the other outcomes that concern it.

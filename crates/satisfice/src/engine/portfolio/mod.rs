@@ -80,7 +80,7 @@ engine_settings! {
     ///
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
     /// share until something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together
-    /// 18 %, except for descents on a lattice and uniform points. So does the model, once it is known to predict less than a quarter of the
+    /// 18 %, except for descents on a lattice. So does the model, once it is known to predict less than a quarter of the
     /// variance of F; until then the others together take at most 6 % beside it. On continuous axes the model and descents, by quadratic models
     /// and without, look for the first hit together with up to half of the evaluations: the more a source has lowered the least F, the
     /// more it is asked; not so where most values of F repeat others: of a step function uniform points and swarms know as much as descents.

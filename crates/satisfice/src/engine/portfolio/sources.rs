@@ -208,11 +208,11 @@ impl<S: Real> Engine<S> for Sources<S> {
                 self.tags.resize(out.len(), tag);
                 match answer {
                     Answer::Covered => return Ask::Covered,
-                    Answer::Worked if out.len() >= wanted || out.is_empty() => {
-                        self.chosen = Some((tag, left - 1));
+                    Answer::Worked(cost) if out.len() >= wanted || out.is_empty() => {
+                        self.chosen = Some((tag, left.saturating_sub(cost.max(1))));
                         return Ask::More;
                     }
-                    Answer::Worked => self.chosen = None,
+                    Answer::Worked(_) => self.chosen = None,
                     Answer::Nothing => {
                         self.chosen = None;
                         rejected += 1;

@@ -11,6 +11,8 @@ const MOST: usize = 128;
 const FEWEST: usize = 16;
 /// Most coordinates of learned steps, 8 MB, where that leaves room for four steps.
 const MOST_COORDINATES: usize = 1 << 20;
+/// Rate of a step before it is tried.
+const UNTRIED: f64 = 0.02;
 /// Past trials of a step are halved at this number, so that its rate follows the search.
 const MEMORY: f64 = 400.0;
 
@@ -21,6 +23,24 @@ struct Step {
     hits: f64,
     /// The next hit to apply it to.
     cursor: usize,
+    /// The rate of hits, beside the trials because it is asked for more often than they change.
+    rate: f64,
+}
+
+impl Step {
+    fn new(trials: f64, hits: f64) -> Self {
+        Self {
+            trials,
+            hits,
+            cursor: 0,
+            rate: rate(trials, hits),
+        }
+    }
+}
+
+/// The rate of hits of a step; of an untried one, `UNTRIED`.
+fn rate(trials: f64, hits: f64) -> f64 {
+    (hits + UNTRIED) / (trials + 1.0)
 }
 
 /// The steps, each with a cursor into the list of hits: every step meets every hit once, best steps first. Memory: O(steps),
@@ -40,11 +60,7 @@ impl<S: Real> Translations<S> {
         let units: Vec<usize> = (0..space.dimension())
             .filter(|&j| space.axes()[j].is_integer())
             .collect();
-        let hopeful = Step {
-            trials: 2.0,
-            hits: 1.0,
-            cursor: 0,
-        };
+        let hopeful = Step::new(2.0, 1.0);
         Self {
             steps: vec![hopeful; 2 * units.len()],
             units,
@@ -74,15 +90,14 @@ impl<S: Real> Translations<S> {
     }
 
     /// The step with the best rate among those that have not met all `hits`.
-    /// `base` is the rate of untried steps. Cost: O(steps).
-    pub(super) fn best(&self, hits: usize, base: f64) -> Option<usize> {
-        let rate = |step: &Step| (step.hits + base) / (step.trials + 1.0);
+    /// Cost: O(steps).
+    pub(super) fn best(&self, hits: usize) -> Option<usize> {
         let open = self
             .steps
             .iter()
             .enumerate()
             .filter(|(_, step)| step.cursor < hits);
-        let (index, _) = open.max_by(|(_, a), (_, b)| rate(a).total_cmp(&rate(b)))?;
+        let (index, _) = open.max_by(|(_, a), (_, b)| a.rate.total_cmp(&b.rate))?;
         Some(index)
     }
 
@@ -118,6 +133,7 @@ impl<S: Real> Translations<S> {
             step.trials *= 0.5;
             step.hits *= 0.5;
         }
+        step.rate = rate(step.trials, step.hits);
     }
 
     /// Learns a step that has just led to a hit, and its reverse.
@@ -155,11 +171,7 @@ impl<S: Real> Translations<S> {
                 continue;
             }
             let signed = vector.iter().map(|&v| sign * v);
-            let step = Step {
-                trials: 1.0,
-                hits: 0.5,
-                cursor: 0,
-            };
+            let step = Step::new(1.0, 0.5);
             if self.steps.len() - units < most {
                 self.vectors.extend(signed);
                 self.steps.push(step);

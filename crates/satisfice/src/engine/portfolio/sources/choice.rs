@@ -60,7 +60,7 @@ impl<S: Real> Sources<S> {
             Trial::new(self.planned, self.barren())
         };
         let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
-        if !modelled || steps || is_worth(0) {
+        if steps || is_worth(0) {
             offer(self.arms[0].draw(price, blind(0.3), rng), (Source::Uniform, 0));
         }
         if (self.visited.is_some() && !modelled) || is_worth(DESCENT) {
@@ -84,7 +84,7 @@ impl<S: Real> Sources<S> {
         }
         if uses(Omitted::Steps)
             && (!modelled || is_worth(STEP))
-            && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits, 0.02))
+            && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits))
         {
             offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
         }

@@ -12,6 +12,8 @@ use crate::seed::SearchRng;
 
 /// Points that an enumeration proposes at once.
 pub(super) const SCANNED: usize = 256;
+/// A descent is asked so many times for a point that is not known.
+const DESCENT_TRIES: usize = 64;
 
 impl<S: Real> Sources<S> {
     /// Whether a position is inside and worth an evaluation: on a lattice not proposed before, elsewhere not a known hit.
@@ -54,8 +56,17 @@ impl<S: Real> Sources<S> {
                 self.descended += 1;
                 let index = self.next_descent % self.block;
                 self.next_descent = (index + 1) % self.block;
-                self.descents[index].propose(context, rng, out);
-                Some(index)
+                // At a point that is known it goes on at once: its turn is not for other sources.
+                let mut tries = 0;
+                while tries < DESCENT_TRIES && !context.is_out_of_time() {
+                    self.descents[index].propose(context, rng, out);
+                    if !self.is_repeated(context, (source, index), out) {
+                        self.tags.push((source, index));
+                        break;
+                    }
+                    tries += 1;
+                }
+                return true;
             }
             Source::Guest => return false,
             Source::Uniform => {
@@ -123,7 +134,7 @@ impl<S: Real> Sources<S> {
         let Some(index) = proposed else {
             return false;
         };
-        if matches!(source, Source::Swarm | Source::Climber | Source::Descent)
+        if matches!(source, Source::Swarm | Source::Climber)
             && self.is_repeated(context, (source, index), out)
         {
             return true;
