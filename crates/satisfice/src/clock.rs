@@ -132,12 +132,10 @@ impl Clock {
     }
 }
 
-/// Times calls of the fitness alone: for scheduling, never for results.
-#[cfg(feature = "rayon")]
+/// Times calls of the fitness alone: for scheduling, and for results only where time alone is limited.
 #[derive(Debug)]
 pub(crate) struct Stopwatch(Instant);
 
-#[cfg(feature = "rayon")]
 impl Stopwatch {
     pub(crate) fn start() -> Self {
         Self(now())

@@ -66,8 +66,9 @@ pub trait Context<S: Real> {
         1
     }
 
-    /// Mean seconds that an evaluation has taken so far, thinking included, as of the last look at the clock. `None` where evaluations
-    /// are limited, so that such a search does not depend on the clock, and before the first one.
+    /// Seconds that a call of the fitness has taken lately; where it is computed elsewhere, the mean time of an evaluation, thinking
+    /// included, as of the last look at the clock. `None` where evaluations are limited, so that such a search does not depend on the clock,
+    /// and before the first ones.
     fn seconds_an_evaluation(&self) -> Option<f64> {
         None
     }

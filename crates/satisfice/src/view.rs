@@ -299,9 +299,8 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         self.ledger.budget.parallel.unwrap_or(1).max(self.ledger.at_once)
     }
     fn seconds_an_evaluation(&self) -> Option<f64> {
-        let made = self.ledger.counts.evaluations;
-        let timed = made > 0 && self.evaluations_planned().is_none();
-        timed.then(|| self.ledger.clock.seen().as_secs_f64() / made as f64)
+        let timed = self.evaluations_planned().is_none();
+        timed.then(|| self.ledger.seconds_an_evaluation()).flatten()
     }
     fn is_out_of_time(&self) -> bool {
         self.ledger.is_out_of_time()

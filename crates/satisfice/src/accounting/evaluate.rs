@@ -4,7 +4,6 @@
 
 use super::Ledger;
 use crate::candidates::Candidates;
-#[cfg(feature = "rayon")]
 use crate::clock::Stopwatch;
 use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
@@ -62,8 +61,14 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             let from = candidates.ready;
             let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
             let to = candidates.live.min(from.saturating_add(chunk));
+            let is_due = !self.is_planned() && self.price.is_due(self.counts.evaluations);
+            let stopwatch = is_due.then(Stopwatch::start);
             problem.fitness_all(&candidates.solutions[from..to], &mut candidates.fitness[from..to]);
             candidates.ready = to;
+            if let Some(stopwatch) = stopwatch {
+                self.price
+                    .note(stopwatch.stop(), to - from, self.counts.evaluations);
+            }
             self.pass(to - from);
         }
     }
@@ -158,6 +163,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         });
         if let Some(cost) = nanoseconds.into_inner().checked_div(timed.into_inner()) {
             self.fitness_cost = Some(cost);
+            self.price.note(cost, 1, self.counts.evaluations);
         }
         self.pass(calls);
         let _ = self.interrupted();

@@ -4,10 +4,12 @@
 //! [`settle`](Ledger::settle) enters the results in order. So the number of threads changes nothing but the time.
 
 mod evaluate;
+mod price;
 mod settle;
 
 use core::time::Duration;
 
+use self::price::Price;
 use crate::archive::Archive;
 use crate::best::BestSoFar;
 use crate::budget::{Budget, StopReason};
@@ -31,6 +33,8 @@ pub(crate) struct Ledger<T> {
     /// Nanoseconds that a call of the fitness took lately; `None` before the first.
     #[cfg(feature = "rayon")]
     fitness_cost: Option<u64>,
+    /// What a call of the fitness costs, where only time is limited.
+    price: Price,
     /// Whether the last batch was shared among threads.
     shared: bool,
     /// Calls of the fitness in batches that were.
@@ -97,6 +101,7 @@ impl<T> Ledger<T> {
             clock: Clock::start(elapsed),
             #[cfg(feature = "rayon")]
             fitness_cost: None,
+            price: Price::default(),
             shared: false,
             shared_calls: 0,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
@@ -147,6 +152,23 @@ impl<T> Ledger<T> {
     #[inline]
     pub(crate) fn has_stopped(&mut self) -> bool {
         self.stop.is_some() || self.interrupted()
+    }
+
+    /// Seconds that a call of the fitness takes, if that is known; where the fitness is computed elsewhere, the time of the slice by its
+    /// evaluations.
+    pub(crate) fn seconds_an_evaluation(&self) -> Option<f64> {
+        let made = self.counts.evaluations;
+        let pace = self.clock.seen().as_secs_f64() / made as f64;
+        if made > 0 {
+            self.price.seconds_or(pace)
+        } else {
+            None
+        }
+    }
+
+    /// Whether evaluations are limited, so that nothing may depend on the clock.
+    fn is_planned(&self) -> bool {
+        self.budget.horizon.or(self.budget.evaluations).is_some()
     }
 
     /// Share of the budget used, as of the last look at the clock.

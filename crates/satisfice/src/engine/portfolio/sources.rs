@@ -35,6 +35,9 @@ const FIRST: usize = 4;
 /// Batches grow by one point every `SLOW` evaluations, up to `LARGEST`: small ones learn sooner, large ones cost less time.
 const SLOW: usize = 2048;
 const LARGEST: usize = 32;
+/// F is quick below so many seconds: then batches grow sooner, and choices last longer. Known only where time alone is limited.
+const QUICK: f64 = 2e-6;
+const SLOW_WHERE_QUICK: usize = 256;
 /// Share of the evaluations that serve to estimate how complete the result is.
 const PROBES: f64 = 0.02;
 
@@ -46,6 +49,8 @@ pub(super) struct Sources<S> {
     batch: usize,
     /// Candidates of a batch that come from one choice of source.
     block: usize,
+    /// Whether F takes less time than a choice of source.
+    is_quick: bool,
     /// The source chosen last, and how many more candidates are to come from it.
     chosen: Option<(Tag, u64)>,
     timing: NeighbourTiming,
@@ -84,6 +89,7 @@ impl<S: Real> Sources<S> {
             asked_for: settings.batch,
             batch: 1,
             block: 1,
+            is_quick: false,
             chosen: None,
             without: settings.without,
             arms: [Credit::default(); ARMS],
@@ -184,9 +190,11 @@ impl<S: Real> Engine<S> for Sources<S> {
             1
         };
         let wanted = self.asked_for.unwrap_or_else(|| context.parallel().max(first));
+        self.is_quick = context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
+        let slow = if self.is_quick { SLOW_WHERE_QUICK } else { SLOW };
         self.batch = self
             .asked_for
-            .unwrap_or_else(|| (made / SLOW).clamp(1, LARGEST).max(wanted));
+            .unwrap_or_else(|| (made / slow).clamp(1, LARGEST).max(wanted));
         self.block = self.batch.div_ceil(4);
         self.climbers.begin_batch(self.block);
         while self.descents.len() < self.block {
@@ -228,6 +236,11 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
             let made = (out.len() - before) as u64;
+            // In the next batch a source that takes turns with itself goes on, where choosing costs more than F.
+            if self.is_quick && !has_more && made > 0 && left > made && out.len() >= wanted {
+                self.chosen = Some((tag, left - made));
+                break;
+            }
             self.chosen = (has_more && made > 0).then_some((tag, left - made));
             // A source with nothing left ends the batch, so that worse sources do not fill it, unless workers would wait.
             if out.len() == before {

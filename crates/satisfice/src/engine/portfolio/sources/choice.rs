@@ -11,6 +11,7 @@ use crate::seed::SearchRng;
 /// A choice of source lasts for one more candidate every `TURN` evaluations, up to `LONGEST_TURN`: choosing costs time.
 const TURN: u64 = 128;
 const LONGEST_TURN: u64 = 8;
+const LONGEST_TURN_WHERE_QUICK: u64 = 32;
 /// Weight of uniform points and swarms where F is a step function, which has no slope to descend.
 const BLIND: f64 = 4.0;
 
@@ -22,7 +23,12 @@ impl<S: Real> Sources<S> {
         {
             return (tag, left);
         }
-        let turn = (self.whole.evaluations() / TURN).min(LONGEST_TURN);
+        let longest = if self.is_quick {
+            LONGEST_TURN_WHERE_QUICK
+        } else {
+            LONGEST_TURN
+        };
+        let turn = (self.whole.evaluations() / TURN).min(longest);
         let chosen = (self.choose(rng), turn.max(self.block as u64));
         self.chosen = Some(chosen);
         chosen
