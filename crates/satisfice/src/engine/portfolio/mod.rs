@@ -64,10 +64,10 @@ engine_settings! {
     /// A portfolio of sources of candidates, which compete for evaluations by their yield:
     ///
     /// - restarted descents over neighbours and compass steps, and on continuous axes (1+1)-CMA-ES with recombination of hits;
-    /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or one takes more than
+    /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or F takes more than
     ///   20 microseconds;
-    /// - a Gaussian process where F is expensive: where at most 500 evaluations are planned, or where an evaluation takes more than
-    ///   5 ms and only time is limited;
+    /// - a Gaussian process where F is expensive: where at most 500 evaluations are planned, or where F takes more than 5 ms
+    ///   and only time is limited;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most
     ///   4,096 points is enumerated at once, a larger one once it is half visited or the budget asks for it;
@@ -97,6 +97,7 @@ engine_settings! {
     pub struct Portfolio {
         /// Candidates proposed at once. By default as many as go on at once by the word of the budget, 4 in the
         /// first batch (one where a model of F is at work), and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
+        /// Under a limit of time alone, one more each 256 evaluations of an F below 2 microseconds.
         pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.
         pub swarms: usize = 6, 1..=1000;
