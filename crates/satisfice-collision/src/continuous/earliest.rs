@@ -171,16 +171,14 @@ impl Step {
     /// with a vertex also if there are points or wires that belong to no triangle.
     #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
-        KINDS.into_iter().filter(|&kind| self.asks_for(kind)).collect()
-    }
-
-    fn asks_for(&self, kind: PairKind) -> bool {
-        match kind {
+        let is_covered = self.is_covered_by_triangles();
+        let asks_for = |kind: &PairKind| match kind {
             PairKind::VertexTriangle => !self.triangles.is_empty(),
             PairKind::EdgeEdge => !self.edges.is_empty(),
             // Of closed features the nearest points of two surfaces are those of vertex and triangle or edge and edge.
-            _ => !self.is_covered_by_triangles(),
-        }
+            _ => !is_covered,
+        };
+        KINDS.into_iter().filter(asks_for).collect()
     }
 
     fn is_covered_by_triangles(&self) -> bool {
