@@ -14,6 +14,8 @@
 //! parts, so degenerate edges and triangles need no case of their own, nor do motions within a plane: an equation that holds
 //! all the time drops out, and strict inequalities remain.
 
+use std::cell::LazyCell;
+
 use super::hull::{Face, Parts};
 
 /// A polynomial of the time, exact or rounded.
@@ -59,68 +61,96 @@ pub(super) struct Conditions<P> {
 }
 
 impl<P: Polynomial> Conditions<P> {
-    pub(super) fn of(&self, part: Part) -> Posed<P> {
+    /// The conditions of a part, without the inequalities whose bits are set in `left_out`; they are numbered as they come in the list of all.
+    pub(super) fn of(&self, part: Part, left_out: u32) -> Posed<P> {
+        let wanted = Wanted {
+            left_out,
+            number: 0,
+            positive: Vec::new(),
+        };
         match part {
-            Part::Face(face) => self.face(face),
-            Part::Edge(i, j) => self.edge(i, j),
-            Part::Corner(i) => self.corner(i),
+            Part::Face(face) => self.face(face, wanted),
+            Part::Edge(i, j) => self.edge(i, j, wanted),
+            Part::Corner(i) => self.corner(i, wanted),
         }
     }
 
-    fn corner(&self, i: usize) -> Posed<P> {
+    fn corner(&self, i: usize, mut wanted: Wanted<P>) -> Posed<P> {
         let w = &self.corners[i];
+        let mut zero = Vec::new();
         match &self.delta_squared {
-            None => Posed {
-                zero: w.to_vec(),
-                positive: Vec::new(),
-            },
-            Some(squared) => Posed {
-                zero: Vec::new(),
-                positive: vec![squared.minus(&dot(w, w))],
-            },
+            None => zero.extend_from_slice(w),
+            Some(squared) => wanted.add(|| squared.minus(&dot(w, w))),
+        }
+        Posed {
+            zero,
+            positive: wanted.positive,
         }
     }
 
-    fn edge(&self, i: usize, j: usize) -> Posed<P> {
+    fn edge(&self, i: usize, j: usize, mut wanted: Wanted<P>) -> Posed<P> {
         let w = &self.corners[i];
         let x = difference(&self.corners[j], w);
-        let (wx, xx) = (dot(w, &x), dot(&x, &x));
-        let mut positive = vec![xx.plus(&wx)];
-        let zero = match &self.delta_squared {
-            None => cross(w, &x).into(),
-            Some(squared) => {
+        let (wx, xx) = (LazyCell::new(|| dot(w, &x)), LazyCell::new(|| dot(&x, &x)));
+        wanted.add(|| xx.plus(&wx));
+        let mut zero = Vec::new();
+        match &self.delta_squared {
+            None => zero.extend(cross(w, &x)),
+            Some(squared) => wanted.add(|| {
                 let apart = dot(w, w).times(&xx).minus(&wx.times(&wx));
-                positive.push(squared.times(&xx).minus(&apart));
-                Vec::new()
-            }
-        };
-        positive.push(wx.negated());
-        Posed { zero, positive }
+                squared.times(&xx).minus(&apart)
+            }),
+        }
+        wanted.add(|| wx.negated());
+        Posed {
+            zero,
+            positive: wanted.positive,
+        }
     }
 
-    fn face(&self, face: Face) -> Posed<P> {
+    fn face(&self, face: Face, mut wanted: Wanted<P>) -> Posed<P> {
         let [w, p, q] = face.corners.map(|corner| &self.corners[corner]);
         let (x, y) = (difference(p, w), difference(q, w));
         let height = dot(w, &cross(&x, &y));
-        let (xx, yy, xy) = (dot(&x, &x), dot(&y, &y), dot(&x, &y));
-        let (wx, wy) = (dot(w, &x), dot(w, &y));
-        let gram = xx.times(&yy).minus(&xy.times(&xy));
-        let u = xy.times(&wy).minus(&yy.times(&wx));
-        let v = xy.times(&wx).minus(&xx.times(&wy));
-        let mut positive = if face.is_parallelogram {
-            vec![gram.minus(&u), gram.minus(&v)]
+        let (xx, yy) = (LazyCell::new(|| dot(&x, &x)), LazyCell::new(|| dot(&y, &y)));
+        let (wx, wy) = (LazyCell::new(|| dot(w, &x)), LazyCell::new(|| dot(w, &y)));
+        let xy = LazyCell::new(|| dot(&x, &y));
+        let gram = LazyCell::new(|| xx.times(&yy).minus(&xy.times(&xy)));
+        let u = LazyCell::new(|| xy.times(&wy).minus(&yy.times(&wx)));
+        let v = LazyCell::new(|| xy.times(&wx).minus(&xx.times(&wy)));
+        if face.is_parallelogram {
+            wanted.add(|| gram.minus(&u));
+            wanted.add(|| gram.minus(&v));
         } else {
-            vec![gram.minus(&u).minus(&v)]
-        };
-        positive.extend([u, v]);
-        let zero = match &self.delta_squared {
-            None => vec![height],
-            Some(squared) => {
-                positive.push(squared.times(&gram).minus(&height.times(&height)));
-                Vec::new()
-            }
-        };
-        Posed { zero, positive }
+            wanted.add(|| gram.minus(&u).minus(&v));
+        }
+        wanted.add(|| u.clone());
+        wanted.add(|| v.clone());
+        let mut zero = Vec::new();
+        match &self.delta_squared {
+            None => zero.push(height),
+            Some(squared) => wanted.add(|| squared.times(&gram).minus(&height.times(&height))),
+        }
+        Posed {
+            zero,
+            positive: wanted.positive,
+        }
+    }
+}
+
+/// Collects inequalities; one that is left out is not computed.
+struct Wanted<P> {
+    left_out: u32,
+    number: u32,
+    positive: Vec<P>,
+}
+
+impl<P> Wanted<P> {
+    fn add(&mut self, form: impl FnOnce() -> P) {
+        if self.left_out >> self.number & 1 == 0 {
+            self.positive.push(form());
+        }
+        self.number += 1;
     }
 }
 

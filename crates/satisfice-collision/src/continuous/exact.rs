@@ -87,7 +87,7 @@ fn look<const M: usize, const N: usize>(
             open.push(OpenPart { part, holding: 0 });
             continue;
         };
-        let mut question = Question::new(&conditions.of(part));
+        let mut question = Question::new(&conditions.of(part, 0));
         match ask(&mut question) {
             Sight::Some(()) => break,
             // where its plane stays away from the origin, so do all parts
@@ -104,15 +104,13 @@ fn look<const M: usize, const N: usize>(
 
 impl OpenPart {
     fn system(&self, conditions: &Conditions<Form>) -> System {
-        let Posed { mut zero, positive } = conditions.of(self.part);
-        let is_left = |&(number, _): &(usize, Form)| self.holding >> number & 1 == 0;
-        let positive = positive.into_iter().enumerate().filter(is_left);
+        let Posed { mut zero, positive } = conditions.of(self.part, self.holding);
         System {
             equation: match zero.len() {
                 0 | 1 => zero.pop().filter(|form| !form.is_zero()),
                 _ => common(&zero),
             },
-            positive: positive.map(|(_, form)| form).collect(),
+            positive,
         }
     }
 }
@@ -164,7 +162,7 @@ mod tests {
                 let conditions = rounded(&motion, delta, part).expect("in range");
                 let all = exact(&motion, delta, part);
                 for of in parts.all(4) {
-                    let question = || Question::new(&conditions.of(of));
+                    let question = || Question::new(&conditions.of(of, 0));
                     let without = OpenPart { part: of, holding: 0 }.system(&all);
                     let system = OpenPart {
                         part: of,
