@@ -350,6 +350,28 @@ def test_a_world_over_frames():
         world.add(A, "floating")
 
 
+def test_a_translated_body_stays_turned():
+    quarter = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 9], [0, 0, 0, 1.0]])
+    found = []
+    for move in (lambda world, lid: world.translate(lid, [0, 0, 0.01]), lambda world, lid: world.place(lid, quarter)):
+        world = collision.World(threshold=0.12, pairs="vertex-vertex")
+        floor = world.add(A, "fixed")
+        lid = world.add(B, transform=quarter)
+        assert world.update().complete and len(world.contacts()) == 0
+        quarter[2, 3] = 0.01
+        move(world, lid)
+        world.update()
+        found.append(world.contacts())
+        quarter[2, 3] = 9
+    assert len(found[0]) > 0 and np.array_equal(found[0], found[1])
+    with pytest.raises(ValueError, match="finite"):
+        world.translate(lid, [0, 0, np.nan])
+    with pytest.raises(ValueError, match="shape"):
+        world.translate(lid, [0, 0])
+    with pytest.raises(ValueError, match="rigid"):
+        world.translate(floor, [0, 0, 1])
+
+
 def test_a_world_is_used_from_threads():
     from concurrent.futures import ThreadPoolExecutor
 

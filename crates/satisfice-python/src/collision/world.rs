@@ -167,6 +167,11 @@ impl World {
         self.change(py, |world| world.place(body, placement))
     }
 
+    fn translate(&self, py: Python<'_>, body: &Bound<'_, Body>, translation: [f64; 3]) -> PyResult<()> {
+        let body = body.get().0;
+        self.change(py, |world| world.translate(body, translation))
+    }
+
     fn deform(
         &self,
         py: Python<'_>,

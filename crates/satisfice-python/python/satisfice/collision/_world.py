@@ -118,7 +118,7 @@ class World:
         mesh_ : mesh
             Its mesh (see `mesh`). Bodies of one `Mesh` share it.
         motion : {"rigid", "fixed", "deforming"}
-            How it may move: by `place`, not at all, or by `deform`. Only a deforming body collides with itself.
+            How it may move: by `place` and `translate`, not at all, or by `deform`. Only a deforming body collides with itself.
         transform : array, shape (4, 4) or (3,), optional
             Where it is first, unless it deforms.
         groups, mask : int
@@ -138,6 +138,10 @@ class World:
     def place(self, body: Body, transform: ArrayLike | None) -> None:
         """Move a rigid body to this rotation and translation, shape (4, 4), or translation, shape (3,)."""
         self._world.place(body, pose_of(transform))
+
+    def translate(self, body: Body, translation: ArrayLike) -> None:
+        """Move a rigid body to this translation, shape (3,). It stays turned as it is, unlike by `place` with a translation."""
+        self._world.translate(body, point_of(translation))
 
     def deform(self, body: Body, vertices: ArrayLike) -> None:
         """Move the vertices of a deforming body, shape (n, 3)."""
