@@ -221,7 +221,6 @@ impl Visited {
 
 /// The word of a key, and its bit there.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "at most 2^23 points have bits")]
 fn bit_of(key: u64) -> (usize, u64) {
     ((key / 64) as usize, 1 << (key % 64))
 }
