@@ -6,7 +6,7 @@ use super::pair::Pair;
 use super::relative::{Composition, Relative};
 use super::separating_axis::Triangles;
 use super::traverse::{Candidates, Descend, TreeWork, Trees, Visit};
-use crate::distance::{self, Threshold, Triangle, TriangleBatch};
+use crate::distance::{self, Decision, EdgeBatch, Threshold, Triangle, TriangleBatch};
 use crate::simd::dispatch;
 use crate::{Error, FeatureKind, Placement, Shape};
 
@@ -197,8 +197,9 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
     found: &'a mut Vec<Pair>,
     /// The separating-axis test, for pairs of triangles.
     axes: Option<SeparatingAxes<'a>>,
-    /// Pairs of triangles to be decided as a batch.
-    waiting: TriangleBatch<Pair>,
+    /// Pairs to be decided as a batch, by kind.
+    triangles: TriangleBatch<Pair>,
+    edges: EdgeBatch<Pair>,
     /// Pairs after which the descent pauses.
     enough: usize,
     work: TreeWork,
@@ -217,7 +218,8 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
             flip,
             found,
             axes,
-            waiting: TriangleBatch::new(query.threshold),
+            triangles: TriangleBatch::new(query.threshold),
+            edges: EdgeBatch::new(query.threshold),
             enough: usize::MAX,
             work: TreeWork::default(),
         }
@@ -231,8 +233,10 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
             most,
             visit: self,
         });
-        let Self { waiting, found, .. } = self;
-        waiting.finish(|pair, decision| found.extend(decision.within.then_some(pair)));
+        let found = &mut *self.found;
+        let mut answer = |pair, decision: Decision| found.extend(decision.within.then_some(pair));
+        self.triangles.finish(&mut answer);
+        self.edges.finish(&mut answer);
         TreeWork { visits, ..self.work }
     }
 }
@@ -263,19 +267,23 @@ impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
                 self.work.decisions += 1;
                 let (p, q) = self.query.triangles(a, b);
                 let found = &mut *self.found;
-                self.waiting.push(&p, &q, Pair { a, b }, |pair, decision| {
+                self.triangles.push(&p, &q, Pair { a, b }, |pair, decision| {
                     found.extend(decision.within.then_some(pair));
                 });
             }
             return;
         }
-        if !sure {
-            self.work.decisions += 1;
-            if !self.query.within(a, b) {
-                return;
-            }
+        let (pair, found) = (Pair { a, b }, &mut *self.found);
+        if sure {
+            found.push(pair);
+            return;
         }
-        self.found.push(Pair { a, b });
+        self.work.decisions += 1;
+        let answer = |pair, decision: Decision| found.extend(decision.within.then_some(pair));
+        match self.query.shapes(pair) {
+            [Shape::Edge(p), Shape::Edge(q)] => self.edges.push(&p, &q, pair, answer),
+            [p, q] => found.extend(distance::within(&p, &q, self.query.threshold).then_some(pair)),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
-//! The filter for several triangle pairs, one per lane, in the precision of the unit.
+//! The filter for several pairs of features, one per lane, in the precision of the unit.
 //!
-//! Each lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point closest to 0 in the hull of the
+//! Of two edges a formula proposes the difference v of the closest points, and v is the direction of a certificate. Of two triangles each
+//! lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point closest to 0 in the hull of the
 //! differences `a_i - b_j`: a step goes to the best point between v and the difference w that is lowest in direction v, which
 //! needs no branch. The certificates of `frame` stop it; pairs still open after [`STEPS`] steps are decided one by one.
 //!
@@ -106,9 +107,73 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         [pick(0), pick(1), pick(2)]
     }
 
-    /// Local coordinates: the first point of `a` is 0.
+    /// Two edges. Local coordinates: the first point of `a` is 0.
     #[inline(always)]
-    pub(super) fn filter(
+    pub(super) fn two_edges(
+        &self,
+        a: [LaneVector<U>; 2],
+        b: [LaneVector<U>; 2],
+        limits: KernelLimits,
+    ) -> Verdicts {
+        let u = self.unit;
+        let v = self.edges(a, b);
+        let gap = u.sub(
+            u.min(self.dot(v, a[0]), self.dot(v, a[1])),
+            u.max(self.dot(v, b[0]), self.dot(v, b[1])),
+        );
+        self.judge(v, gap, &[a[1], b[0], b[1]], limits)
+    }
+
+    /// What a difference `v` of two points proves, and the gap in its direction. `others` are all points but the one at 0.
+    #[inline(always)]
+    fn judge(
+        &self,
+        v: LaneVector<U>,
+        gap: U::Number,
+        others: &[LaneVector<U>; 3],
+        limits: KernelLimits,
+    ) -> Verdicts {
+        let u = self.unit;
+        let zero = self.splat(0.0);
+        let rho = others.iter().fold(zero, |rho, &p| self.extent(rho, p));
+        let sum = |k: usize| u.add(u.add(others[0][k], others[1][k]), others[2][k]);
+        let in_range = self.in_range(rho, u.add(u.add(sum(0), sum(1)), sum(2)));
+        let reach = self.reach(rho, limits);
+        let gap_error = u.mul(rho, self.splat(Self::BOUNDS.gap_error));
+        let squared = self.dot(v, v);
+        let within = in_range & self.below(u.mul(squared, self.splat(Self::BOUNDS.above_one)), reach);
+        let apart = self.apart(v, squared, gap, gap_error, self.splat(limits.squared_above));
+        Verdicts {
+            within,
+            apart: apart & in_range & !within,
+            in_range,
+        }
+    }
+
+    /// Lanes to which the proofs apply. `any` is NaN if a coordinate is.
+    #[inline(always)]
+    fn in_range(&self, rho: U::Number, any: U::Number) -> u32 {
+        self.at_most(self.splat(Self::BOUNDS.least_rho), rho)
+            & self.at_most(rho, self.splat(Self::BOUNDS.greatest_rho))
+            & self.at_most(any, any)
+    }
+
+    /// A square of a computed distance below this proves that the distance is below delta.
+    #[inline(always)]
+    fn reach(&self, rho: U::Number, limits: KernelLimits) -> U::Number {
+        let u = self.unit;
+        let margin = u.sub(
+            self.splat(limits.below),
+            u.mul(rho, self.splat(Self::BOUNDS.span_error)),
+        );
+        // Where the margin is not above 0 its square is replaced by 0, which no square is below.
+        let margin = u.max(margin, self.splat(0.0));
+        u.mul(margin, margin)
+    }
+
+    /// Two triangles. Local coordinates: the first point of `a` is 0.
+    #[inline(always)]
+    pub(super) fn two_triangles(
         &self,
         [a0, a1, a2]: [LaneVector<U>; 3],
         [b0, b1, b2]: [LaneVector<U>; 3],
@@ -121,18 +186,8 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         let rho = u.max(of_a, of_b);
         let mut v = self.sub(self.third(a0, a1, a2), self.third(b0, b1, b2));
         let squared = self.dot(v, v);
-        // The last term asks for NaN.
-        let in_range = self.at_most(self.splat(Self::BOUNDS.least_rho), rho)
-            & self.at_most(rho, self.splat(Self::BOUNDS.greatest_rho))
-            & self.at_most(squared, squared);
-
-        let margin = u.sub(
-            self.splat(limits.below),
-            u.mul(rho, self.splat(Self::BOUNDS.span_error)),
-        );
-        // Where the margin is not above 0 its square is replaced by 0, which no square is below.
-        let margin = u.max(margin, zero);
-        let reach = u.mul(margin, margin);
+        let in_range = self.in_range(rho, squared);
+        let reach = self.reach(rho, limits);
         let gap_error = u.mul(rho, self.splat(Self::BOUNDS.gap_error));
         let limit = self.splat(limits.squared_above);
 

@@ -50,6 +50,7 @@ pub mod vertex_edge;
 pub mod vertex_triangle;
 pub mod vertex_vertex;
 
+pub(crate) use batch::EdgeBatch;
 pub use batch::TriangleBatch;
 pub use dispatch::{decide, distance, measure, proximity, within};
 pub use edge_edge::EdgeEdge;
