@@ -1,7 +1,7 @@
 //! Where local searches have ended: which of these places is near, and from which to search on.
 
 /// Coordinates that are kept, and the fewest and most places; then the oldest ones are forgotten.
-const COORDINATES: usize = 1 << 20;
+const COORDINATES: usize = 1 << 16;
 const FEWEST: usize = 16;
 const MOST: usize = 1024;
 
@@ -10,6 +10,8 @@ const MOST: usize = 1024;
 pub(super) struct Ends {
     places: Vec<f64>,
     ends: Vec<End>,
+    /// How many of them are no hits.
+    misses: usize,
     /// Where the next one is written, once there is no room.
     oldest: usize,
     /// Memory of one choice.
@@ -48,18 +50,23 @@ impl Ends {
         self.ends[index].is_hit
     }
 
-    /// A search has ended here. Cost: O(D) for each end.
+    /// A search has ended here. Cost: O(D) for each end, of a hit for each that is none.
     pub(super) fn add(&mut self, place: &[f64], fitness: f64, is_hit: bool) {
         let dimension = place.len();
         let mut apart = f64::INFINITY;
-        for (end, other) in self.ends.iter_mut().zip(self.places.chunks_exact(dimension)) {
-            let distance = distance(other, place);
-            if is_hit || (!end.is_hit && fitness < end.fitness) {
-                end.apart = end.apart.min(distance);
-            } else {
-                apart = apart.min(distance);
+        // No search goes on from a hit, so that hits do not look at each other.
+        if !is_hit || self.misses > 0 {
+            let others = self.ends.iter_mut().zip(self.places.chunks_exact(dimension));
+            for (end, other) in others.filter(|(end, _)| !(is_hit && end.is_hit)) {
+                let distance = distance(other, place);
+                if is_hit || (!end.is_hit && fitness < end.fitness) {
+                    end.apart = end.apart.min(distance);
+                } else {
+                    apart = apart.min(distance);
+                }
             }
         }
+        self.misses += usize::from(!is_hit);
         let end = End {
             fitness,
             is_hit,
@@ -74,6 +81,7 @@ impl Ends {
         }
         let index = self.oldest % most;
         self.oldest = index + 1;
+        self.misses -= usize::from(!self.ends[index].is_hit);
         self.places[index * dimension..(index + 1) * dimension].copy_from_slice(place);
         self.ends[index] = end;
     }
@@ -103,7 +111,8 @@ impl Ends {
 
     /// Whether this is a list in a space of so many axes.
     pub(super) fn fit(&self, dimension: usize) -> bool {
-        self.places.len() == dimension * self.ends.len()
+        let misses = self.ends.iter().filter(|end| !end.is_hit).count();
+        self.places.len() == dimension * self.ends.len() && self.misses == misses
     }
 }
 

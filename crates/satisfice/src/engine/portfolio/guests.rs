@@ -1,9 +1,11 @@
 //! Whole engines as sources: each proposes part of a batch, and is told the hits of all the others.
 
+mod flood_alone;
 mod sizes;
 
 use core::ops::Range;
 
+use flood_alone::FloodAlone;
 use sizes::Sizes;
 
 use super::credit::{Credit, Trial};
@@ -12,8 +14,7 @@ use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
-use crate::engine::local::RestartedCmaEs;
-use crate::engine::local::flood::{Flood, Order};
+use crate::engine::local::{Niching, RestartedCmaEs};
 use crate::engine::model::{ModelledSearch, QuadraticDescent, Surrogate};
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::error::Error;
@@ -58,6 +59,8 @@ enum Kind {
     Model,
     /// Restarted descents by quadratic models.
     Quadratic,
+    /// Evolution strategies that turn away from known optima.
+    Niching,
 }
 
 /// The model, or another engine.
@@ -134,7 +137,7 @@ impl<S: Real> Guest<S> {
                 }
                 .build(),
             ),
-            Kind::Flood => Member::Other(Box::new(FloodAlone(Flood::new(FLOOD_STEP, Order::Best)))),
+            Kind::Flood => Member::Other(Box::new(FloodAlone::new(FLOOD_STEP))),
             Kind::Regions => Member::Other(
                 BranchAndBound {
                     batch: sizes.regions,
@@ -149,6 +152,7 @@ impl<S: Real> Guest<S> {
                 }
                 .build(),
             ),
+            Kind::Niching => Member::Other(Niching::default().build()),
             Kind::Model => Member::Model(Box::new(ModelledSearch::new(Surrogate {
                 candidates: sizes.candidates,
                 ..Surrogate::default()
@@ -193,9 +197,11 @@ impl<S: Real> Guests<S> {
             Kind::Regions,
             Kind::Model,
             Kind::Quadratic,
+            Kind::Niching,
         ] {
             let is_of_use = match kind {
                 Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
+                Kind::Niching => self.continuous && !without_recombination && space.dimension() <= CMA_AXES,
                 Kind::Flood => continuous,
                 Kind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
                 Kind::Regions => context.lower_bound(&space.region()).is_some(),
@@ -249,7 +255,7 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn role(&self, index: usize) -> Role {
         match self.guests[index].kind {
-            Kind::Cma | Kind::Quadratic => Role::Explores,
+            Kind::Cma | Kind::Niching | Kind::Quadratic => Role::Explores,
             Kind::Flood => Role::Exploits,
             Kind::Regions | Kind::Model => Role::Apart,
         }
@@ -282,6 +288,12 @@ impl<S: Real> Guests<S> {
         Some([find(Kind::Model)?, find(Kind::Quadratic)?])
     }
 
+    /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
+    pub(super) fn niching(&self) -> Option<usize> {
+        let mut guests = self.guests.iter();
+        guests.position(|guest| guest.kind == Kind::Niching && guest.own.is_empty())
+    }
+
     /// What a source is among those that look for the first hit.
     pub(super) fn seeker(&self, (source, index): Tag) -> Option<Seeker> {
         match source {
@@ -289,14 +301,16 @@ impl<S: Real> Guests<S> {
             Source::Guest => match self.guests[index].kind {
                 Kind::Model => Some(Seeker::Model),
                 Kind::Quadratic => Some(Seeker::Quadratic),
-                Kind::Cma | Kind::Flood | Kind::Regions => None,
+                Kind::Cma | Kind::Niching | Kind::Flood | Kind::Regions => None,
             },
             _ => None,
         }
     }
 
+    /// The credits of the engines that are drawn by their yield.
     pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
-        self.guests.iter().map(|guest| &guest.arm)
+        let drawn = self.guests.iter().filter(|guest| guest.kind != Kind::Niching);
+        drawn.map(|guest| &guest.arm)
     }
 
     /// The credits and weights of the engines that are worth trying and have no part of the batch yet. `modelled`: whether a model of F is
@@ -317,6 +331,8 @@ impl<S: Real> Guests<S> {
             let is_worth_trying = guest.arm.is_worth_trying(all, trial);
             let weight = match (guest.kind, &guest.engine) {
                 (Kind::Cma, _) => is_worth_trying.then_some(2.0),
+                // It is not drawn by its yield.
+                (Kind::Niching, _) => None,
                 (Kind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
                 (Kind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
                 (Kind::Flood, _) => is_worth_trying.then_some(1.0),
@@ -468,31 +484,4 @@ impl<S: Real> Guests<S> {
 fn is_smooth<S: Real>(context: &dyn Context<S>) -> bool {
     let has = |kind| context.space().axes().iter().any(|axis| axis.kind() == kind);
     has(AxisKind::Continuous) && !has(AxisKind::Place) && !context.offers_neighbours()
-}
-
-/// A flood fill from the hits of other sources.
-#[derive(Debug)]
-struct FloodAlone<S>(Flood<S>);
-
-impl<S: Real> Engine<S> for FloodAlone<S> {
-    fn begin(&mut self, _: &dyn Context<S>) {
-        self.0.clear();
-    }
-
-    fn ask(&mut self, context: &dyn Context<S>, _: &mut SearchRng, out: &mut Batch<S>) -> Ask {
-        self.0.ask(context, out);
-        Ask::More
-    }
-
-    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
-        self.0.add_hits(batch, outcomes);
-    }
-
-    fn save(&self, state: &mut State) {
-        self.0.save(state);
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        self.0.restore(from)
-    }
 }

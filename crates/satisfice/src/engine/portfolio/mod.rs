@@ -2,6 +2,7 @@
 
 mod climbers;
 pub(super) mod credit;
+mod drought;
 mod guests;
 mod levels;
 mod moves;
@@ -51,7 +52,7 @@ engine_choice! {
         Steps = "steps",
         /// New steps, learned from differences of hits.
         Learning = "learning",
-        /// Recombinations of two hits, and (1+1)-CMA-ES, which recombines them, too.
+        /// Recombinations of two hits, and (1+1)-CMA-ES and niching, which recombine them, too.
         Recombination = "recombination",
         /// The neighbours that the problem names.
         Neighbours = "neighbours",
@@ -66,6 +67,7 @@ engine_settings! {
     /// - restarted descents over neighbours and compass steps, and on continuous axes (1+1)-CMA-ES with recombination of hits;
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or F takes more than
     ///   20 microseconds;
+    /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
     /// - a Gaussian process where F is expensive: where at most 500 evaluations are planned, or where F takes more than 5 ms
     ///   and only time is limited;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
@@ -84,7 +86,8 @@ engine_settings! {
     /// variance of F; until then the others together take at most 6 % beside it. On continuous axes the model and descents, by quadratic models
     /// and without, look for the first hit together with up to half of the evaluations: the more a source has lowered the least F, the
     /// more it is asked; not so where most values of F repeat others: of a step function uniform points and swarms know as much as descents.
-    /// All sources learn the hits of the others. No parameter depends on the problem.
+    /// On continuous axes, when no source has found a hit for 400 evaluations an axis and 2,000 more, every other choice is niching's
+    /// until one does. All sources learn the hits of the others. No parameter depends on the problem.
     ///
     /// ```
     /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};
@@ -117,8 +120,8 @@ engine_settings! {
 
 impl EngineConfig for Portfolio {
     const NAME: &'static str = "portfolio";
-    const SUMMARY: &'static str = "descents, CMA-ES, quadratic models, a model of expensive F, regions, flood fill, recombined hits and swarms that compete for evaluations by their yield";
-    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Powell 2004, Beyer, Sendhoff 2017, Luby et al. 1993, Agrawal, Goyal 2012";
+    const SUMMARY: &'static str = "descents, CMA-ES, quadratic models, niching, a model of expensive F, regions, flood fill, recombined hits and swarms that compete for evaluations by their yield";
+    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Powell 2004, Beyer, Sendhoff 2017, Ursem 1999, Luby et al. 1993, Agrawal, Goyal 2012";
 
     /// Whether a space is enumerated depends on how much the budget has left.
     fn is_scheduled(&self) -> bool {

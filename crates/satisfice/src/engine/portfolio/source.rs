@@ -51,7 +51,7 @@ impl Source {
 }
 
 /// The names of all sources in the order of [`Source`], then those of the whole engines in the order of their kinds.
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 16] = [
     "uniform",
     "swarms",
     "climbers",
@@ -67,6 +67,7 @@ const NAMES: [&str; 15] = [
     "regions",
     "model",
     "quadratic descents",
+    "niching",
 ];
 
 /// Candidates and hits of each source since the slice began.

@@ -7,6 +7,7 @@ use proposals::SCANNED;
 
 use super::climbers::Climbers;
 use super::credit::{Credit, Patches};
+use super::drought::Drought;
 use super::guests::{Answer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
@@ -62,6 +63,7 @@ pub(super) struct Sources<S> {
     next_descent: usize,
     descended: usize,
     patches: Patches,
+    drought: Drought,
     /// Who brings the search closer to a first hit.
     progress: Progress,
     /// Evaluations that were planned when the slice began, if that was known.
@@ -98,6 +100,7 @@ impl<S: Real> Sources<S> {
             next_descent: 0,
             descended: 0,
             patches: Patches::default(),
+            drought: Drought::default(),
             progress: Progress::default(),
             planned: None,
             guests: Guests::new(),
@@ -156,6 +159,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.arms = [Credit::default(); ARMS];
         self.whole = Credit::default();
         self.patches = Patches::default();
+        self.drought = Drought::default();
         self.progress = Progress::default();
         self.chosen = None;
         // The tags of the last batch name sources of the slice before.
@@ -355,6 +359,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 self.progress.count(seeker, *outcome, context.threshold());
             }
             self.whole.count(hit);
+            self.drought.count(hit);
             self.patches.count(self.role((source, index)), hit);
             if let Some(arm) = arm_of(source) {
                 self.arms[arm].count(hit);
@@ -380,6 +385,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.tags.clone(), self.trials.clone()).save(state);
         self.position.save(state);
         (self.whole, self.patches, self.progress.clone()).save(state);
+        self.drought.save(state);
         (self.chosen, self.planned).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);
@@ -402,6 +408,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.tags, self.trials) = from.read()?;
         self.position = from.read()?;
         (self.whole, self.patches, self.progress) = from.read()?;
+        self.drought = from.read()?;
         (self.chosen, self.planned) = from.read()?;
         (self.batch, self.block, self.next_descent) = from.read()?;
         let descents: usize = from.read()?;

@@ -14,6 +14,8 @@ const LONGEST_TURN: u64 = 8;
 const LONGEST_TURN_WHERE_QUICK: u64 = 32;
 /// Weight of uniform points and swarms where F is a step function, which has no slope to descend.
 const BLIND: f64 = 4.0;
+/// Share of the choices that is niching's while no source finds anything.
+const NICHING: f64 = 0.5;
 
 impl<S: Real> Sources<S> {
     /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
@@ -52,6 +54,12 @@ impl<S: Real> Sources<S> {
                 Seeker::Quadratic => (Source::Guest, quadratic),
                 Seeker::Direct => (Source::Descent, 0),
             };
+        }
+        if self.drought.is_long(self.position.len())
+            && let Some(niching) = self.guests.niching()
+            && rng.uniform() < NICHING
+        {
+            return (Source::Guest, niching);
         }
         let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
         let mut offer = |yields: f64, tag: Tag| {
