@@ -151,3 +151,26 @@ fn a_model_that_predicts_nothing_is_not_asked_for_long() {
     assert!(asked(-1.0, noise) < 80, "{}", asked(-1.0, noise));
     assert!(asked(2.5, bowl) > 120, "{}", asked(2.5, bowl));
 }
+
+/// In two dimensions a drought begins after 2,800 evaluations; from then on half of the choices are niching's.
+#[test]
+fn niching_searches_once_no_source_finds_anything() {
+    let proposed = |evaluations: u64| {
+        let bowl = |x: &[f64]| x[0].hypot(x[1]);
+        let problem = from_fn(Space::cube(2, -1.0, 1.0).unwrap(), -1.0, bowl).boxed();
+        let report = Search::new()
+            .seed(1)
+            .run(&problem, &Budget::evaluations(evaluations))
+            .unwrap();
+        let niching = report
+            .sources
+            .names
+            .iter()
+            .position(|name| name == "niching")
+            .unwrap();
+        report.sources.rows.last().unwrap().proposed[niching]
+    };
+    assert_eq!(proposed(2_700), 0);
+    let later = proposed(5_600);
+    assert!(later > 1_000, "{later}");
+}

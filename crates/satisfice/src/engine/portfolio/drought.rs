@@ -1,7 +1,9 @@
 //! How long no source has found a hit.
 
-/// So many evaluations, for each axis and five more, without a hit are a drought: several local searches.
+/// So many evaluations without a hit, for each axis and five more, are a drought: several local searches. Where hits are many, so many
+/// for each: there is more to go on from.
 const LONG: u64 = 400;
+const LONG_FOR_A_HIT: u64 = 20;
 
 /// Evaluations since the last hit.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
@@ -16,8 +18,9 @@ impl Drought {
     }
 
     /// Whether it is time for what is made for hits that are hard to reach.
-    pub(super) fn is_long(&self, dimension: usize) -> bool {
-        self.evaluations >= LONG.saturating_mul(dimension as u64 + 5)
+    pub(super) fn is_long(&self, dimension: usize, hits: usize) -> bool {
+        let by_axes = LONG.saturating_mul(dimension as u64 + 5);
+        self.evaluations >= by_axes.max(LONG_FOR_A_HIT.saturating_mul(hits as u64))
     }
 }
 
@@ -29,11 +32,11 @@ mod tests {
     fn a_hit_ends_a_drought() {
         let mut drought = Drought::default();
         for _ in 0..2800 {
-            assert!(!drought.is_long(2));
+            assert!(!drought.is_long(2, 140));
             drought.count(false);
         }
-        assert!(drought.is_long(2) && !drought.is_long(3));
+        assert!(drought.is_long(2, 140) && !drought.is_long(3, 140) && !drought.is_long(2, 141));
         drought.count(true);
-        assert!(!drought.is_long(2));
+        assert!(!drought.is_long(2, 0));
     }
 }

@@ -55,7 +55,7 @@ impl<S: Real> Sources<S> {
                 Seeker::Direct => (Source::Descent, 0),
             };
         }
-        if self.drought.is_long(self.position.len())
+        if self.drought.is_long(self.position.len(), self.hit_count())
             && let Some(niching) = self.guests.niching()
             && rng.uniform() < NICHING
         {
