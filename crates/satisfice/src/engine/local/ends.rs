@@ -74,6 +74,12 @@ impl Ends {
             tries: 0,
         };
         let most = (COORDINATES / dimension).clamp(FEWEST, MOST);
+        if self.ends.is_empty() {
+            // All at once, so that a long search does not allocate.
+            self.places.reserve_exact(most * dimension);
+            self.ends.reserve_exact(most);
+            self.list.reserve_exact(most);
+        }
         if self.ends.len() < most {
             self.places.extend_from_slice(place);
             self.ends.push(end);

@@ -3,7 +3,7 @@
 /// So many evaluations without a hit, for each axis and five more, are a drought: several local searches. Where hits are many, so many
 /// for each: there is more to go on from.
 const LONG: u64 = 400;
-const LONG_FOR_A_HIT: u64 = 20;
+const LONG_FOR_A_HIT: u64 = 200;
 
 /// Evaluations since the last hit.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
@@ -32,10 +32,10 @@ mod tests {
     fn a_hit_ends_a_drought() {
         let mut drought = Drought::default();
         for _ in 0..2800 {
-            assert!(!drought.is_long(2, 140));
+            assert!(!drought.is_long(2, 14));
             drought.count(false);
         }
-        assert!(drought.is_long(2, 140) && !drought.is_long(3, 140) && !drought.is_long(2, 141));
+        assert!(drought.is_long(2, 14) && !drought.is_long(3, 14) && !drought.is_long(2, 15));
         drought.count(true);
         assert!(!drought.is_long(2, 0));
     }
