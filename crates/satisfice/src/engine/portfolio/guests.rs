@@ -331,8 +331,6 @@ impl<S: Real> Guests<S> {
             let is_worth_trying = guest.arm.is_worth_trying(all, trial);
             let weight = match (guest.kind, &guest.engine) {
                 (Kind::Cma, _) => is_worth_trying.then_some(2.0),
-                // It is not drawn by its yield.
-                (Kind::Niching, _) => None,
                 (Kind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
                 (Kind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
                 (Kind::Flood, _) => is_worth_trying.then_some(1.0),
@@ -343,7 +341,8 @@ impl<S: Real> Guests<S> {
                     None | Some(true) => Some(MODEL_WEIGHT),
                     Some(false) => guest.arm.is_within(all, trial).then_some(1.0),
                 },
-                (Kind::Model, Member::Other(_)) => None,
+                // Niching is not drawn by its yield.
+                (Kind::Niching, _) | (Kind::Model, Member::Other(_)) => None,
             };
             weight.map(|weight| (index, &guest.arm, weight))
         })
