@@ -12,6 +12,9 @@ step() { printf '\n== %s (%s s)\n' "$*" "$SECONDS"; }
 step "format"
 cargo fmt --all --check
 
+step "layout: lengths of files, names of types"
+scripts/layout.sh
+
 step "licences and sources of the dependencies"
 if command -v python3 > /dev/null; then python3 scripts/licences.py; else echo "no python3: not checked"; fi
 

@@ -27,7 +27,7 @@ struct Plan {
     spec: RunSpec,
 }
 
-struct Inner {
+struct RoundsState {
     /// Taken by `report`.
     rounds: Option<satisfice::Rounds<Function>>,
     /// The islands that have to run until the next exchange.
@@ -38,19 +38,19 @@ struct Inner {
 /// A search whose islands run elsewhere.
 #[pyclass(frozen, module = "satisfice")]
 pub(crate) struct Rounds {
-    inner: Mutex<Inner>,
+    inner: Mutex<RoundsState>,
     plan: Plan,
 }
 
 impl Rounds {
-    fn lock(&self) -> MutexGuard<'_, Inner> {
+    fn lock(&self) -> MutexGuard<'_, RoundsState> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        act: impl FnOnce(&mut Inner, &mut satisfice::Rounds<Function>) -> PyResult<T> + Send,
+        act: impl FnOnce(&mut RoundsState, &mut satisfice::Rounds<Function>) -> PyResult<T> + Send,
     ) -> PyResult<T> {
         py.detach(|| {
             let mut inner = self.lock();
@@ -82,7 +82,7 @@ impl Rounds {
                 (rounds.map_err(damaged)?, saved.failed)
             }
         };
-        let inner = Inner {
+        let inner = RoundsState {
             rounds: Some(rounds),
             due: Vec::new(),
             failed,

@@ -16,7 +16,7 @@ use crate::report::Report;
 use crate::saved::{Saved, damaged};
 
 /// What is asked and told, and what it takes to write a report.
-struct Inner {
+struct SearchState {
     tickets: Tickets<Function>,
     /// Values lost to exceptions and to workers.
     failed: u64,
@@ -25,13 +25,13 @@ struct Inner {
 /// A search by tickets.
 #[pyclass(frozen, module = "satisfice")]
 pub(crate) struct Search {
-    inner: Mutex<Inner>,
+    inner: Mutex<SearchState>,
     question: Question,
     spec: RunSpec,
 }
 
 impl Search {
-    fn lock(&self) -> MutexGuard<'_, Inner> {
+    fn lock(&self) -> MutexGuard<'_, SearchState> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -58,7 +58,7 @@ impl Search {
         let tickets = py
             .detach(|| Tickets::begin(search, problem, &budget, order))
             .map_err(refused)?;
-        let inner = Mutex::new(Inner { tickets, failed: 0 });
+        let inner = Mutex::new(SearchState { tickets, failed: 0 });
         Ok(Self {
             inner,
             question,
@@ -249,7 +249,7 @@ impl Search {
         let problem = saved.question.problem()?;
         let tickets = Tickets::resume(saved.checkpoint, engine(&saved.spec)?, problem).map_err(damaged)?;
         Ok(Self {
-            inner: Mutex::new(Inner {
+            inner: Mutex::new(SearchState {
                 tickets,
                 failed: saved.failed,
             }),

@@ -214,8 +214,8 @@ impl<'a> Report<'a> {
 /// What `collide --json` writes. The pairs are made one by one while they are written.
 impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        struct Listed<'r>(&'r Report<'r>);
-        impl Serialize for Listed<'_> {
+        struct PairsOf<'r>(&'r Report<'r>);
+        impl Serialize for PairsOf<'_> {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 self.0.pairs.serialize(self.0.world, serializer)
             }
@@ -225,7 +225,7 @@ impl Serialize for Report<'_> {
             #[serde(flatten)]
             head: &'r Head,
             bodies: Vec<BodyLine>,
-            pairs: Listed<'r>,
+            pairs: PairsOf<'r>,
             #[serde(skip_serializing_if = "Option::is_none")]
             overlaps: Option<&'r [Overlap]>,
             touching: &'r BTreeSet<[usize; 2]>,
@@ -234,7 +234,7 @@ impl Serialize for Report<'_> {
         Whole {
             head: &self.head,
             bodies: self.world.bodies.iter().map(BodyLine::new).collect(),
-            pairs: Listed(self),
+            pairs: PairsOf(self),
             overlaps: self.overlaps.as_deref(),
             touching: &self.touching,
             skipped: &self.skipped,
@@ -245,7 +245,7 @@ impl Serialize for Report<'_> {
 
 /// The lists of a report that was read.
 #[derive(Debug, Deserialize)]
-pub(super) struct Lists {
+pub(super) struct ReadLists {
     pub(super) pairs: Vec<Line>,
     #[serde(default)]
     pub(super) overlaps: Vec<Overlap>,

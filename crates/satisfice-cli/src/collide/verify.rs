@@ -11,7 +11,7 @@ use serde::Deserialize;
 use super::motion;
 use super::overlaps;
 use super::pairs::Line;
-use super::report::{Head, Lists};
+use super::report::{Head, ReadLists};
 use super::scene::{Pair, World};
 
 /// Two measurements of one distance may differ by this part of the threshold.
@@ -24,7 +24,7 @@ pub(crate) fn verify(text: &[u8]) -> anyhow::Result<(Vec<Mismatch>, u64)> {
     if motion::is_of_motion(&head) {
         return motion::verify(text, &head);
     }
-    let lists: Lists = serde_json::from_slice(text).context(wrong)?;
+    let lists: ReadLists = serde_json::from_slice(text).context(wrong)?;
     let world =
         World::of_settings(&head.problem_parameters).context("the scene of the report cannot be built")?;
     let mut mismatches = counts(&head, &lists);
@@ -36,7 +36,7 @@ pub(crate) fn verify(text: &[u8]) -> anyhow::Result<(Vec<Mismatch>, u64)> {
 }
 
 /// The counts against the lists.
-fn counts(head: &Head, lists: &Lists) -> Vec<Mismatch> {
+fn counts(head: &Head, lists: &ReadLists) -> Vec<Mismatch> {
     let mut wrong = Vec::new();
     let listed = lists.pairs.len() as u64;
     if head.hits != listed {
@@ -94,7 +94,7 @@ fn bodies(line: &Line) -> [usize; 2] {
 }
 
 /// Every pair must be one of the scene, listed once, within the threshold, and at the distance that it has.
-fn pairs(lists: &Lists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
+fn pairs(lists: &ReadLists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
     let threshold = world.request.threshold;
     let mut wrong = Vec::new();
     let mut seen = BTreeSet::new();
@@ -140,7 +140,7 @@ fn pairs(lists: &Lists, world: &World) -> anyhow::Result<Vec<Mismatch>> {
 }
 
 /// Bodies that overlap must be those that do, as far as they were looked at.
-fn overlaps(head: &Head, lists: &Lists, world: &World) -> Option<Mismatch> {
+fn overlaps(head: &Head, lists: &ReadLists, world: &World) -> Option<Mismatch> {
     let is = overlaps::find(&world.solids, &|| false);
     let wrong = lists
         .overlaps

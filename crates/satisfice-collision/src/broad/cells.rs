@@ -1,6 +1,6 @@
 //! Points sorted into the cells of a uniform grid by counting, as a structure of arrays.
 
-use super::clip::{Part, Placed, greater, lesser};
+use super::clip::{ClippedPart, Placed, greater, lesser};
 
 /// Cells along one axis at most: the cell of a coordinate then stays exact enough to be useful, and no index overflows.
 const PER_AXIS: usize = 1 << 15;
@@ -33,7 +33,7 @@ const SAMPLE: usize = 512;
 
 impl Cells {
     /// The grid for these points, none of whose cells is much narrower than `reach`.
-    pub(crate) fn fitting(parts: &[Part], reach: f32) -> Self {
+    pub(crate) fn fitting(parts: &[ClippedPart], reach: f32) -> Self {
         let n = parts.iter().map(|part| part.points.len()).sum::<usize>();
         let min: [f32; 3] =
             std::array::from_fn(|k| parts.iter().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
@@ -103,7 +103,7 @@ impl Cells {
 }
 
 /// The mean over all points of the number of points in their cell, estimated from a sample.
-fn crowd(parts: &[Part], n: usize, cells: &Cells) -> f32 {
+fn crowd(parts: &[ClippedPart], n: usize, cells: &Cells) -> f32 {
     let (mut sample, mut count) = ([0; SAMPLE], 0);
     // all parts as one sequence, so that the result does not depend on their number
     let points = parts
@@ -141,7 +141,7 @@ pub(crate) const PADDING: usize = 8;
 
 impl Sorted {
     /// Sorts the points of `parts`; those of one cell keep their order.
-    pub(crate) fn sort(&mut self, parts: &[Part], cells: &Cells, threads: usize) {
+    pub(crate) fn sort(&mut self, parts: &[ClippedPart], cells: &Cells, threads: usize) {
         let n: usize = parts.iter().map(|part| part.points.len()).sum();
         let total = cells.layer() * cells.count[2];
         for axis in &mut self.c {
@@ -172,29 +172,31 @@ impl Sorted {
     }
 
     /// First pass: every part's points dealt out to groups of layers.
-    fn deal(&mut self, parts: &[Part], cells: &Cells, threads: usize) {
+    fn deal(&mut self, parts: &[ClippedPart], cells: &Cells, threads: usize) {
         self.grouped.resize_with(parts.len(), Vec::new);
         self.offsets.resize_with(parts.len(), Vec::new);
         let layers = cells.count[2];
-        let deal =
-            |(Part { points: part, .. }, (grouped, offsets)): (&Part, (&mut Vec<Placed>, &mut Vec<u32>))| {
-                offsets.clear();
-                offsets.resize(layers + 1, 0);
-                for point in part {
-                    offsets[cells.cell(2, point.q[2])] += 1;
-                }
-                let mut end = 0;
-                for offset in offsets.iter_mut() {
-                    end += *offset;
-                    *offset = end;
-                }
-                grouped.resize(part.len(), Placed::default());
-                for point in part.iter().rev() {
-                    let at = &mut offsets[cells.cell(2, point.q[2])];
-                    *at -= 1;
-                    grouped[*at as usize] = *point;
-                }
-            };
+        let deal = |(ClippedPart { points: part, .. }, (grouped, offsets)): (
+            &ClippedPart,
+            (&mut Vec<Placed>, &mut Vec<u32>),
+        )| {
+            offsets.clear();
+            offsets.resize(layers + 1, 0);
+            for point in part {
+                offsets[cells.cell(2, point.q[2])] += 1;
+            }
+            let mut end = 0;
+            for offset in offsets.iter_mut() {
+                end += *offset;
+                *offset = end;
+            }
+            grouped.resize(part.len(), Placed::default());
+            for point in part.iter().rev() {
+                let at = &mut offsets[cells.cell(2, point.q[2])];
+                *at -= 1;
+                grouped[*at as usize] = *point;
+            }
+        };
         if threads < 2 {
             parts
                 .iter()

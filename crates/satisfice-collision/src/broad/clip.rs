@@ -161,13 +161,13 @@ pub(crate) struct Placed {
 
 /// The points of one part of a body, placed, and the box around them.
 #[derive(Debug)]
-pub(crate) struct Part {
+pub(crate) struct ClippedPart {
     pub(crate) points: Vec<Placed>,
     pub(crate) min: [f32; 3],
     pub(crate) max: [f32; 3],
 }
 
-impl Default for Part {
+impl Default for ClippedPart {
     fn default() -> Self {
         Self {
             points: Vec::new(),
@@ -177,21 +177,21 @@ impl Default for Part {
     }
 }
 
-impl Part {
+impl ClippedPart {
     /// Recomputes the box.
     pub(crate) fn measure(&mut self) {
         dispatch(MeasurePart(self));
     }
 }
 
-struct MeasurePart<'a>(&'a mut Part);
+struct MeasurePart<'a>(&'a mut ClippedPart);
 
 impl Work for MeasurePart<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Part { points, min, max } = self.0;
+        let ClippedPart { points, min, max } = self.0;
         let none = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
         // two accumulators, because each operation waits for the one before
         let mut extremes = [none; 2];
@@ -223,15 +223,15 @@ pub(crate) struct Clip<'a> {
 
 impl Clip<'_> {
     /// Places the points inside the region, in their order, in parts if there are threads for it.
-    pub(crate) fn place(&self, parts: &mut Vec<Part>, threads: usize) {
+    pub(crate) fn place(&self, parts: &mut Vec<ClippedPart>, threads: usize) {
         let runs = self.inside.len();
         let count = if threads < 2 {
             1
         } else {
             (runs / 64).clamp(1, 8 * threads)
         };
-        parts.resize_with(count, Part::default);
-        let one = |(part, to): (usize, &mut Part)| {
+        parts.resize_with(count, ClippedPart::default);
+        let one = |(part, to): (usize, &mut ClippedPart)| {
             self.part(&self.inside[runs * part / count..runs * (part + 1) / count], to);
         };
         if count == 1 {
@@ -242,7 +242,7 @@ impl Clip<'_> {
         }
     }
 
-    fn part(&self, runs: &[u32], to: &mut Part) {
+    fn part(&self, runs: &[u32], to: &mut ClippedPart) {
         to.points.clear();
         dispatch(Placing {
             clip: self,

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cells::whole;
-use super::clip::{Part, Placed, greater, lesser};
+use super::clip::{ClippedPart, Placed, greater, lesser};
 
 /// Cells along an axis: a row is one word, the whole bitmap fits into the first-level cache.
 const SIDE: usize = 64;
@@ -27,8 +27,14 @@ pub(crate) struct OccupancyCull {
 
 impl OccupancyCull {
     /// Drops the points of either body that have no occupied cell of the other nearby. Returns their number.
-    pub(crate) fn cull(&mut self, a: &mut [Part], b: &mut [Part], reach: f32, threads: usize) -> usize {
-        let count = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
+    pub(crate) fn cull(
+        &mut self,
+        a: &mut [ClippedPart],
+        b: &mut [ClippedPart],
+        reach: f32,
+        threads: usize,
+    ) -> usize {
+        let count = |parts: &[ClippedPart]| parts.iter().map(|part| part.points.len()).sum::<usize>();
         let before = count(a) + count(b);
         if before < WORTH || count(a) == 0 || count(b) == 0 {
             return 0;
@@ -73,8 +79,8 @@ impl OccupancyCull {
         }
     }
 
-    fn mark_all(&mut self, parts: &[Part], threads: usize) {
-        let mark = |part: &Part| part.points.iter().for_each(|point| self.mark(point));
+    fn mark_all(&mut self, parts: &[ClippedPart], threads: usize) {
+        let mark = |part: &ClippedPart| part.points.iter().for_each(|point| self.mark(point));
         if threads < 2 {
             parts.iter().for_each(mark);
         } else {
@@ -103,8 +109,8 @@ impl OccupancyCull {
     }
 
     /// Drops the points that are not near, and recomputes the boxes.
-    fn keep(&self, parts: &mut [Part], threads: usize) {
-        let one = |part: &mut Part| {
+    fn keep(&self, parts: &mut [ClippedPart], threads: usize) {
+        let one = |part: &mut ClippedPart| {
             let mut len = 0;
             for at in 0..part.points.len() {
                 let point = part.points[at];
@@ -137,7 +143,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new<'p>(parts: &(impl Iterator<Item = &'p Part> + Clone), reach: f32) -> Self {
+    fn new<'p>(parts: &(impl Iterator<Item = &'p ClippedPart> + Clone), reach: f32) -> Self {
         let lower: [f32; 3] =
             std::array::from_fn(|k| parts.clone().map(|part| part.min[k]).fold(f32::INFINITY, lesser));
         let inverse = std::array::from_fn(|k| {
@@ -176,22 +182,22 @@ mod tests {
                 q[flat] = 0.5 + 0.01 * q[flat];
                 Placed { q, id }
             };
-            let mut part = Part {
+            let mut part = ClippedPart {
                 points: (0..20_000).map(point).collect(),
-                ..Part::default()
+                ..ClippedPart::default()
             };
             part.measure();
             part
         };
         let whole = [body(0), body(1)];
-        let copy = |part: &Part| Part {
+        let copy = |part: &ClippedPart| ClippedPart {
             points: part.points.clone(),
             ..*part
         };
         let [mut a, mut b] = [0, 1].map(|body| [copy(&whole[body])]);
         let mut cull = OccupancyCull::default();
         let dropped = cull.cull(&mut a, &mut b, 0.01, 1);
-        let cells = |part: &Part| {
+        let cells = |part: &ClippedPart| {
             let cells = part.points.iter().map(|point| cull.grid.cell(point));
             cells
                 .map(|(row, x)| [x, row % SIDE, row / SIDE])
@@ -207,7 +213,7 @@ mod tests {
             let kept = (0_u32..).zip(own).filter(|(_, cell)| near(cell));
             kept.map(|(id, _)| id).collect::<Vec<_>>()
         };
-        let ids = |part: &Part| part.points.iter().map(|point| point.id).collect::<Vec<_>>();
+        let ids = |part: &ClippedPart| part.points.iter().map(|point| point.id).collect::<Vec<_>>();
         assert_eq!(ids(&a[0]), wanted(&cells_a, &cells_b));
         assert_eq!(ids(&b[0]), wanted(&cells_b, &cells_a));
         assert_eq!(dropped, 40_000 - a[0].points.len() - b[0].points.len());
@@ -216,19 +222,19 @@ mod tests {
         // in parts, on threads: the same
         let mut parts = [0, 1].map(|body| {
             let piece = |points: &[Placed]| {
-                let mut part = Part {
+                let mut part = ClippedPart {
                     points: points.to_vec(),
-                    ..Part::default()
+                    ..ClippedPart::default()
                 };
                 part.measure();
                 part
             };
-            let points: &Part = &whole[body];
+            let points: &ClippedPart = &whole[body];
             points.points.chunks(3001).map(piece).collect::<Vec<_>>()
         });
         let [parts_a, parts_b] = &mut parts;
         assert_eq!(cull.cull(parts_a, parts_b, 0.01, 2), dropped);
-        let all = |parts: &[Part]| parts.iter().flat_map(ids).collect::<Vec<_>>();
+        let all = |parts: &[ClippedPart]| parts.iter().flat_map(ids).collect::<Vec<_>>();
         assert!(all(parts_a) == ids(&a[0]) && all(parts_b) == ids(&b[0]));
     }
 }

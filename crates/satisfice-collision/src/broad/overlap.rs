@@ -5,13 +5,13 @@ use crate::Aabb;
 
 /// Finds the parts of two bodies that can have partners in the other. Keeps its memory from call to call.
 #[derive(Debug, Default)]
-pub(crate) struct Overlap {
+pub(crate) struct OverlapFinder {
     /// The runs of each body that reach into its region, ascending: often neighbours, so that work is shared out by these and
     /// not by all.
     pub(crate) runs: [Vec<u32>; 2],
 }
 
-impl Overlap {
+impl OverlapFinder {
     /// For each body the region in which its points can be within `delta` of the other's; `None` if the bodies are apart.
     pub(crate) fn find(&mut self, a: &BlockBounds, b: &BlockBounds, delta: f64) -> Option<[Aabb; 2]> {
         let mut regions = [b.whole()?, a.whole()?].map(|whole| inflate(&whole, delta));

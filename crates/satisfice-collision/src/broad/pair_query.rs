@@ -5,7 +5,7 @@ use super::features::FeatureTree;
 use super::pair::Pair;
 use super::relative::{Composition, Relative};
 use super::separating_axis::Triangles;
-use super::traverse::{Candidates, Descend, TreeWork, Trees, Visit};
+use super::traverse::{CandidateSink, Descend, TreeWork, Trees, Visit};
 use crate::distance::{self, Decision, EdgeBatch, Threshold, Triangle, TriangleBatch};
 use crate::simd::dispatch;
 use crate::{Error, FeatureKind, Placement, Shape};
@@ -241,7 +241,7 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
     }
 }
 
-impl<const POINTS: bool> Candidates for Visitor<'_, POINTS> {
+impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
     const POINTS: bool = POINTS;
 
     #[inline]

@@ -2,13 +2,13 @@
 
 use super::boxes::Dirty;
 use super::cells::{Cells, Sorted};
-use super::clip::{BlockBounds, Clip, Part, union};
+use super::clip::{BlockBounds, Clip, ClippedPart, union};
 use super::exact::ExactTest;
 use super::features::FeatureTree;
 use super::frame::{Filter, LocalFrame};
 use super::join::{DenseCell, Join, Scratch};
 use super::occupancy::OccupancyCull;
-use super::overlap::Overlap;
+use super::overlap::OverlapFinder;
 use super::pair::Pair;
 use super::pair_query::PairQuery;
 use super::sorting::Sorter;
@@ -62,8 +62,8 @@ pub struct PointWork {
 pub struct PointGrid {
     threads: usize,
     runs: [BlockBounds; 2],
-    overlap: Overlap,
-    parts: [Vec<Part>; 2],
+    overlap: OverlapFinder,
+    parts: [Vec<ClippedPart>; 2],
     cull: OccupancyCull,
     sorted: [Sorted; 2],
     tasks: Vec<Scratch>,
@@ -185,7 +185,7 @@ impl PointGrid {
             self.work.clipped = if ONE_BODY { a.len() } else { a.len() + b.len() } as u64;
             return Ok(());
         };
-        let kept = |parts: &[Part]| parts.iter().map(|part| part.points.len()).sum::<usize>();
+        let kept = |parts: &[ClippedPart]| parts.iter().map(|part| part.points.len()).sum::<usize>();
         let (na, nb) = (kept(&self.parts[0]), kept(&self.parts[1]));
         self.work.clipped = if ONE_BODY {
             a.len() - na
@@ -258,7 +258,7 @@ impl PointGrid {
         let regions = overlap.find(runs_a, runs_b, threshold.get())?;
         let [inside_a, inside_b] = &overlap.runs;
         let frame = &LocalFrame::for_threshold(&union(&regions[0], &regions[1]), threshold.get());
-        let clip = |points, runs, inside, region, parts: &mut Vec<Part>| {
+        let clip = |points, runs, inside, region, parts: &mut Vec<ClippedPart>| {
             Clip {
                 points,
                 runs,

@@ -41,7 +41,7 @@ pub struct TreeWork {
 }
 
 /// Receives the pairs of items that can be within the threshold.
-pub(crate) trait Candidates {
+pub(crate) trait CandidateSink {
     /// Whether items are points, so that the squared distance itself is known.
     const POINTS: bool;
     /// Receives a pair of items; `sure` if it is certainly within the threshold.
@@ -114,7 +114,7 @@ pub(crate) struct Descend<'a, C> {
     pub(crate) visit: &'a mut C,
 }
 
-impl<C: Candidates> Work for Descend<'_, C> {
+impl<C: CandidateSink> Work for Descend<'_, C> {
     /// Visits made.
     type Output = u64;
 
@@ -191,7 +191,7 @@ struct Leaf {
 /// All are compared before any is delivered: only one in several has near items, and a mispredicted branch costs as much as a
 /// comparison. `found` is scratch space.
 #[inline(always)]
-fn leaves<L: Lanes, C: Candidates>(
+fn leaves<L: Lanes, C: CandidateSink>(
     lanes: L,
     trees: Trees<'_>,
     at: Visit,
@@ -253,7 +253,7 @@ fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
 
 /// Which pairs of items of two leaves are within the threshold, or their boxes are.
 #[inline(always)]
-fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
+fn near_in_leaf<L: Lanes, C: CandidateSink>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
     if !C::POINTS {
         return boxes_within(lanes, trees, at);
     }
@@ -268,7 +268,7 @@ fn near_in_leaf<L: Lanes, C: Candidates>(lanes: L, trees: Trees<'_>, at: Visit) 
 
 /// Delivers the near and wanted pairs of a leaf.
 #[inline(always)]
-fn deliver<C: Candidates>(
+fn deliver<C: CandidateSink>(
     trees: Trees<'_>,
     Leaf {
         mut near,

@@ -23,7 +23,7 @@ pub(super) struct System {
 }
 
 /// What the coefficients tell about a piece.
-enum Sight {
+enum Solvability {
     Solvable,
     Unsolvable,
     Unclear,
@@ -47,10 +47,10 @@ impl System {
 
     fn earliest_inside(&self, levels: u32, number: u64) -> Option<u64> {
         match self.sight() {
-            Sight::Unsolvable => return None,
+            Solvability::Unsolvable => return None,
             // Without an equation solutions begin at once.
-            Sight::Solvable if self.equation.is_none() => return Some(number << levels),
-            Sight::Solvable | Sight::Unclear => {}
+            Solvability::Solvable if self.equation.is_none() => return Some(number << levels),
+            Solvability::Solvable | Solvability::Unclear => {}
         }
         if let Some(equation) = self.only_root() {
             return holds_at_root(equation, &self.positive).then(|| piece_of_root(equation, levels, number));
@@ -91,9 +91,9 @@ impl System {
     /// Whether there is a solution with `0 < t < 1`.
     fn is_solvable_inside(&self, halvings: u32) -> bool {
         match self.sight() {
-            Sight::Solvable => return true,
-            Sight::Unsolvable => return false,
-            Sight::Unclear => {}
+            Solvability::Solvable => return true,
+            Solvability::Unsolvable => return false,
+            Solvability::Unclear => {}
         }
         if let Some(equation) = self.only_root() {
             return holds_at_root(equation, &self.positive);
@@ -112,20 +112,20 @@ impl System {
         self.equation.as_ref().filter(|form| form.sign_changes() == 1)
     }
 
-    fn sight(&self) -> Sight {
+    fn sight(&self) -> Solvability {
         if self.positive.iter().any(Form::is_nowhere_positive) {
-            return Sight::Unsolvable;
+            return Solvability::Unsolvable;
         }
         let changes = match &self.equation {
             None => 1,
             Some(form) => form.sign_changes(),
         };
         if changes == 0 {
-            Sight::Unsolvable
+            Solvability::Unsolvable
         } else if changes == 1 && self.positive.iter().all(Form::is_positive_inside) {
-            Sight::Solvable
+            Solvability::Solvable
         } else {
-            Sight::Unclear
+            Solvability::Unclear
         }
     }
 

@@ -7,14 +7,14 @@ use super::{
 use crate::mesh::Shape;
 
 /// A question that every kind of pair answers.
-trait Question {
+trait ShapeQuestion {
     type Answer;
     fn ask<P: FeaturePair>(self, a: &P::A, b: &P::B) -> Self::Answer;
 }
 
 /// The answer for two shapes, and whether it is about `(b, a)` instead of `(a, b)`.
 #[inline(always)]
-fn ask<Q: Question>(question: Q, a: &Shape, b: &Shape) -> (Q::Answer, bool) {
+fn ask<Q: ShapeQuestion>(question: Q, a: &Shape, b: &Shape) -> (Q::Answer, bool) {
     match (a, b) {
         (Shape::Vertex(p), Shape::Vertex(q)) => (question.ask::<VertexVertex>(p, q), false),
         (Shape::Vertex(p), Shape::Edge(e)) => (question.ask::<VertexEdge>(p, e), false),
@@ -30,7 +30,7 @@ fn ask<Q: Question>(question: Q, a: &Shape, b: &Shape) -> (Q::Answer, bool) {
 
 struct Decide(Threshold);
 
-impl Question for Decide {
+impl ShapeQuestion for Decide {
     type Answer = Decision;
 
     #[inline(always)]
@@ -41,7 +41,7 @@ impl Question for Decide {
 
 struct FindProximity;
 
-impl Question for FindProximity {
+impl ShapeQuestion for FindProximity {
     type Answer = Proximity;
 
     #[inline(always)]
@@ -52,7 +52,7 @@ impl Question for FindProximity {
 
 struct FindDistance;
 
-impl Question for FindDistance {
+impl ShapeQuestion for FindDistance {
     type Answer = f64;
 
     #[inline(always)]
@@ -63,7 +63,7 @@ impl Question for FindDistance {
 
 struct Measure;
 
-impl Question for Measure {
+impl ShapeQuestion for Measure {
     type Answer = f64;
 
     #[inline(always)]

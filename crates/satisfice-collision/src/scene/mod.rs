@@ -62,7 +62,7 @@ use changes::Log;
 use membership::Membership;
 use movers::Movers;
 use narrow::Workspace;
-use pairs::{Pairs, Record};
+use pairs::{Record, Records};
 use state::{Present, State};
 use whereabouts::Whereabouts;
 
@@ -99,7 +99,7 @@ pub struct World {
     free: Vec<BodyId>,
     membership: Membership,
     tree: BodyTree,
-    pairs: Pairs,
+    pairs: Records,
     /// What moves in the next frame.
     movers: Movers,
     /// Bodies whose partners must be found again.
@@ -169,7 +169,7 @@ impl World {
             free: Vec::new(),
             membership: Membership::default(),
             tree: BodyTree::default(),
-            pairs: Pairs::default(),
+            pairs: Records::default(),
             movers: Movers::default(),
             unpaired: Vec::new(),
             dirty: Vec::new(),

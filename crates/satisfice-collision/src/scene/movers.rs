@@ -1,7 +1,7 @@
 //! What moves in the next frame: bodies are placed and deformed.
 
 use super::body::BodyId;
-use super::whereabouts::{Step, is_upright};
+use super::whereabouts::{Movement, is_upright};
 use super::{World, unknown};
 use crate::distance::Point;
 use crate::{Error, Placement};
@@ -98,7 +98,7 @@ impl World {
         {
             state.check_place(whereabouts, rotation, &translation)?;
         }
-        let mut step = Step::Rests;
+        let mut step = Movement::Rests;
         if let Some(rotation) = rotation
             && !(whereabouts.is_upright(whereabouts.last()) && is_upright(rotation))
             && let Some(state) = &mut self.states[slot]
@@ -106,13 +106,13 @@ impl World {
             step = state.turn(whereabouts, rotation, self.frame);
         }
         let shifted = whereabouts.shift(translation, self.frame);
-        if step == Step::Rests {
+        if step == Movement::Rests {
             step = shifted;
         }
-        if step == Step::Rests {
+        if step == Movement::Rests {
             return Ok(());
         }
-        if step == Step::Begins {
+        if step == Movement::Begins {
             super::push(&mut self.movers.placed, body.slot);
         }
         if !whereabouts.is_in_room() && !std::mem::replace(&mut whereabouts.leaves, true) {

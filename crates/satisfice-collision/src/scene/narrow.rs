@@ -14,7 +14,7 @@ use crate::{Error, Placement};
 pub(super) struct Workspace {
     grid: PointGrid,
     pub(super) join: TreeJoin,
-    posed: [Posed; 2],
+    posed: [PosedShapes; 2],
 }
 
 impl Workspace {
@@ -38,13 +38,13 @@ impl Workspace {
 
 /// The vertices of a body in the world.
 #[derive(Default)]
-struct Posed {
+struct PosedShapes {
     /// The body, and the frame in which it moved there.
     of: Option<(u32, u32, u64)>,
     points: Vec<Point>,
 }
 
-impl Posed {
+impl PosedShapes {
     fn points<'p>(&'p mut self, slot: u32, state: Present<'p>) -> &'p [Point] {
         if state.is_unplaced() {
             return state.state().vertices();

@@ -52,7 +52,7 @@ pub(super) struct Record {
 
 /// The records.
 #[derive(Default)]
-pub(super) struct Pairs {
+pub(super) struct Records {
     records: Vec<Record>,
     free: Vec<u32>,
     /// The first member of each body's list, by slot.
@@ -63,7 +63,7 @@ pub(super) struct Pairs {
     apart: usize,
 }
 
-impl std::ops::Index<u32> for Pairs {
+impl std::ops::Index<u32> for Records {
     type Output = Record;
 
     fn index(&self, record: u32) -> &Record {
@@ -71,13 +71,13 @@ impl std::ops::Index<u32> for Pairs {
     }
 }
 
-impl std::ops::IndexMut<u32> for Pairs {
+impl std::ops::IndexMut<u32> for Records {
     fn index_mut(&mut self, record: u32) -> &mut Record {
         &mut self.records[record as usize]
     }
 }
 
-impl Pairs {
+impl Records {
     /// The number of records of two different bodies.
     pub(super) fn of_two(&self) -> usize {
         self.records.len() - self.free.len() - self.own

@@ -7,7 +7,7 @@ use super::SharedMesh;
 use super::body::{Body, Motion};
 use super::deforming::Deforming;
 use super::extent::largest;
-use super::whereabouts::{NOWHERE, Rotations, Step, Whereabouts};
+use super::whereabouts::{Movement, NOWHERE, Rotations, Whereabouts};
 use crate::broad::{BlockBounds, Dirty, FeatureTree};
 use crate::mesh::Point;
 use crate::placement::{CompactPlacement, rotate};
@@ -74,9 +74,14 @@ impl State {
     }
 
     /// Turns the body in the next frame, if that is another rotation than the one given last.
-    pub(super) fn turn(&mut self, whereabouts: &mut Whereabouts, rotation: &[f64; 4], frame: u64) -> Step {
+    pub(super) fn turn(
+        &mut self,
+        whereabouts: &mut Whereabouts,
+        rotation: &[f64; 4],
+        frame: u64,
+    ) -> Movement {
         if !whereabouts.turns_to(&self.rotations, rotation) {
-            return Step::Rests;
+            return Movement::Rests;
         }
         let step = whereabouts.turn(&mut self.rotations, rotation, frame);
         self.give_room(whereabouts);

@@ -13,10 +13,10 @@ mod script;
 mod steady;
 mod structure;
 
-use referee::{KINDS, Posed, contacts as referee, turn};
+use referee::{KINDS, PosedMesh, contacts as referee, turn};
 
 /// Frames in which bodies rest, creep, jump, part, deform in one corner and deform everywhere. Calls `check` after each.
-fn play(world: &mut World, mut check: impl FnMut(&mut World, &[Posed], usize)) {
+fn play(world: &mut World, mut check: impl FnMut(&mut World, &[PosedMesh], usize)) {
     let torus = generate::torus(1.0, 0.35, 14, 8).unwrap();
     let ball = generate::icosphere(0.5, 1).unwrap();
     let sheet = generate::cloth(2.0, 2.0, 9, 9).unwrap();
@@ -27,15 +27,15 @@ fn play(world: &mut World, mut check: impl FnMut(&mut World, &[Posed], usize)) {
     let soft = world.add(Body::deforming(sheet.clone()).beyond_ring(1)).unwrap();
     assert_eq!([fixed, rigid, soft], [0, 1, 2].map(BodyId::nth));
     let mut posed = vec![
-        Posed {
+        PosedMesh {
             mesh: turn(0.4, [0.0, 0.1, 0.0]).place(&torus).unwrap(),
             ring: None,
         },
-        Posed {
+        PosedMesh {
             mesh: ball.clone(),
             ring: None,
         },
-        Posed {
+        PosedMesh {
             mesh: sheet.clone(),
             ring: Some(1),
         },
@@ -239,11 +239,11 @@ fn filters_leave_out_bodies_and_vertices() {
     let answer = world.frame().unwrap();
     let all = referee(
         &[
-            Posed {
+            PosedMesh {
                 mesh: ball.clone(),
                 ring: None,
             },
-            Posed {
+            PosedMesh {
                 mesh: ball,
                 ring: None,
             },

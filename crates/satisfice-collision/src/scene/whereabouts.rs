@@ -45,7 +45,7 @@ impl Rotations {
 
 /// What a new place means for a body.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum Movement {
     /// It is where it is.
     Rests,
     /// It moves, and was not to move before.
@@ -137,7 +137,7 @@ impl Whereabouts {
     }
 
     /// Turns the body in the next frame.
-    pub(super) fn turn(&mut self, rotations: &mut Rotations, rotation: &[f64; 4], frame: u64) -> Step {
+    pub(super) fn turn(&mut self, rotations: &mut Rotations, rotation: &[f64; 4], frame: u64) -> Movement {
         let present = self.turns[self.present(frame)];
         let turn = match present {
             _ if is_upright(rotation) => UPRIGHT,
@@ -154,23 +154,23 @@ impl Whereabouts {
 
     /// Moves the body in the next frame, turned as it was given last.
     #[inline(always)]
-    pub(super) fn shift(&mut self, to: Point, frame: u64) -> Step {
+    pub(super) fn shift(&mut self, to: Point, frame: u64) -> Movement {
         self.go(to, self.turns[self.last()], frame)
     }
 
     #[inline(always)]
-    fn go(&mut self, to: Point, turn: u8, frame: u64) -> Step {
+    fn go(&mut self, to: Point, turn: u8, frame: u64) -> Movement {
         let was_pending = self.is_pending(frame);
         let present = self.present(frame);
         if !was_pending && self.turns[present] == turn && !differ(&self.at[present], &to) {
-            return Step::Rests;
+            return Movement::Rests;
         }
         let next = 1 - present;
         (self.at[next], self.turns[next]) = (to, turn);
         (self.last, self.moved_at) = (next == 1, frame + 1);
         match was_pending {
-            true => Step::Continues,
-            false => Step::Begins,
+            true => Movement::Continues,
+            false => Movement::Begins,
         }
     }
 

@@ -8,7 +8,7 @@
 //! For others the upper bound is that of their convex hulls. A lower bound is the distance of any vertex inside the other solid from that
 //! one's surface: it has to leave.
 
-use super::hull::{Hull, cross, dot, sub};
+use super::hull::{ConvexHull, cross, dot, sub};
 use super::unit::Unit;
 use super::{Solid, distance};
 use crate::broad::FeatureTree;
@@ -110,7 +110,7 @@ impl Difference {
             direction: [0.0, 0.0, 1.0],
         };
         let (corners, flat) = self.simplex();
-        let Some(mut hull) = corners.and_then(Hull::new) else {
+        let Some(mut hull) = corners.and_then(ConvexHull::new) else {
             // all in a plane: no point of one is inside the other
             return Depth {
                 at_most: 0.0,

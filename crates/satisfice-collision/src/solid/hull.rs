@@ -16,12 +16,12 @@ pub(super) struct Facet {
 
 /// Which facets a point sees is decided exactly, so that rounding never tears the surface.
 #[derive(Debug)]
-pub(super) struct Hull {
+pub(super) struct ConvexHull {
     points: Vec<Point>,
     facets: Vec<Facet>,
 }
 
-impl Hull {
+impl ConvexHull {
     /// Of four points; `None` if they lie in a plane.
     pub(super) fn new(points: [Point; 4]) -> Option<Self> {
         let mut hull = Self {

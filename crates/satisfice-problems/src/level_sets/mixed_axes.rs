@@ -38,12 +38,12 @@ pub struct MixedAxes {
     threshold: f64,
     description: Description,
     cells: u32,
-    windows: Vec<Window>,
+    windows: Vec<BestSettings>,
 }
 
 /// The best settings of a kind.
 #[derive(Debug, Clone, Copy)]
-struct Window {
+struct BestSettings {
     /// Shares of the axes of rate and angle.
     rate: f64,
     angle: f64,
@@ -65,7 +65,7 @@ impl MixedAxes {
             return Err(Error::parameter("cells", cells, "a whole number from 1 on"));
         }
         let mut rng = SearchRng::new(instance);
-        let windows = (0..kinds as usize).map(|kind| Window {
+        let windows = (0..kinds as usize).map(|kind| BestSettings {
             rate: rng.uniform(),
             angle: rng.uniform(),
             layers: rng.below(LAYERS as usize) as f64,

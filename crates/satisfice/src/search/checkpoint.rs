@@ -4,7 +4,7 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use super::Search;
-use super::lanes::Progress;
+use super::lanes::LanesProgress;
 use super::running::Running;
 use super::slice::Slice;
 use super::tickets::SavedTickets;
@@ -69,7 +69,7 @@ pub struct Contents<T> {
     #[serde(default = "Option::default")]
     pub(super) tickets: Option<SavedTickets<T>>,
     /// The slices of several lanes, and how far they are.
-    pub(super) exchange: Option<(Vec<Unfinished<T>>, Progress)>,
+    pub(super) exchange: Option<(Vec<Unfinished<T>>, LanesProgress)>,
 }
 
 /// A slice that has begun and not ended.

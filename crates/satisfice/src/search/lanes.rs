@@ -26,12 +26,12 @@ const LONGEST_ROUND: u64 = 1024;
 pub(super) struct Exchange<S, T> {
     /// The accounts and the archive of all lanes; probes are made here, after the lanes.
     pub(super) common: Slice<S, T>,
-    pub(super) progress: Progress,
+    pub(super) progress: LanesProgress,
 }
 
 /// How far the lanes are.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(super) struct Progress {
+pub(super) struct LanesProgress {
     /// Evaluations of each lane before the next exchange, and in the round after it.
     until: u64,
     next_round: u64,
@@ -43,7 +43,7 @@ pub(super) struct Progress {
     ended: Option<StopReason>,
 }
 
-impl Progress {
+impl LanesProgress {
     pub(super) fn new(lanes: usize) -> Self {
         Self {
             until: FIRST_ROUND,

@@ -36,7 +36,7 @@ pub use stepper::Stepper;
 pub use tickets::{Asked, Order, Ticket, TicketCounts, TicketEvent, TicketLog, Tickets, Told};
 
 use lane::{Lane, RunningLane};
-use lanes::{Exchange, Progress};
+use lanes::{Exchange, LanesProgress};
 use running::Running;
 use slice::Slice;
 
@@ -406,7 +406,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             let common = Slice::begin(budget, dimension, probes.clone(), 0..0, Reached::default());
             Some(Exchange {
                 common,
-                progress: Progress::new(count),
+                progress: LanesProgress::new(count),
             })
         } else {
             None

@@ -9,7 +9,6 @@ use satisfice_draw::plot::{Chart, Curve, Panel};
 const SEEDS: usize = 4;
 
 /// Hits at the end of every run, sorted: the quantiles over seeds.
-#[expect(clippy::cast_precision_loss, reason = "a pixel is coarser than 53 bits")]
 pub(super) fn seeds(group: &Group, all: &[Runs<'_>]) -> Option<Figure> {
     if all.iter().all(|runs| runs.rows.len() < SEEDS) {
         return None;

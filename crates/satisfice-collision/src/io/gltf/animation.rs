@@ -10,7 +10,7 @@ use crate::io::animated::Play;
 
 /// What the chosen animations do to the nodes.
 #[derive(Default)]
-pub(super) struct Motion {
+pub(super) struct PlayedAnimations {
     nodes: BTreeMap<usize, NodeTracks>,
     /// The time of the last key.
     pub(super) end: Option<f64>,
@@ -40,7 +40,7 @@ enum Interpolation {
     CubicSpline,
 }
 
-impl Motion {
+impl PlayedAnimations {
     pub(super) fn read(
         document: &Document,
         buffers: &mut Buffers<'_>,

@@ -8,7 +8,7 @@ mod shapes;
 
 use std::sync::Arc;
 
-use animation::Motion;
+use animation::PlayedAnimations;
 use buffers::Buffers;
 use document::{Document, NodeObject};
 
@@ -61,7 +61,7 @@ fn parse(bytes: &[u8], folder: &Folder, play: Play<'_>) -> Result<Box<dyn Frames
         read_mesh(&document, &document.nodes[index], &mut buffers, &mut meshes)
             .map_err(|error| error.in_body(document.node_name(index)))?;
     }
-    let motion = Motion::read(&document, &mut buffers, play)?;
+    let motion = PlayedAnimations::read(&document, &mut buffers, play)?;
     // They may hold the data of the file as text.
     document.buffers.clear();
     Ok(Box::new(Scene {
@@ -174,7 +174,7 @@ struct Scene {
     document: Document,
     /// `None` for those that the scene does not use, and those without vertices.
     meshes: Vec<Option<Arc<Mesh>>>,
-    motion: Motion,
+    motion: PlayedAnimations,
 }
 
 impl Frames for Scene {

@@ -1,6 +1,6 @@
 //! The nodes of a glTF document: which are in the scene, and where.
 
-use super::animation::{Motion, NodeTracks};
+use super::animation::{NodeTracks, PlayedAnimations};
 use super::document::{Document, NodeObject};
 use super::malformed;
 use crate::error::Error;
@@ -12,7 +12,7 @@ const MOST_NODES: usize = 500_000;
 /// Every node of the scene that has a mesh, with its place in the scene, in the order of a depth-first walk.
 pub(super) fn placed(
     document: &Document,
-    moment: Option<(&Motion, f64)>,
+    moment: Option<(&PlayedAnimations, f64)>,
 ) -> Result<Vec<(usize, Transform)>, Error> {
     walk(document, |index, node| {
         let tracks = moment.and_then(|(motion, time)| Some((motion.of_node(index)?, time)));

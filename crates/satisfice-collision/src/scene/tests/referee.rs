@@ -17,7 +17,7 @@ pub(super) const KINDS: [PairKind; 6] = [
 ];
 
 /// What the referee knows of a body: its posed mesh and whether it collides with itself, beyond which ring.
-pub(super) struct Posed {
+pub(super) struct PosedMesh {
     pub(super) mesh: Mesh,
     pub(super) ring: Option<usize>,
 }
@@ -96,7 +96,7 @@ pub(super) fn pairs(
 }
 
 /// All contacts of bodies that were added in this order, by trying everything.
-pub(super) fn contacts(bodies: &[Posed], kind: PairKind, delta: f64) -> Vec<Contact> {
+pub(super) fn contacts(bodies: &[PosedMesh], kind: PairKind, delta: f64) -> Vec<Contact> {
     let threshold = Threshold::new(delta).unwrap();
     let (corners_a, corners_b) = corners(kind);
     let mut contacts = Vec::new();

@@ -31,7 +31,7 @@ fn what_goes_on_steadily_holds_at_once_and_a_turn_is_noticed() {
             let answer = world.finish(pass);
             assert!(delivered == answer.contacts, "each once, {kind} frame {frame}");
             assert_eq!(answer.completeness, Completeness::Proved);
-            let posed = [turn(0.3, [1.0, 0.0, 0.0]), place].map(|place| Posed {
+            let posed = [turn(0.3, [1.0, 0.0, 0.0]), place].map(|place| PosedMesh {
                 mesh: place.place(&ball).unwrap(),
                 ring: None,
             });

@@ -5,20 +5,20 @@ const MOST: usize = 16;
 
 /// Near misses, the best one last. Coordinates are shares of the axes' widths.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Misses {
-    list: Vec<Miss>,
+pub(super) struct MissList {
+    list: Vec<PlacedMiss>,
     /// Memory of places that are forgotten.
     #[serde(skip)]
     spare: Vec<Vec<f64>>,
 }
 
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-struct Miss {
+struct PlacedMiss {
     place: Vec<f64>,
     fitness: f64,
 }
 
-impl Misses {
+impl MissList {
     /// Keeps a miss, if it is among the best; `write` writes its place.
     pub(super) fn keep(&mut self, dimension: usize, fitness: f64, write: impl FnOnce(&mut [f64])) {
         let mut at = self.list.partition_point(|miss| miss.fitness > fitness);
@@ -32,7 +32,7 @@ impl Misses {
         let mut place = self.spare.pop().unwrap_or_default();
         place.resize(dimension, 0.0);
         write(&mut place);
-        self.list.insert(at, Miss { place, fitness });
+        self.list.insert(at, PlacedMiss { place, fitness });
     }
 
     /// Takes the best one out and hands its place to `read`.
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn the_best_are_kept_and_the_best_of_them_taken_first() {
-        let mut misses = Misses::default();
+        let mut misses = MissList::default();
         for i in 0..40 {
             let fitness = f64::from((i * 7) % 40);
             misses.keep(1, fitness, |place| place[0] = fitness);

@@ -4,7 +4,7 @@
 use super::bandit::Arm;
 use super::ends::Ends;
 use super::matrix_adaptation::{Distribution, usual_size};
-use super::misses::Misses;
+use super::misses::MissList;
 use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_between_looks};
@@ -58,7 +58,7 @@ impl EngineConfig for Niching {
 
 impl Niching {
     fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
-        Box::new(Searches::new(self.clone()))
+        Box::new(NichingSearch::new(self.clone()))
     }
 }
 
@@ -86,7 +86,7 @@ const PROGRESS: f64 = 0.05;
 
 /// What the points of a batch are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-enum Asked {
+enum BatchKind {
     #[default]
     Samples,
     /// Points between the search and a known end.
@@ -96,7 +96,7 @@ enum Asked {
 
 /// What is known of the search that runs.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
-struct Run {
+struct StrategyRun {
     running: bool,
     /// Whether it started beside a known end, of which this is F.
     is_hop: bool,
@@ -116,22 +116,22 @@ struct Run {
 
 /// The engine of [`Niching`]. Places are shares of the axes' widths.
 #[derive(Debug)]
-struct Searches<S> {
+struct NichingSearch<S> {
     settings: Niching,
     ends: Ends,
     hits: Vec<S>,
     pairs: Pairs,
     /// Recombinations that were no hits.
-    misses: Misses,
+    misses: MissList,
     /// What searches and recombinations have yielded.
     arms: [Arm; 2],
     restarts: u64,
     /// Evaluations of searches from known ends, and of the others.
     spent: [u64; 2],
     start: Vec<f64>,
-    run: Run,
+    run: StrategyRun,
     distribution: Distribution,
-    asked: Asked,
+    asked: BatchKind,
     position: Vec<S>,
     /// Memory of one place.
     place: Vec<f64>,
@@ -158,21 +158,21 @@ fn log_uniform(rng: &mut SearchRng, (smallest, largest): (f64, f64)) -> f64 {
     largest * (smallest / largest).powf(rng.uniform())
 }
 
-impl<S: Real> Searches<S> {
+impl<S: Real> NichingSearch<S> {
     fn new(settings: Niching) -> Self {
         Self {
             settings,
             ends: Ends::default(),
             hits: Vec::new(),
             pairs: Pairs::default(),
-            misses: Misses::default(),
+            misses: MissList::default(),
             arms: [Arm::default(); 2],
             restarts: 0,
             spent: [0; 2],
             start: Vec::new(),
-            run: Run::default(),
+            run: StrategyRun::default(),
             distribution: Distribution::default(),
-            asked: Asked::default(),
+            asked: BatchKind::default(),
             position: Vec::new(),
             place: Vec::new(),
         }
@@ -202,7 +202,7 @@ impl<S: Real> Searches<S> {
     fn begin_run(&mut self, rng: &mut SearchRng) {
         let dimension = self.start.len();
         self.restarts += 1;
-        self.run = Run {
+        self.run = StrategyRun {
             running: true,
             is_hop: false,
             origin: f64::INFINITY,
@@ -320,14 +320,14 @@ impl<S: Real> Searches<S> {
     }
 }
 
-impl<S: Real> Engine<S> for Searches<S> {
+impl<S: Real> Engine<S> for NichingSearch<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
         let dimension = context.space().dimension();
         *self = Self {
             start: vec![0.5; dimension],
-            run: Run {
+            run: StrategyRun {
                 best: vec![0.5; dimension],
-                ..Run::default()
+                ..StrategyRun::default()
             },
             position: vec![S::zero(); dimension],
             ..Self::new(self.settings.clone())
@@ -344,7 +344,7 @@ impl<S: Real> Engine<S> for Searches<S> {
             {
                 self.recombine(context, rng, out);
                 if !out.is_empty() {
-                    self.asked = Asked::Recombinations;
+                    self.asked = BatchKind::Recombinations;
                     return Ask::More;
                 }
             }
@@ -358,11 +358,11 @@ impl<S: Real> Engine<S> for Searches<S> {
                     let between = ends.map(|(a, b)| a + share * (b - a));
                     out.push_with(|position| to_position(space, between, position));
                 }
-                self.asked = Asked::Probes;
+                self.asked = BatchKind::Probes;
                 return Ask::More;
             }
         }
-        self.asked = Asked::Samples;
+        self.asked = BatchKind::Samples;
         let left = self.run.size - self.distribution.sampled();
         for _ in 0..left.min(AT_ONCE).min(points_between_looks(dimension)) {
             let sample = self.distribution.sample(rng);
@@ -384,7 +384,7 @@ impl<S: Real> Engine<S> for Searches<S> {
                 self.ends.add(&self.place, outcome.fitness().f64(), true);
             }
         }
-        let is_recombined = origin == Origin::Engine && self.asked == Asked::Recombinations;
+        let is_recombined = origin == Origin::Engine && self.asked == BatchKind::Recombinations;
         if is_recombined || origin == Origin::Start {
             for (position, outcome) in batch.points().zip(outcomes) {
                 if let Outcome::Miss(fitness) = *outcome {
@@ -398,8 +398,8 @@ impl<S: Real> Engine<S> for Searches<S> {
             return;
         }
         match self.asked {
-            Asked::Samples => self.learn(context, batch, outcomes),
-            Asked::Probes => {
+            BatchKind::Samples => self.learn(context, batch, outcomes),
+            BatchKind::Probes => {
                 let is_low = |outcome: &Outcome<S>| {
                     *outcome == Outcome::Deleted || outcome.fitness().f64() <= self.run.fitness
                 };
@@ -408,7 +408,7 @@ impl<S: Real> Engine<S> for Searches<S> {
                     self.arms[0].count(outcome.is_hit());
                 }
             }
-            Asked::Recombinations => {
+            BatchKind::Recombinations => {
                 for outcome in outcomes {
                     self.arms[1].count(outcome.is_hit());
                 }
@@ -435,7 +435,7 @@ impl<S: Real> Engine<S> for Searches<S> {
     }
 }
 
-impl<S: Real> Part for Searches<S> {
+impl<S: Real> Part for NichingSearch<S> {
     crate::saved_fields!(
         ends,
         hits,

@@ -71,19 +71,19 @@ fn square(units: &Units, a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::model::record::Kind;
+    use crate::engine::model::record::PointKind;
 
     #[test]
     fn the_radius_parts_duplicates_from_hits() {
         let mut record = Record::default();
         record.clear(1);
         for (x, kind) in [
-            (0.1, Kind::Hit),
-            (0.13, Kind::Duplicate),
-            (0.15, Kind::Duplicate),
-            (0.3, Kind::Hit),
-            (0.25, Kind::Duplicate),
-            (0.9, Kind::Hit),
+            (0.1, PointKind::Hit),
+            (0.13, PointKind::Duplicate),
+            (0.15, PointKind::Duplicate),
+            (0.3, PointKind::Hit),
+            (0.25, PointKind::Duplicate),
+            (0.9, PointKind::Hit),
         ] {
             record.add(&[x], -1.0, kind);
         }

@@ -9,7 +9,7 @@ const KEYS: FixedState = FixedState::with_seed(0x6d6f_6465_6c00);
 
 /// What became of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PointKind {
     /// A new hit.
     Hit,
     /// No hit, or without F.
@@ -61,12 +61,12 @@ impl Record {
     }
 
     /// Notes a point with its F, NaN if that is missing.
-    pub(super) fn add(&mut self, units: &[f64], value: f64, kind: Kind) {
+    pub(super) fn add(&mut self, units: &[f64], value: f64, kind: PointKind) {
         self.seen.insert(key(units));
         match kind {
-            Kind::Hit => self.hits.push(self.len()),
-            Kind::Duplicate => self.duplicates.push(self.len()),
-            Kind::Miss => {}
+            PointKind::Hit => self.hits.push(self.len()),
+            PointKind::Duplicate => self.duplicates.push(self.len()),
+            PointKind::Miss => {}
         }
         self.units.extend_from_slice(units);
         self.values.push(value);

@@ -3,7 +3,7 @@
 use super::local::{Given, Model};
 use super::pool::Pool;
 use super::process::Process;
-use super::record::{Kind, Record};
+use super::record::{PointKind, Record};
 use super::region::TrustRegion;
 use super::scales::Scales;
 use super::skill::Skill;
@@ -261,11 +261,11 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
                 self.pending.remove(place);
             }
             match *outcome {
-                Outcome::Hit(f) => self.record.add(&x, f.f64(), Kind::Hit),
-                Outcome::Miss(f) => self.record.add(&x, f.f64(), Kind::Miss),
-                Outcome::Known(f) => self.record.add(&x, f.f64(), Kind::Duplicate),
-                Outcome::Deleted => self.record.add(&x, f64::NAN, Kind::Duplicate),
-                Outcome::NonFinite => self.record.add(&x, f64::NAN, Kind::Miss),
+                Outcome::Hit(f) => self.record.add(&x, f.f64(), PointKind::Hit),
+                Outcome::Miss(f) => self.record.add(&x, f.f64(), PointKind::Miss),
+                Outcome::Known(f) => self.record.add(&x, f.f64(), PointKind::Duplicate),
+                Outcome::Deleted => self.record.add(&x, f64::NAN, PointKind::Duplicate),
+                Outcome::NonFinite => self.record.add(&x, f64::NAN, PointKind::Miss),
                 Outcome::NotEvaluated => {}
             }
         }

@@ -48,7 +48,7 @@ const FLOOD_STEP: f64 = 1e-3;
 
 /// Which engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-enum Kind {
+enum GuestKind {
     /// (1+1)-CMA-ES with recombination of hits.
     Cma,
     /// Flood fill on continuous axes.
@@ -91,7 +91,7 @@ impl<S: Real> core::ops::DerefMut for Member<S> {
 
 /// An engine and its credit.
 struct Guest<S> {
-    kind: Kind,
+    kind: GuestKind,
     engine: Member<S>,
     arm: Credit,
     /// Whether it may still propose something.
@@ -118,7 +118,7 @@ impl<S> core::fmt::Debug for Guests<S> {
 }
 
 /// The result of asking an engine.
-pub(super) enum Answer {
+pub(super) enum GuestAnswer {
     /// It proposed candidates, or worked on bounds: so many evaluations.
     Worked(u64),
     /// These candidates complete the cover of the space.
@@ -128,32 +128,32 @@ pub(super) enum Answer {
 }
 
 impl<S: Real> Guest<S> {
-    fn new(kind: Kind, sizes: Sizes) -> Self {
+    fn new(kind: GuestKind, sizes: Sizes) -> Self {
         let engine = match kind {
-            Kind::Cma => Member::Other(
+            GuestKind::Cma => Member::Other(
                 RestartedCmaEs {
                     searches: sizes.searches,
                     ..RestartedCmaEs::default()
                 }
                 .build(),
             ),
-            Kind::Flood => Member::Other(Box::new(FloodAlone::new(FLOOD_STEP))),
-            Kind::Regions => Member::Other(
+            GuestKind::Flood => Member::Other(Box::new(FloodAlone::new(FLOOD_STEP))),
+            GuestKind::Regions => Member::Other(
                 BranchAndBound {
                     batch: sizes.regions,
                     ..BranchAndBound::default()
                 }
                 .build(),
             ),
-            Kind::Quadratic => Member::Other(
+            GuestKind::Quadratic => Member::Other(
                 QuadraticDescent {
                     searches: sizes.searches,
                     ..QuadraticDescent::default()
                 }
                 .build(),
             ),
-            Kind::Niching => Member::Other(Niching::default().build()),
-            Kind::Model => Member::Model(Box::new(ModelledSearch::new(Surrogate {
+            GuestKind::Niching => Member::Other(Niching::default().build()),
+            GuestKind::Model => Member::Model(Box::new(ModelledSearch::new(Surrogate {
                 candidates: sizes.candidates,
                 ..Surrogate::default()
             }))),
@@ -192,20 +192,22 @@ impl<S: Real> Guests<S> {
         self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
         self.guests.clear();
         for kind in [
-            Kind::Cma,
-            Kind::Flood,
-            Kind::Regions,
-            Kind::Model,
-            Kind::Quadratic,
-            Kind::Niching,
+            GuestKind::Cma,
+            GuestKind::Flood,
+            GuestKind::Regions,
+            GuestKind::Model,
+            GuestKind::Quadratic,
+            GuestKind::Niching,
         ] {
             let is_of_use = match kind {
-                Kind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
-                Kind::Niching => self.continuous && !without_recombination && space.dimension() <= CMA_AXES,
-                Kind::Flood => continuous,
-                Kind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
-                Kind::Regions => context.lower_bound(&space.region()).is_some(),
-                Kind::Model => context
+                GuestKind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
+                GuestKind::Niching => {
+                    self.continuous && !without_recombination && space.dimension() <= CMA_AXES
+                }
+                GuestKind::Flood => continuous,
+                GuestKind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
+                GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
+                GuestKind::Model => context
                     .evaluations_planned()
                     .is_some_and(|planned| planned <= MODELLED && space.dimension() <= MODEL_AXES),
             };
@@ -215,7 +217,7 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    fn open(&mut self, kind: Kind, context: &dyn Context<S>) {
+    fn open(&mut self, kind: GuestKind, context: &dyn Context<S>) {
         let mut guest = Guest::new(kind, self.sizes);
         guest.engine.begin(context);
         self.guests.push(guest);
@@ -227,17 +229,17 @@ impl<S: Real> Guests<S> {
             return;
         };
         let axes = context.space().axes();
-        let is_there = |kind: Kind| self.guests.iter().any(|guest| guest.kind == kind);
+        let is_there = |kind: GuestKind| self.guests.iter().any(|guest| guest.kind == kind);
         let opens_model = seconds > EXPENSIVE
             && context.evaluations() <= MODELLED
             && axes.len() <= MODEL_AXES
-            && !is_there(Kind::Model);
-        let opens_quadratic = seconds > QUADRATIC && is_smooth(context) && !is_there(Kind::Quadratic);
+            && !is_there(GuestKind::Model);
+        let opens_quadratic = seconds > QUADRATIC && is_smooth(context) && !is_there(GuestKind::Quadratic);
         if opens_model {
-            self.open(Kind::Model, context);
+            self.open(GuestKind::Model, context);
         }
         if opens_quadratic {
-            self.open(Kind::Quadratic, context);
+            self.open(GuestKind::Quadratic, context);
         }
     }
 
@@ -255,9 +257,9 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn role(&self, index: usize) -> Role {
         match self.guests[index].kind {
-            Kind::Cma | Kind::Niching | Kind::Quadratic => Role::Explores,
-            Kind::Flood => Role::Exploits,
-            Kind::Regions | Kind::Model => Role::Apart,
+            GuestKind::Cma | GuestKind::Niching | GuestKind::Quadratic => Role::Explores,
+            GuestKind::Flood => Role::Exploits,
+            GuestKind::Regions | GuestKind::Model => Role::Apart,
         }
     }
 
@@ -285,13 +287,13 @@ impl<S: Real> Guests<S> {
             let mut guests = self.guests.iter();
             guests.position(|guest| guest.kind == kind && guest.open && guest.own.is_empty())
         };
-        Some([find(Kind::Model)?, find(Kind::Quadratic)?])
+        Some([find(GuestKind::Model)?, find(GuestKind::Quadratic)?])
     }
 
     /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
     pub(super) fn niching(&self) -> Option<usize> {
         let mut guests = self.guests.iter();
-        guests.position(|guest| guest.kind == Kind::Niching && guest.own.is_empty())
+        guests.position(|guest| guest.kind == GuestKind::Niching && guest.own.is_empty())
     }
 
     /// What a source is among those that look for the first hit.
@@ -299,9 +301,9 @@ impl<S: Real> Guests<S> {
         match source {
             Source::Descent => Some(Seeker::Direct),
             Source::Guest => match self.guests[index].kind {
-                Kind::Model => Some(Seeker::Model),
-                Kind::Quadratic => Some(Seeker::Quadratic),
-                Kind::Cma | Kind::Niching | Kind::Flood | Kind::Regions => None,
+                GuestKind::Model => Some(Seeker::Model),
+                GuestKind::Quadratic => Some(Seeker::Quadratic),
+                GuestKind::Cma | GuestKind::Niching | GuestKind::Flood | GuestKind::Regions => None,
             },
             _ => None,
         }
@@ -309,7 +311,10 @@ impl<S: Real> Guests<S> {
 
     /// The credits of the engines that are drawn by their yield.
     pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
-        let drawn = self.guests.iter().filter(|guest| guest.kind != Kind::Niching);
+        let drawn = self
+            .guests
+            .iter()
+            .filter(|guest| guest.kind != GuestKind::Niching);
         drawn.map(|guest| &guest.arm)
     }
 
@@ -330,19 +335,19 @@ impl<S: Real> Guests<S> {
             }
             let is_worth_trying = guest.arm.is_worth_trying(all, trial);
             let weight = match (guest.kind, &guest.engine) {
-                (Kind::Cma, _) => is_worth_trying.then_some(2.0),
-                (Kind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
-                (Kind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
-                (Kind::Flood, _) => is_worth_trying.then_some(1.0),
-                (Kind::Regions, _) => is_worth_trying.then_some(0.3),
-                (Kind::Model, Member::Model(model)) => match model.is_useful() {
+                (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
+                (GuestKind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
+                (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
+                (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
+                (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
+                (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
                     None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
                     None | Some(true) if steps => Some(MODEL_WEIGHT_ON_STEPS),
                     None | Some(true) => Some(MODEL_WEIGHT),
                     Some(false) => guest.arm.is_within(all, trial).then_some(1.0),
                 },
                 // Niching is not drawn by its yield.
-                (Kind::Niching, _) | (Kind::Model, Member::Other(_)) => None,
+                (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,
             };
             weight.map(|weight| (index, &guest.arm, weight))
         })
@@ -355,7 +360,7 @@ impl<S: Real> Guests<S> {
         context: &dyn Context<S>,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
-    ) -> Answer {
+    ) -> GuestAnswer {
         let guest = &mut self.guests[index];
         let before = context.evaluations_left();
         self.part.clear();
@@ -369,15 +374,15 @@ impl<S: Real> Guests<S> {
             out.push(position);
         }
         match answer {
-            Ask::Covered => return Answer::Covered,
+            Ask::Covered => return GuestAnswer::Covered,
             Ask::Exhausted => guest.open = false,
             Ask::More => {}
         }
         if guest.own.is_empty() && calls == 0 {
             guest.arm.count(false);
-            return Answer::Nothing;
+            return GuestAnswer::Nothing;
         }
-        Answer::Worked(calls + guest.own.len() as u64)
+        GuestAnswer::Worked(calls + guest.own.len() as u64)
     }
 
     /// Tells each engine the outcomes of its part, if the portfolio proposed the batch, and the other outcomes that concern it.
@@ -424,7 +429,7 @@ impl<S: Real> Guests<S> {
                 Origin::Start => Origin::Start,
                 _ => Origin::Exhaustion,
             };
-            let learns_from_all = guest.kind == Kind::Model || origin == Origin::Start;
+            let learns_from_all = guest.kind == GuestKind::Model || origin == Origin::Start;
             tell(
                 &|i| !own.contains(&i) && (learns_from_all || outcomes[i].is_hit()),
                 origin,

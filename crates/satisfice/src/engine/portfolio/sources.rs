@@ -8,7 +8,7 @@ use proposals::SCANNED;
 use super::climbers::Climbers;
 use super::credit::{Credit, Patches};
 use super::drought::Drought;
-use super::guests::{Answer, Guests};
+use super::guests::{GuestAnswer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::populations::Populations;
@@ -219,13 +219,13 @@ impl<S: Real> Engine<S> for Sources<S> {
                 let answer = self.guests.ask(tag.1, context, rng, out);
                 self.tags.resize(out.len(), tag);
                 match answer {
-                    Answer::Covered => return Ask::Covered,
-                    Answer::Worked(cost) if out.len() >= wanted || out.is_empty() => {
+                    GuestAnswer::Covered => return Ask::Covered,
+                    GuestAnswer::Worked(cost) if out.len() >= wanted || out.is_empty() => {
                         self.chosen = Some((tag, left.saturating_sub(cost.max(1))));
                         return Ask::More;
                     }
-                    Answer::Worked(_) => self.chosen = None,
-                    Answer::Nothing => {
+                    GuestAnswer::Worked(_) => self.chosen = None,
+                    GuestAnswer::Nothing => {
                         self.chosen = None;
                         rejected += 1;
                     }

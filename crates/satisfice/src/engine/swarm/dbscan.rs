@@ -14,10 +14,10 @@ pub(super) fn dbscan(
     eps: f64,
     min_points: usize,
     distance: impl Fn(usize, usize) -> f64,
-    memory: &mut Memory,
+    memory: &mut ClusterMemory,
     niches: &mut Vec<u32>,
 ) {
-    let Memory { seen, open, reached } = memory;
+    let ClusterMemory { seen, open, reached } = memory;
     // NaN is near nothing.
     let near = |i: usize, out: &mut Vec<usize>| {
         out.clear();
@@ -56,7 +56,7 @@ pub(super) fn dbscan(
 
 /// What [`dbscan`] works with.
 #[derive(Debug, Default)]
-pub(super) struct Memory {
+pub(super) struct ClusterMemory {
     seen: Vec<bool>,
     open: Vec<usize>,
     reached: Vec<usize>,
@@ -74,7 +74,7 @@ mod tests {
             1.0,
             3,
             distance,
-            &mut Memory::default(),
+            &mut ClusterMemory::default(),
             &mut niches,
         );
         niches

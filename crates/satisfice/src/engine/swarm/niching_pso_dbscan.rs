@@ -1,6 +1,6 @@
 //! The paper's rival: a particle swarm whose niches are found by clustering. A reconstruction.
 
-use super::dbscan::{Memory, OUTLIER, dbscan};
+use super::dbscan::{ClusterMemory, OUTLIER, dbscan};
 use super::particles::{Attractor, Swarm, SwarmRules, set_room_aside};
 use super::pso::constriction;
 use super::velocity::Coefficients;
@@ -76,7 +76,7 @@ impl NichingPsoDbscan {
             still: self.still,
             velocities: Vec::new(),
             niches: Vec::new(),
-            memory: Memory::default(),
+            memory: ClusterMemory::default(),
             scattered: Vec::new(),
             sweeps: 0,
         })
@@ -97,7 +97,7 @@ struct NichingSwarm<S> {
     still: f64,
     velocities: Vec<S>,
     niches: Vec<u32>,
-    memory: Memory,
+    memory: ClusterMemory,
     /// Whether a particle is to be drawn again in this sweep.
     scattered: Vec<bool>,
     sweeps: u64,

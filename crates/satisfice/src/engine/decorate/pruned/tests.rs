@@ -8,13 +8,13 @@ use crate::testing::engine::check;
 use crate::{Budget, Completeness, Region, Report, SatisficingProblem, Search, Space};
 
 /// Lattice points within a width of a sphere, with a bound; counts evaluations far away.
-struct Shell {
+struct LatticeShell {
     space: Space<f64>,
     radius: f64,
     far: AtomicU64,
 }
 
-impl Shell {
+impl LatticeShell {
     fn new(dimension: usize, cells: u32, radius: f64) -> Self {
         Self {
             space: Space::lattice(dimension, cells).unwrap(),
@@ -27,7 +27,7 @@ impl Shell {
     }
 }
 
-impl SatisficingProblem for Shell {
+impl SatisficingProblem for LatticeShell {
     type Scalar = f64;
     type Solution = Vec<u32>;
     fn space(&self) -> &Space<f64> {
@@ -52,7 +52,7 @@ impl SatisficingProblem for Shell {
     }
 }
 
-impl Bounds<f64> for Shell {
+impl Bounds<f64> for LatticeShell {
     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
         let ends = || region.lower.iter().zip(&region.upper);
         let c = self.centre();
@@ -68,7 +68,7 @@ impl Bounds<f64> for Shell {
     }
 }
 
-fn run(problem: &Shell, engine: &str, pruned: bool, evaluations: u64) -> Report<Vec<u32>> {
+fn run(problem: &LatticeShell, engine: &str, pruned: bool, evaluations: u64) -> Report<Vec<u32>> {
     let engine = find(engine).unwrap().configure([]).unwrap();
     let engine = if pruned { engine.pruned() } else { engine };
     let mut search = Search::with(engine).seed(4);
@@ -78,7 +78,7 @@ fn run(problem: &Shell, engine: &str, pruned: bool, evaluations: u64) -> Report<
 #[test]
 fn dead_regions_are_hardly_sampled_and_hits_are_not_lost() {
     for entry in all().iter().filter(|entry| !entry.expensive_proposals) {
-        let (plain, sparing) = (Shell::new(3, 100, 12.0), Shell::new(3, 100, 12.0));
+        let (plain, sparing) = (LatticeShell::new(3, 100, 12.0), LatticeShell::new(3, 100, 12.0));
         let before = run(&plain, entry.name, false, 20_000);
         let after = run(&sparing, entry.name, true, 20_000);
         let spent = after.counts.evaluations + after.counts.bound_calls;
@@ -104,8 +104,8 @@ fn dead_regions_are_hardly_sampled_and_hits_are_not_lost() {
 
 #[test]
 fn uniform_sampling_gains_what_the_dead_part_was() {
-    let before = run(&Shell::new(3, 100, 12.0), "random", false, 20_000);
-    let after = run(&Shell::new(3, 100, 12.0), "random", true, 20_000);
+    let before = run(&LatticeShell::new(3, 100, 12.0), "random", false, 20_000);
+    let after = run(&LatticeShell::new(3, 100, 12.0), "random", true, 20_000);
     assert!(
         after.hit_count() > 5 * before.hit_count(),
         "{} {}",
@@ -116,7 +116,7 @@ fn uniform_sampling_gains_what_the_dead_part_was() {
 
 #[test]
 fn a_space_without_hits_is_proved_to_have_none() {
-    let report = run(&Shell::new(2, 50, 500.0), "walk", true, 1000);
+    let report = run(&LatticeShell::new(2, 50, 500.0), "walk", true, 1000);
     assert_eq!(
         (report.hit_count(), report.completeness, report.counts.evaluations),
         (0, Completeness::Proved, 0)
@@ -126,7 +126,7 @@ fn a_space_without_hits_is_proved_to_have_none() {
 #[test]
 fn resumed_it_goes_on() {
     for name in ["random", "latest-hit-qpso", "descent-flood"] {
-        let problem = Shell::new(3, 60, 9.0);
+        let problem = LatticeShell::new(3, 60, 9.0);
         let make = || find(name).unwrap().configure::<f64>([]).unwrap().pruned();
         let mut search = Search::with(make()).seed(2);
         let mut slice = search.start(&problem, &Budget::evaluations(3000)).unwrap();
