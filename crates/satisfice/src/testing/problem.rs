@@ -244,6 +244,8 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
                 "neighbours are offered without an encoding",
             );
         }
+        // Whatever is in it, a neighbour is written over it.
+        let mut written = self.problem.decode(&points[0]);
         for point in points {
             let solution = self.problem.decode(point);
             let count = neighbourhood.count(&solution);
@@ -252,16 +254,25 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
             for index in some {
                 let neighbour = neighbourhood.neighbour(&solution, index);
                 let again = neighbourhood.neighbour(&solution, index);
-                let alike = match (&neighbour, &again) {
+                let is_written = neighbourhood.neighbour_into(&solution, index, &mut written);
+                let alike = |other: Option<&P::Solution>| match (&neighbour, other) {
                     (Some(a), Some(b)) => a.same(b),
                     (None, None) => true,
                     _ => false,
                 };
-                if !alike {
+                let [is_again, is_the_same] = [again.as_ref(), is_written.then_some(&written)].map(alike);
+                if !is_again {
                     self.say(
                         ProblemLaw::Neighbours,
                         point,
                         "asked twice, there is another neighbour",
+                    );
+                }
+                if !is_the_same {
+                    self.say(
+                        ProblemLaw::Neighbours,
+                        point,
+                        "`neighbour_into` gives another neighbour than `neighbour`",
                     );
                 }
                 if let Some(neighbour) = neighbour {

@@ -41,6 +41,7 @@ enum Fault {
     NeighboursLeaveTheSpace,
     NeighboursBeyondTheCount,
     NeighboursAlternate,
+    NeighboursAreWrittenOtherwise,
     BoundIsTooHigh,
     BoundIsNaN,
     RepresentativeIsNoHit,
@@ -141,6 +142,18 @@ impl Neighbourhood<[i64; 2]> for Faulty {
         let inside = a < 19 || self.fault == Fault::NeighboursLeaveTheSpace;
         (exists && inside).then_some([a + 1, b])
     }
+
+    fn neighbour_into(&self, of: &[i64; 2], index: usize, neighbour: &mut [i64; 2]) -> bool {
+        let found = self.neighbour(of, index);
+        // What was in it is left, where it should be written over.
+        if let Some([a, b]) = found {
+            neighbour[0] = a;
+            if self.fault != Fault::NeighboursAreWrittenOtherwise {
+                neighbour[1] = b;
+            }
+        }
+        found.is_some()
+    }
 }
 
 impl Bounds<f64> for Faulty {
@@ -165,6 +178,7 @@ fn a_broken_problem_is_found_out() {
         (Fault::EncodeIsOffByOne, Some(ProblemLaw::Encode)),
         (Fault::NeighboursLeaveTheSpace, Some(ProblemLaw::Neighbours)),
         (Fault::NeighboursAlternate, Some(ProblemLaw::Neighbours)),
+        (Fault::NeighboursAreWrittenOtherwise, Some(ProblemLaw::Neighbours)),
         (Fault::NeighboursBeyondTheCount, Some(ProblemLaw::Neighbours)),
         (Fault::BoundIsTooHigh, Some(ProblemLaw::LowerBound)),
         (Fault::BoundIsNaN, Some(ProblemLaw::LowerBound)),
