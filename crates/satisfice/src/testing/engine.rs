@@ -55,8 +55,8 @@ pub enum EngineLaw {
     Covered,
 }
 
-/// Evaluations of an ordinary run, and of one by an engine whose proposals are expensive.
-const RUN: u64 = 600;
+/// Evaluations of an ordinary run, too many for a model of F, and of one by an engine whose proposals are expensive.
+const RUN: u64 = 1_200;
 const EXPENSIVE_RUN: u64 = 150;
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;

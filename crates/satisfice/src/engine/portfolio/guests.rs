@@ -25,7 +25,7 @@ use crate::state::{Part, Reader, State};
 
 /// A model of F is at work where at most `MODELLED` evaluations are planned, or where an evaluation takes more than `EXPENSIVE` seconds and at
 /// most `MODELLED` have been made; on spaces of at most `MODEL_AXES` axes.
-const MODELLED: u64 = 500;
+const MODELLED: u64 = 1_000;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes

@@ -68,7 +68,7 @@ engine_settings! {
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or F takes more than
     ///   20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
-    /// - a Gaussian process where F is expensive: where at most 500 evaluations are planned, or where F takes more than 5 ms
+    /// - a Gaussian process where F is expensive: where at most 1,000 evaluations are planned, or where F takes more than 5 ms
     ///   and only time is limited;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most

@@ -34,7 +34,7 @@ impl<S: Real> EngineSuite<'_, S> {
     }
 
     pub(super) fn budgets(&mut self) -> Result<(), Error> {
-        for evaluations in [1, 2, 7, 29, 30, 31, 64, 65, 1000] {
+        for evaluations in [1, 2, 7, 29, 30, 31, 64, 65, 1009] {
             for case in spaces()? {
                 self.run(&case, &Budget::evaluations(evaluations))?;
             }
