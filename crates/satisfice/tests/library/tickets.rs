@@ -193,7 +193,8 @@ fn misuse_is_told() {
     for order in [Order::Ordered, Order::Eager] {
         let space = Space::lattice(2, 50).unwrap();
         let problem = evaluated_elsewhere(space, 3.0);
-        let budget = Budget::evaluations(1000);
+        // Three at a time: by itself the default, whose model learns from each answer, asks for one.
+        let budget = Budget::evaluations(1000).with_parallel(3);
         let mut tickets = Tickets::begin(Search::new(), problem, &budget, order).unwrap();
         let unknown = Ticket::from(0);
         assert_eq!(tickets.tell(unknown, 1.0), Err(Error::Ticket(0)));
