@@ -1,4 +1,4 @@
-//! How much a result owes to its seed.
+//! Hits at the end of every run, sorted: how much a result owes to its seed.
 
 use super::{Runs, title};
 use crate::finding::Figure;
