@@ -1,5 +1,7 @@
 //! The archive: the distinct hits, in the order found.
 
+mod as_list;
+
 use hashbrown::HashTable;
 
 use crate::identity::Identity;
@@ -8,6 +10,9 @@ use crate::identity::Identity;
 const FILTERED: usize = 1 << 16;
 /// Bits of the filter per hit it has room for: about one look-up in 16 is not saved.
 const BITS: usize = 16;
+/// One new hit in so many looks at how many share its key; more than `CROWDED` are too many to compare with.
+const LOOK_EVERY: usize = 64;
+const CROWDED: usize = 24;
 
 /// The distinct hits, in the order found, each with its fitness and with the evaluation and the time that found it.
 ///
@@ -23,6 +28,8 @@ pub struct Archive<T> {
     /// Hits of probes that the engine has not found itself: [`Archive::contains`] skips them.
     probe_only: HashTable<u32>,
     filter: Vec<u64>,
+    /// Whether solutions are filed by their fine keys.
+    fine: bool,
 }
 
 /// The outcome of [`Archive::enter`].
@@ -46,6 +53,7 @@ impl<T> Default for Archive<T> {
             table: HashTable::new(),
             probe_only: HashTable::new(),
             filter: Vec::new(),
+            fine: false,
         }
     }
 }
@@ -134,6 +142,12 @@ impl<T> Archive<T> {
     }
 }
 
+/// The key of a solution, fine or not.
+#[inline]
+fn key_of<T: Identity>(solution: &T, fine: bool) -> u64 {
+    if fine { solution.fine_key() } else { solution.key() }
+}
+
 impl<T: Identity> Archive<T> {
     /// Whether it holds a solution that is the same.
     #[inline]
@@ -142,7 +156,9 @@ impl<T: Identity> Archive<T> {
         if self.solutions.is_empty() {
             return false;
         }
-        solution.visit_keys(&mut |key| self.may_hold(key) && self.find(key, solution).is_some())
+        self.visit_keys(solution, &mut |key| {
+            self.may_hold(key) && self.find(key, solution).is_some()
+        })
     }
 
     /// Whether a solution is the same as the hit at `recent`: a hit that is found again is often found many times in a row.
@@ -154,7 +170,7 @@ impl<T: Identity> Archive<T> {
     /// [`Archive::contains`]; if it does, the index of the hit is written to `recent`.
     pub(crate) fn contains_again(&self, solution: &T, recent: &mut usize) -> bool {
         let mut found = None;
-        solution.visit_keys(&mut |key| {
+        self.visit_keys(solution, &mut |key| {
             if self.may_hold(key) {
                 found = self.find(key, solution);
             }
@@ -175,7 +191,7 @@ impl<T: Identity> Archive<T> {
 
     /// Whether a hit that is the same as `solution` passes `test`.
     pub(crate) fn any_same(&self, solution: &T, mut test: impl FnMut(&T) -> bool) -> bool {
-        solution.visit_keys(&mut |key| {
+        self.visit_keys(solution, &mut |key| {
             self.table
                 .iter_hash(key)
                 .map(|&i| &self.solutions[i as usize])
@@ -221,19 +237,22 @@ impl<T: Identity> Archive<T> {
         let Ok(index) = u32::try_from(self.solutions.len()) else {
             return Insertion::Known;
         };
-        let key = solution.key();
+        let key = self.key_of(&solution);
         self.solutions.push(solution);
         self.fitness.push(fitness);
         self.evaluations.push(evaluation);
         #[expect(clippy::cast_possible_truncation, reason = "7 digits of a time are plenty")]
         self.seconds.push(seconds as f32);
-        let solutions = &self.solutions;
-        let rehash = |&i: &u32| solutions[i as usize].key();
+        let (solutions, fine) = (&self.solutions, self.fine);
+        let rehash = |&i: &u32| key_of(&solutions[i as usize], fine);
         if probe {
             self.probe_only.insert_unique(key, index, rehash);
         } else {
             self.table.insert_unique(key, index, rehash);
             self.note(key);
+        }
+        if self.is_crowded(key, index as usize) {
+            self.file_finely();
         }
         Insertion::New
     }
@@ -241,7 +260,7 @@ impl<T: Identity> Archive<T> {
     /// The index of a solution that is the same, probe-only or not.
     pub(crate) fn position(&self, solution: &T) -> Option<usize> {
         let mut found = None;
-        solution.visit_keys(&mut |key| {
+        self.visit_keys(solution, &mut |key| {
             found = self.find(key, solution);
             found.is_some()
         });
@@ -255,7 +274,7 @@ impl<T: Identity> Archive<T> {
             return None;
         }
         let mut found = None;
-        solution.visit_keys(&mut |key| {
+        self.visit_keys(solution, &mut |key| {
             found = self
                 .probe_only
                 .find(key, |&i| self.solutions[i as usize].same(solution))
@@ -270,7 +289,7 @@ impl<T: Identity> Archive<T> {
         !self.probe_only.is_empty()
             && self.solutions.get(index).is_some_and(|solution| {
                 self.probe_only
-                    .find(solution.key(), |&i| i as usize == index)
+                    .find(self.key_of(solution), |&i| i as usize == index)
                     .is_some()
             })
     }
@@ -284,26 +303,27 @@ impl<T: Identity> Archive<T> {
 
     /// Marks hit `index` as probe-only; `false` if there is no such hit.
     pub(crate) fn set_probe_only(&mut self, index: u32) -> bool {
-        let Some(key) = self.solutions.get(index as usize).map(Identity::key) else {
+        let Some(solution) = self.solutions.get(index as usize) else {
             return false;
         };
+        let key = self.key_of(solution);
         if let Ok(entry) = self.table.find_entry(key, |&i| i == index) {
             entry.remove();
-            let solutions = &self.solutions;
+            let (solutions, fine) = (&self.solutions, self.fine);
             self.probe_only
-                .insert_unique(key, index, |&i| solutions[i as usize].key());
+                .insert_unique(key, index, |&i| key_of(&solutions[i as usize], fine));
         }
         true
     }
 
     fn promote(&mut self, index: u32) {
-        let key = self.solutions[index as usize].key();
+        let key = self.key_of(&self.solutions[index as usize]);
         if let Ok(entry) = self.probe_only.find_entry(key, |&i| i == index) {
             entry.remove();
         }
-        let solutions = &self.solutions;
+        let (solutions, fine) = (&self.solutions, self.fine);
         self.table
-            .insert_unique(key, index, |&i| solutions[i as usize].key());
+            .insert_unique(key, index, |&i| key_of(&solutions[i as usize], fine));
         self.note(key);
     }
 
@@ -315,9 +335,52 @@ impl<T: Identity> Archive<T> {
         self.fitness.shrink_to_fit();
         self.evaluations.shrink_to_fit();
         self.seconds.shrink_to_fit();
-        let solutions = &self.solutions;
-        self.table.shrink_to_fit(|&i| solutions[i as usize].key());
+        let (solutions, fine) = (&self.solutions, self.fine);
+        self.table
+            .shrink_to_fit(|&i| key_of(&solutions[i as usize], fine));
         self.filter = Vec::new();
+    }
+
+    #[inline]
+    fn key_of(&self, solution: &T) -> u64 {
+        key_of(solution, self.fine)
+    }
+
+    #[inline]
+    fn visit_keys(&self, solution: &T, visit: &mut impl FnMut(u64) -> bool) -> bool {
+        if self.fine {
+            solution.visit_fine_keys(visit)
+        } else {
+            solution.visit_keys(visit)
+        }
+    }
+
+    /// Whether the solution at `index`, the last one, shares its key with so many that fine keys cost less; looked at seldom.
+    #[inline]
+    fn is_crowded(&self, key: u64, index: usize) -> bool {
+        index.is_multiple_of(LOOK_EVERY)
+            && !self.fine
+            && self.solutions[index].has_fine_keys()
+            && self.table.iter_hash(key).count() > CROWDED
+    }
+
+    /// Files all solutions by their fine keys from now on.
+    fn file_finely(&mut self) {
+        self.fine = true;
+        let solutions = &self.solutions;
+        let rehash = |&i: &u32| solutions[i as usize].fine_key();
+        for table in [&mut self.table, &mut self.probe_only] {
+            for index in core::mem::take(table) {
+                table.insert_unique(solutions[index as usize].fine_key(), index, rehash);
+            }
+        }
+        self.filter.fill(0);
+        if !self.filter.is_empty() {
+            for i in 0..self.solutions.len() {
+                let key = self.key_of(&self.solutions[i]);
+                self.set(key);
+            }
+        }
     }
 
     #[inline]
@@ -343,7 +406,7 @@ impl<T: Identity> Archive<T> {
             self.filter
                 .resize((2 * hits * BITS).next_power_of_two().max(1024) / 64, 0);
             for i in 0..hits {
-                let key = self.solutions[i].key();
+                let key = self.key_of(&self.solutions[i]);
                 self.set(key);
             }
         } else {
@@ -354,38 +417,6 @@ impl<T: Identity> Archive<T> {
     fn set(&mut self, key: u64) {
         let bit = (key >> 24) as usize & (self.filter.len() * 64 - 1);
         self.filter[bit / 64] |= 1 << (bit % 64);
-    }
-}
-
-mod as_list {
-    //! An archive is written as the list of its hits and read back in that order.
-
-    use super::{Archive, Identity};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    #[derive(Deserialize)]
-    struct Row<T> {
-        solution: T,
-        fitness: f64,
-        evaluation: u64,
-        seconds: f64,
-    }
-
-    impl<T: Serialize> Serialize for Archive<T> {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            serializer.collect_seq(self.iter())
-        }
-    }
-
-    impl<'de, T: Deserialize<'de> + Identity> Deserialize<'de> for Archive<T> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let rows = Vec::<Row<T>>::deserialize(deserializer)?;
-            let mut archive = Self::default();
-            for row in rows {
-                archive.insert(row.solution, row.fitness, row.evaluation, row.seconds);
-            }
-            Ok(archive)
-        }
     }
 }
 
@@ -425,6 +456,30 @@ mod tests {
                 assert_eq!(archive.insert(located, -1.0, n, 0.0), !near);
             }
         }
+    }
+
+    /// Hits are crowded in a part of six dimensions, so that fine keys come into use on the way.
+    #[test]
+    fn crowded_solutions_agree_with_all_pairs() {
+        let mut rng = crate::SearchRng::new(5);
+        let mut archive = Archive::default();
+        for n in 0..3000 {
+            let point: Vec<f64> = (0..6).map(|_| 0.3 * rng.uniform()).collect();
+            let located = Located::new(&point, 0.05);
+            let near = |all: bool| {
+                let mut others = archive.solutions().iter().enumerate();
+                others.any(|(i, other)| (all || !archive.is_probe_only(i)) && located.same(other))
+            };
+            let (known, probe) = (near(false), n % 50 == 0 && !near(true));
+            assert_eq!(archive.contains(&located), known);
+            let insertion = archive.enter(located, -1.0, n, 0.0, probe);
+            assert_eq!(insertion == Insertion::Known, known);
+        }
+        assert!(archive.fine && archive.probe_only() > 10);
+        let found = (0..archive.len()).filter(|&i| archive.position(&archive.solutions()[i]) == Some(i));
+        assert_eq!(found.count(), archive.len());
+        archive.rest();
+        assert!(archive.iter().all(|hit| archive.contains(hit.solution)));
     }
 
     #[test]

@@ -1,14 +1,16 @@
 //! Identity: when two solutions are the same answer.
 
+mod cells;
 mod separation;
 
 use core::hash::{BuildHasher, Hash, Hasher};
 
 use foldhash::fast::FixedState;
 
-use crate::scalar::{Real, copy_row, floor};
+use crate::scalar::{Real, copy_row};
 use crate::space::Region;
 
+use cells::{EDGE, FINE_EDGE, cells_near, next_cell, own_cell, part_of_key};
 pub use separation::{AxisSeparation, Separation};
 
 /// The seed of every key; fixed, so that a run is the same on every machine.
@@ -19,7 +21,7 @@ const KEYS: FixedState = FixedState::with_seed(0x5a71_5f1c_e000_2012);
 /// It is implemented for every type that is `Eq + Hash` (a pair of indices, a vector of integers): there, *same* is *equal*.
 /// For real coordinates use [`Located`], which is the same as another one within a radius.
 ///
-/// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and vice versa.
+/// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and vice versa; likewise the fine keys.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not define when two solutions are the same answer",
     label = "`Identity` is not implemented for `{Self}`",
@@ -36,6 +38,21 @@ pub trait Identity {
     #[inline]
     fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
         visit(self.key())
+    }
+    /// Whether it has keys that tell more solutions apart, for an archive where one key has come to stand for many.
+    #[inline]
+    fn has_fine_keys(&self) -> bool {
+        false
+    }
+    /// The fine key under which it is filed then.
+    #[inline]
+    fn fine_key(&self) -> u64 {
+        self.key()
+    }
+    /// Visits the fine keys under which a solution that is the same may be filed.
+    #[inline]
+    fn visit_fine_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
+        self.visit_keys(visit)
     }
 }
 
@@ -74,6 +91,8 @@ pub struct Located<S> {
 /// At most this many coordinates with a radius are hashed, by cells; the true distance decides, so more would only cost more
 /// look-ups. Exact coordinates are all hashed.
 const HASHED: usize = 3;
+/// At most this many in an archive where many points are in one cell.
+const FINELY_HASHED: usize = 6;
 
 impl<S: Real> Located<S> {
     /// A solution at these coordinates; a number is a separation radius, >= 0.
@@ -167,99 +186,44 @@ impl<S: Real> Located<S> {
     /// The cells of the first coordinates with a radius: for each its own, and the first and the last one that a solution
     /// within the radius may be in.
     #[inline]
-    fn cells_near(&self) -> [[S; 3]; HASHED] {
-        let mut cells = [[S::zero(); 3]; HASHED];
+    fn cells_near<const AXES: usize>(&self, edge: f64) -> [[S; 3]; AXES] {
+        let mut cells = [[S::zero(); 3]; AXES];
         match &self.separation {
             Separation::Radius(radius) => {
                 for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
-                    *cell = cells_near(x, *radius);
+                    *cell = cells_near(x, *radius, edge);
                 }
             }
             Separation::Axes(axes) => {
                 let blurred = self.coordinates.iter().zip(axes.iter());
                 let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
                 for (cell, (&x, axis)) in cells.iter_mut().zip(blurred) {
-                    *cell = cells_near(axis.measured(x), axis.radius());
+                    *cell = cells_near(axis.measured(x), axis.radius(), edge);
                 }
             }
         }
         cells
     }
 
-    fn own_cells(&self) -> [S; HASHED] {
-        let mut cells = [S::zero(); HASHED];
+    fn own_cells<const AXES: usize>(&self, edge: f64) -> [S; AXES] {
+        let mut cells = [S::zero(); AXES];
         match &self.separation {
             Separation::Radius(radius) => {
                 for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
-                    *cell = own_cell(x, *radius);
+                    *cell = own_cell(x, *radius, edge);
                 }
             }
             Separation::Axes(axes) => {
                 let blurred = self.coordinates.iter().zip(axes.iter());
                 let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
                 for (cell, (&x, axis)) in cells.iter_mut().zip(blurred) {
-                    *cell = own_cell(axis.measured(x), axis.radius());
+                    *cell = own_cell(axis.measured(x), axis.radius(), edge);
                 }
             }
         }
         cells
     }
 }
-
-/// The cell of `x` on one axis. Monotone in `x`, roundings included.
-fn own_cell<S: Real>(x: S, radius: S) -> S {
-    let edge = radius * S::of(EDGE);
-    let cell = if radius == S::zero() {
-        x
-    } else if edge.is_finite() {
-        floor(x / edge)
-    } else {
-        S::zero()
-    };
-    cell + S::zero() // -0.0 and 0.0 are one cell
-}
-
-/// The cell of `x` on one axis, and the first and the last one that a solution within the radius may be in.
-///
-/// The usual way costs one division: where `x` is in its cell, in [0, 1), says which neighbours are within the radius, a
-/// quarter, and a hundredth more for what `x / edge` is rounded by, as long as that is small.
-#[inline]
-fn cells_near<S: Real>(x: S, radius: S) -> [S; 3] {
-    let scaled = x / (radius * S::of(EDGE));
-    if scaled.abs() < S::of(COARSE) / S::epsilon() {
-        let cell = floor(scaled) + S::zero();
-        let place = scaled - cell;
-        let reach = S::of(1.01 / EDGE);
-        let first = if place < reach { cell - S::one() } else { cell };
-        let last = if place > S::one() - reach {
-            cell + S::one()
-        } else {
-            cell
-        };
-        return [cell, first, last];
-    }
-    cells_near_by_ends(x, radius)
-}
-
-/// The same for all other `x`: coordinates so large that they are as coarse as the cells, or infinite.
-#[cold]
-fn cells_near_by_ends<S: Real>(x: S, radius: S) -> [S; 3] {
-    // A little more than the radius, so that rounding in `same` loses nothing.
-    let reach = radius * S::of(1.0 + 1e-6);
-    let within = |x: S| x.max(S::min_value()).min(S::max_value());
-    [
-        own_cell(x, radius),
-        own_cell(within(x - reach), radius),
-        own_cell(within(x + reach), radius),
-    ]
-}
-
-/// Coordinates over this share of the number of cells that the scalar tells apart are examined with more care.
-const COARSE: f64 = 1.0 / 4096.0;
-
-/// Edge of a cell in radii. A ball then meets one cell or two on each axis, or three where the scalar's rounding is as
-/// coarse as the radius.
-const EDGE: f64 = 4.0;
 
 /// The squared distance, axis by axis in units of the axes' radii. Apart from [`Located::is_within`], so that this is inlined where
 /// all axes have one radius.
@@ -283,18 +247,13 @@ fn hash_cells<S: Real>(exact: u64, cells: [S; HASHED]) -> u64 {
     hasher.finish()
 }
 
-/// The next cell, also where whole numbers are no longer next to each other.
-fn next_cell<S: Real>(cell: S) -> S {
-    cell + (cell.abs() * S::epsilon() * S::of(0.75)).max(S::one())
-}
-
 impl<S: Real> Identity for Located<S> {
     fn key(&self) -> u64 {
         let exact = self.exact_key();
         if self.is_exact() {
             exact
         } else {
-            hash_cells(exact, self.own_cells())
+            hash_cells(exact, self.own_cells(EDGE))
         }
     }
 
@@ -308,7 +267,7 @@ impl<S: Real> Identity for Located<S> {
         if self.is_exact() {
             return visit(exact);
         }
-        let near = self.cells_near();
+        let near = self.cells_near::<HASHED>(EDGE);
         let own = near.map(|[own, _, _]| own);
         let ends = near.map(|[_, first, last]| [first, last]);
         let mut cells = ends.map(|[first, _]| first);
@@ -330,6 +289,54 @@ impl<S: Real> Identity for Located<S> {
             }
         }
     }
+
+    fn has_fine_keys(&self) -> bool {
+        let blurred = match &self.separation {
+            Separation::Radius(radius) => usize::from(*radius > S::zero()) * self.coordinates.len(),
+            Separation::Axes(axes) => axes.iter().filter(|axis| axis.is_hashed_by_cells()).count(),
+        };
+        blurred > HASHED
+    }
+
+    fn fine_key(&self) -> u64 {
+        let cells = self.own_cells::<FINELY_HASHED>(FINE_EDGE);
+        let parts = cells.iter().enumerate();
+        parts.fold(self.exact_key(), |key, (axis, &cell)| {
+            key ^ part_of_key(axis, cell)
+        })
+    }
+
+    fn visit_fine_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
+        let near = self.cells_near::<FINELY_HASHED>(FINE_EDGE);
+        let (mut parts, mut counts) = ([[0; 3]; FINELY_HASHED], [0; FINELY_HASHED]);
+        for (axis, [_, first, last]) in near.into_iter().enumerate() {
+            let mut cell = first;
+            loop {
+                parts[axis][counts[axis]] = part_of_key(axis, cell);
+                counts[axis] += 1;
+                if cell >= last || counts[axis] == 3 {
+                    break;
+                }
+                cell = next_cell(cell).min(last);
+            }
+        }
+        visit_combinations(self.exact_key(), &parts, &counts, visit)
+    }
+}
+
+/// Visits the exclusive or of `key` and one part of each axis, for all combinations, until `visit` returns `true`.
+fn visit_combinations(
+    key: u64,
+    parts: &[[u64; 3]],
+    counts: &[usize],
+    visit: &mut impl FnMut(u64) -> bool,
+) -> bool {
+    let ([parts, more @ ..], [count, counts @ ..]) = (parts, counts) else {
+        return visit(key);
+    };
+    parts[..*count]
+        .iter()
+        .any(|part| visit_combinations(key ^ part, more, counts, visit))
 }
 
 #[cfg(test)]
@@ -362,6 +369,8 @@ mod tests {
                 });
                 assert!(found || !a.same(b), "{a:?} {b:?}");
                 assert!(visited <= 27, "{visited} keys for {b:?}");
+                let found = b.visit_fine_keys(&mut |key| key == a.fine_key());
+                assert!(found || !a.same(b), "finely: {a:?} {b:?}");
                 same += u32::from(a.same(b));
             }
         }
@@ -420,6 +429,7 @@ mod tests {
                 !a.same(&b) || b.visit_keys(&mut |key| key == a.key()),
                 "{a:?} {b:?}"
             );
+            assert!(!a.same(&b) || b.visit_fine_keys(&mut |key| key == a.fine_key()));
             same += u32::from(meant);
         }
         assert!(same > 100, "the test looks at {same} pairs that are the same");
