@@ -18,7 +18,7 @@ use crate::state::{Part, Reader, Saved, State};
 const KEYS: FixedState = FixedState::with_seed(0xf100_d000_0000_0001);
 
 /// Doublings of the first step in the search for the nearest point that is not deleted.
-const DOUBLINGS: usize = 8;
+const DOUBLINGS: u32 = 8;
 /// Halvings afterwards: the step found is at most an eighth too long.
 const HALVINGS: usize = 3;
 
@@ -52,6 +52,8 @@ pub(in crate::engine) struct Flood<S> {
     /// The hit whose neighbours are proposed, and the index of the next one; steps along axes follow the neighbours.
     centre: Vec<S>,
     next: usize,
+    /// For each axis, after how many doublings of the first step the last point was found that was not deleted.
+    doublings: Vec<u32>,
 }
 
 impl<S: Real> Flood<S> {
@@ -65,6 +67,7 @@ impl<S: Real> Flood<S> {
             seen: HashTable::new(),
             centre: Vec::new(),
             next: 0,
+            doublings: Vec::new(),
         }
     }
 
@@ -139,7 +142,15 @@ impl<S: Real> Flood<S> {
                 context.neighbours(&self.centre, neighbours, &mut |_, position| propose(position));
             }
             let axes = self.next.max(count) - count..end.max(count) - count;
-            frontier(context, &mut self.centre, axes, self.first_step, &mut propose);
+            self.doublings.resize(dimension, 0);
+            frontier(
+                context,
+                &mut self.centre,
+                axes,
+                self.first_step,
+                &mut self.doublings,
+                &mut propose,
+            );
             self.next = end;
             if end == count + dimension {
                 self.centre.clear();
@@ -157,6 +168,7 @@ impl<S: Real> Part for Flood<S> {
         Saved::save(&self.positions, state);
         Saved::save(&self.centre, state);
         Saved::save(&self.next, state);
+        Saved::save(&self.doublings, state);
         let mut seen: Vec<u64> = self.seen.iter().copied().collect();
         seen.sort_unstable();
         Saved::save(&seen, state);
@@ -171,6 +183,7 @@ impl<S: Real> Part for Flood<S> {
         self.positions = from.read()?;
         self.centre = from.read()?;
         self.next = from.read()?;
+        self.doublings = from.read()?;
         self.seen.clear();
         for key in from.read::<Vec<u64>>()? {
             self.seen.insert_unique(key, key, |&key| key);
@@ -193,12 +206,14 @@ fn is_new<S: Real>(seen: &mut HashTable<u64>, position: &[S]) -> bool {
     }
 }
 
-/// Visits, in both directions of some continuous axes, the nearest point to `centre` that is not deleted.
+/// Visits, in both directions of some continuous axes, the nearest point to `centre` that is not deleted. The search begins with the step
+/// at which the last one of the axis ended: hits are about as far apart as they were there.
 fn frontier<S: Real>(
     context: &dyn Context<S>,
     centre: &mut [S],
     axes: Range<usize>,
     first_step: S,
+    doublings: &mut [u32],
     visit: &mut dyn FnMut(&[S]),
 ) {
     let two = S::of(2.0);
@@ -209,30 +224,40 @@ fn frontier<S: Real>(
         }
         let here = centre[j];
         for first in [-first_step * axis.width(), first_step * axis.width()] {
-            let outside = |step: S, centre: &mut [S]| {
+            let step = |doublings: u32| first * S::of(f64::from(1_u32 << doublings));
+            // `None` outside.
+            let mut is_open = |step: S| {
                 centre[j] = here + step;
-                !context.space().contains(centre)
+                context
+                    .space()
+                    .contains(centre)
+                    .then(|| !context.is_deleted(centre))
             };
-            let (mut inner, mut outer) = (S::zero(), first);
-            let mut open = false;
-            for _ in 0..=DOUBLINGS {
-                if outside(outer, centre) {
-                    break;
-                }
-                if !context.is_deleted(centre) {
-                    open = true;
-                    break;
-                }
-                inner = outer;
-                outer = outer * two;
+            let mut last = doublings[j].min(DOUBLINGS);
+            let mut found = is_open(step(last));
+            while found.is_none() && last > 0 {
+                last -= 1;
+                found = is_open(step(last));
             }
-            if !open {
+            if found == Some(false) {
+                while found == Some(false) && last < DOUBLINGS {
+                    last += 1;
+                    found = is_open(step(last));
+                }
+            } else {
+                while found == Some(true) && last > 0 && is_open(step(last - 1)) == Some(true) {
+                    last -= 1;
+                }
+            }
+            if found != Some(true) {
                 continue;
             }
+            doublings[j] = last;
+            let mut outer = step(last);
+            let mut inner = if last > 0 { step(last - 1) } else { S::zero() };
             for _ in 0..HALVINGS {
                 let middle = (inner + outer) / two;
-                centre[j] = here + middle;
-                if context.is_deleted(centre) {
+                if is_open(middle) == Some(false) {
                     inner = middle;
                 } else {
                     outer = middle;

@@ -19,6 +19,8 @@ const SHARE_BESIDE_MODEL: f64 = 0.06;
 /// A source without a hit may begin with one evaluation for every `PLANNED` planned ones, and `BARREN_START` at most.
 const PLANNED: f64 = 50.0;
 const BARREN_START: f64 = 8.0;
+/// Share of what a hit of the whole search costs: a source that has cost less is not known to be worse.
+const UNKNOWN: f64 = 0.25;
 /// Share of the hits found from a place that is credited to the source which found the place.
 const PLACE_SHARE: f64 = 0.2;
 
@@ -29,6 +31,7 @@ pub(super) struct Credit {
     evaluations: f64,
     total_hits: u64,
     total_evaluations: u64,
+    total_cost: f64,
 }
 
 /// How many evaluations a source without a hit may take.
@@ -38,6 +41,8 @@ pub(super) struct Trial {
     share: f64,
     /// Whether the bound holds even before any source has found a hit.
     always: bool,
+    /// So much a source may cost in any case.
+    until_known: f64,
 }
 
 impl Trial {
@@ -48,6 +53,15 @@ impl Trial {
             start: start.clamp(1.0, BARREN_START),
             share: (BARREN_SHARES / barren.max(1) as f64).min(BARREN_SHARE),
             always: false,
+            until_known: 0.0,
+        }
+    }
+
+    /// The same where a source may in any case cost what it takes to know that it is worse than `all` are together.
+    pub(super) fn until_known(self, all: &Credit) -> Self {
+        Self {
+            until_known: UNKNOWN * all.price(),
+            ..self
         }
     }
 
@@ -57,35 +71,40 @@ impl Trial {
             start: -1.0,
             share: SHARE_BESIDE_MODEL / barren.max(1) as f64,
             always: true,
+            until_known: 0.0,
         }
     }
 }
 
 impl Credit {
-    /// Counts one candidate. The past fades in proportion to the hits expected of it. Where hits are rare, little else tells the sources
+    /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to the hits expected of it. Where hits are rare, little else tells the sources
     /// apart, so misses are not forgotten.
     #[inline]
-    pub(super) fn count(&mut self, hit: bool) {
+    pub(super) fn count(&mut self, hit: bool, cost: f64) {
         if self.hits > 0.0 {
-            let keep = 1.0 - (self.hits / self.evaluations / MEMORY).min(0.5);
+            let keep = 1.0 - (cost * self.hits / self.evaluations / MEMORY).min(0.5);
             self.hits *= keep;
             self.evaluations *= keep;
         }
-        self.evaluations += 1.0;
+        self.evaluations += cost;
         self.hits += f64::from(u8::from(hit));
+        self.total_cost += cost;
         self.total_evaluations += 1;
         self.total_hits += u64::from(hit);
     }
 
-    /// Whether to try the source: it has a hit, or is within its share, or no source has a hit yet and the bound allows for that.
+    /// Whether to try the source: it has a hit, or is within its share, or is not known to be worse, or no source has a hit yet and the bound
+    /// allows for that.
     pub(super) fn is_worth_trying(&self, all: &Self, trial: Trial) -> bool {
-        (all.total_hits == 0 && !trial.always) || self.is_within(all, trial)
+        (all.total_hits == 0 && !trial.always)
+            || self.is_within(all, trial)
+            || self.total_cost < trial.until_known
     }
 
-    /// Whether the source has a hit, or has taken no more than its share of the evaluations of the whole search.
+    /// Whether the source has a hit, or has cost no more than its share of the whole search.
     pub(super) fn is_within(&self, all: &Self, trial: Trial) -> bool {
-        let most = trial.start + trial.share * all.total_evaluations as f64;
-        self.total_hits > 0 || self.total_evaluations as f64 <= most
+        let most = trial.start + trial.share * all.total_cost;
+        self.total_hits > 0 || self.total_cost <= most
     }
 
     /// Whether the source has no hit.
@@ -96,6 +115,11 @@ impl Credit {
     /// Recent evaluations for each hit; of the whole search, where this is its credit.
     pub(super) fn price(&self) -> f64 {
         (self.evaluations + 10.0) / (self.hits + PRIOR_HITS)
+    }
+
+    /// What a candidate has cost on average.
+    pub(super) fn mean_cost(&self) -> f64 {
+        self.total_cost.max(1.0) / self.total_evaluations.max(1) as f64
     }
 
     /// All evaluations of this source.
@@ -125,12 +149,12 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    pub(super) fn count(&mut self, role: Role, hit: bool) {
+    pub(super) fn count(&mut self, role: Role, hit: bool, cost: f64) {
         match role {
             Role::Explores => self.places += f64::from(u8::from(hit)),
             Role::Exploits => {
                 self.hits += f64::from(u8::from(hit));
-                self.evaluations += 1.0;
+                self.evaluations += cost;
             }
             Role::Apart => {}
         }
@@ -171,8 +195,8 @@ mod tests {
                 (&mut bad, 0.005)
             };
             let hit = rng.uniform() < rate;
-            arm.count(hit);
-            all.count(hit);
+            arm.count(hit, 1.0);
+            all.count(hit, 1.0);
         }
         let pulls = [good.evaluations(), bad.evaluations()];
         assert!(pulls[0] > 10 * pulls[1] && pulls[1] > 50, "{pulls:?}");
@@ -200,14 +224,14 @@ mod tests {
     fn the_estimate_follows_a_yield_that_ends() {
         let (mut arm, mut mean) = (Credit::default(), 0.0);
         for i in 0..4000 {
-            arm.count(i % 5 == 0);
+            arm.count(i % 5 == 0, 1.0);
             if i >= 3000 {
                 mean += arm.hits / arm.evaluations / 1000.0;
             }
         }
         approx::assert_relative_eq!(mean, 0.2, max_relative = 0.1);
         for _ in 0..400 {
-            arm.count(false);
+            arm.count(false, 1.0);
         }
         assert!(arm.hits / arm.evaluations < 0.02, "{arm:?}");
     }
@@ -218,9 +242,9 @@ mod tests {
         let mut patches = Patches::default();
         let worth = |patches: &Patches, rate| patches.worth(Role::Explores, rate);
         approx::assert_relative_eq!(worth(&patches, 0.01), 0.01);
-        patches.count(Role::Explores, true);
+        patches.count(Role::Explores, true, 1.0);
         for i in 0..100 {
-            patches.count(Role::Exploits, i % 10 == 0);
+            patches.count(Role::Exploits, i % 10 == 0, 1.0);
         }
         approx::assert_relative_eq!(patches.worth(Role::Exploits, 0.01), 0.01);
         // 11 hits in 1 / 0.01 + 100 evaluations.
@@ -235,17 +259,21 @@ mod tests {
         let alone = Trial::new(None, 1);
         assert!(barren.is_worth_trying(&all, alone));
         for i in 0..10_000 {
-            all.count(i == 0);
+            all.count(i == 0, 1.0);
             if barren.is_worth_trying(&all, alone) {
-                barren.count(false);
+                barren.count(false, 1.0);
             }
         }
         let share = barren.evaluations() as f64;
+        // Not where hits are so rare that it cannot be known to be worse.
+        assert!(
+            !barren.is_worth_trying(&all, alone) && barren.is_worth_trying(&all, alone.until_known(&all))
+        );
         assert!((400.0..412.0).contains(&share), "{share}");
         assert!(!barren.is_within(&all, Trial::new(None, 10)));
         // One of ten, of 10,000: 8 and 1.8 %. Of 50 planned: one for a start.
         let evaluations = |most: u64| Credit {
-            total_evaluations: most,
+            total_cost: most as f64,
             ..Credit::default()
         };
         assert!(evaluations(188).is_within(&evaluations(10_000), Trial::new(Some(10_000), 10)));

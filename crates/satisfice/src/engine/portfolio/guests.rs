@@ -1,22 +1,25 @@
 //! Whole engines as sources: each proposes part of a batch, and is told the hits of all the others.
 
 mod flood_alone;
+mod member;
 mod sizes;
 
 use core::ops::Range;
 
 use flood_alone::FloodAlone;
+use member::Member;
 use sizes::Sizes;
 
 use super::credit::{Credit, Trial};
+use super::pace::Pace;
 use super::progress::Seeker;
-use super::source::{Role, Source, Tag};
+use super::source::{PLACES, Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
 use crate::engine::local::{Niching, RestartedCmaEs};
 use crate::engine::model::{ModelledSearch, QuadraticDescent, Surrogate};
-use crate::engine::{Ask, Engine, EngineConfig, Origin};
+use crate::engine::{Ask, EngineConfig, Origin};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -61,32 +64,6 @@ enum GuestKind {
     Quadratic,
     /// Evolution strategies that turn away from known optima.
     Niching,
-}
-
-/// The model, or another engine.
-enum Member<S> {
-    Model(Box<ModelledSearch<S>>),
-    Other(Box<dyn Engine<S>>),
-}
-
-impl<S: Real> core::ops::Deref for Member<S> {
-    type Target = dyn Engine<S>;
-
-    fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Model(model) => &**model,
-            Self::Other(engine) => &**engine,
-        }
-    }
-}
-
-impl<S: Real> core::ops::DerefMut for Member<S> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        match self {
-            Self::Model(model) => &mut **model,
-            Self::Other(engine) => &mut **engine,
-        }
-    }
 }
 
 /// An engine and its credit.
@@ -165,6 +142,13 @@ impl<S: Real> Guest<S> {
             open: true,
             own: 0..0,
         }
+    }
+}
+
+impl<S> Guest<S> {
+    /// Its index among the names of all sources.
+    fn place(&self) -> usize {
+        Source::Guest as usize + self.kind as usize
     }
 }
 
@@ -265,7 +249,7 @@ impl<S: Real> Guests<S> {
 
     /// Its index among the names of all sources.
     pub(super) fn place(&self, index: usize) -> usize {
-        Source::Guest as usize + self.guests[index].kind as usize
+        self.guests[index].place()
     }
 
     /// Whether a model of F is open and may be of use.
@@ -360,6 +344,7 @@ impl<S: Real> Guests<S> {
         context: &dyn Context<S>,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
+        idle_cost: f64,
     ) -> GuestAnswer {
         let guest = &mut self.guests[index];
         let before = context.evaluations_left();
@@ -367,7 +352,7 @@ impl<S: Real> Guests<S> {
         let answer = guest.engine.ask(context, rng, &mut self.part);
         let calls = before - context.evaluations_left();
         for _ in 0..calls {
-            guest.arm.count(false);
+            guest.arm.count(false, idle_cost);
         }
         guest.own = out.len()..out.len() + self.part.len();
         for position in self.part.points() {
@@ -379,7 +364,7 @@ impl<S: Real> Guests<S> {
             Ask::More => {}
         }
         if guest.own.is_empty() && calls == 0 {
-            guest.arm.count(false);
+            guest.arm.count(false, idle_cost);
             return GuestAnswer::Nothing;
         }
         GuestAnswer::Worked(calls + guest.own.len() as u64)
@@ -392,6 +377,7 @@ impl<S: Real> Guests<S> {
         batch: &Batch<S>,
         outcomes: &[Outcome<S>],
         origin: Origin,
+        pace: &mut Pace<PLACES>,
     ) {
         let Self {
             guests,
@@ -400,13 +386,14 @@ impl<S: Real> Guests<S> {
             ..
         } = self;
         for guest in guests {
+            let place = guest.place();
             let own = match origin {
                 Origin::Engine => core::mem::take(&mut guest.own),
                 _ => 0..0,
             };
             for outcome in &outcomes[own.clone()] {
                 if *outcome != Outcome::NotEvaluated {
-                    guest.arm.count(outcome.is_hit());
+                    guest.arm.count(outcome.is_hit(), pace.cost(place));
                 }
             }
             if !guest.open {
@@ -423,7 +410,11 @@ impl<S: Real> Guests<S> {
                     guest.engine.tell(context, part, told, origin);
                 }
             };
-            tell(&|i| own.contains(&i), Origin::Engine);
+            if !own.is_empty() {
+                let watch = pace.learns(place);
+                tell(&|i| own.contains(&i), Origin::Engine);
+                pace.learned(place, watch, own.len());
+            }
             // An engine takes start points for what they are, and hits of others as if exhaustion had found them.
             let origin = match origin {
                 Origin::Start => Origin::Start,

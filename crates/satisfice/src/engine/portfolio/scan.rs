@@ -54,7 +54,8 @@ impl Scan {
     }
 
     /// Whether the rest of the lattice is to be enumerated now, with nothing beside. It has to fit into what the budget has left, of
-    /// which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace so far. And it has to be due:
+    /// which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace so far, less what the sources' thinking
+    /// took: an evaluation with it has cost as much as `mean_cost` without. And it has to be due:
     /// the lattice is small, or mostly visited, or soon it would no longer fit, or the search finds no more than it would.
     pub(super) fn goes_alone<S: Real>(
         &mut self,
@@ -62,6 +63,7 @@ impl Scan {
         visited: &Visited,
         reserve: f64,
         batch: usize,
+        mean_cost: f64,
     ) -> bool {
         if self.alone || self.points == 0 {
             return self.alone;
@@ -77,7 +79,7 @@ impl Scan {
             let room = planned as f64 * (1.0 - reserve) - 1.0;
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
-            let (takes, left) = (rest * used, (1.0 - used) * made as f64);
+            let (takes, left) = (rest * used / mean_cost, (1.0 - used) * made as f64);
             takes <= left && (due || (made >= PACED && takes > left / 2.0))
         } else {
             self.points <= SMALL

@@ -50,8 +50,11 @@ impl Source {
     }
 }
 
+/// Number of all sources, whole engines included.
+pub(super) const PLACES: usize = 16;
+
 /// The names of all sources in the order of [`Source`], then those of the whole engines in the order of their kinds.
-const NAMES: [&str; 16] = [
+const NAMES: [&str; PLACES] = [
     "uniform",
     "swarms",
     "climbers",
@@ -72,7 +75,7 @@ const NAMES: [&str; 16] = [
 
 /// Candidates and hits of each source since the slice began.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Tally([[u64; 2]; NAMES.len()]);
+pub(super) struct Tally([[u64; 2]; PLACES]);
 
 impl Tally {
     /// Counts a candidate of the source at this index of [`NAMES`].

@@ -11,10 +11,11 @@ use super::drought::Drought;
 use super::guests::{GuestAnswer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
+use super::pace::Pace;
 use super::populations::Populations;
 use super::progress::Progress;
 use super::scan::Scan;
-use super::source::{ARMS, Source, Tag, Tally, arm_of};
+use super::source::{ARMS, PLACES, Source, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -59,6 +60,9 @@ pub(super) struct Sources<S> {
     arms: [Credit; ARMS],
     /// All arms and guests together.
     whole: Credit,
+    /// What each costs in time, and how many points were worked out since the turn began that are known already.
+    pace: Pace<PLACES>,
+    rejections: u64,
     descents: Vec<RestartedDescent<S>>,
     next_descent: usize,
     descended: usize,
@@ -96,6 +100,8 @@ impl<S: Real> Sources<S> {
             without: settings.without,
             arms: [Credit::default(); ARMS],
             whole: Credit::default(),
+            pace: Pace::new(false),
+            rejections: 0,
             descents: Vec::new(),
             next_descent: 0,
             descended: 0,
@@ -158,6 +164,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.next_descent = 0;
         self.arms = [Credit::default(); ARMS];
         self.whole = Credit::default();
+        self.pace = Pace::new(context.evaluations_planned().is_none());
         self.patches = Patches::default();
         self.drought = Drought::default();
         self.progress = Progress::default();
@@ -206,7 +213,9 @@ impl<S: Real> Engine<S> for Sources<S> {
         }
         self.guests.look_at_price(context);
         if let Some(visited) = &self.visited
-            && self.scan.goes_alone(context, visited, PROBES, SCANNED)
+            && self
+                .scan
+                .goes_alone(context, visited, PROBES, SCANNED, self.whole.mean_cost())
         {
             return self.enumerate(context, rng, out);
         }
@@ -215,13 +224,23 @@ impl<S: Real> Engine<S> for Sources<S> {
             let (tag, left) = self.next_source(rng);
             let before = out.len();
             let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
+            let place = self.place(tag);
+            let watch = self.pace.proposes(place);
             if tag.0 == Source::Guest {
-                let answer = self.guests.ask(tag.1, context, rng, out);
+                let answer = self
+                    .guests
+                    .ask(tag.1, context, rng, out, self.pace.idle_cost(place));
                 self.tags.resize(out.len(), tag);
+                let cost = match answer {
+                    GuestAnswer::Worked(cost) => cost,
+                    GuestAnswer::Covered | GuestAnswer::Nothing => 1,
+                };
+                self.pace.proposed(place, watch, cost);
                 match answer {
                     GuestAnswer::Covered => return Ask::Covered,
                     GuestAnswer::Worked(cost) if out.len() >= wanted || out.is_empty() => {
                         self.chosen = Some((tag, left.saturating_sub(cost.max(1))));
+                        self.pace.sends();
                         return Ask::More;
                     }
                     GuestAnswer::Worked(_) => self.chosen = None,
@@ -232,6 +251,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
                 continue;
             }
+            self.rejections = 0;
             let mut has_more = true;
             for _ in 0..room {
                 has_more = self.propose(tag, context, rng, out);
@@ -240,6 +260,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
             let made = (out.len() - before) as u64;
+            self.pace.proposed(place, watch, made + self.rejections);
             // In the next batch a source that takes turns with itself goes on, where choosing costs more than F.
             if self.is_quick && !has_more && made > 0 && left > made && out.len() >= wanted {
                 self.chosen = Some((tag, left - made));
@@ -267,6 +288,7 @@ impl<S: Real> Engine<S> for Sources<S> {
             out.push(&self.position);
             self.tags.push((Source::Uniform, 0));
         }
+        self.pace.sends();
         Ask::More
     }
 
@@ -312,7 +334,10 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
         }
-        self.guests.tell(context, batch, outcomes, origin);
+        if origin == Origin::Engine {
+            self.pace.receives(batch.len());
+        }
+        self.guests.tell(context, batch, outcomes, origin, &mut self.pace);
         if origin != Origin::Engine {
             return;
         }
@@ -349,20 +374,18 @@ impl<S: Real> Engine<S> for Sources<S> {
                 continue;
             }
             let hit = outcome.is_hit();
-            let place = match source {
-                Source::Guest => self.guests.place(index),
-                _ => source as usize,
-            };
+            let place = self.place((source, index));
+            let cost = self.pace.cost(place);
             self.tally.count(place, *outcome);
             if self.whole.is_barren() {
                 let seeker = self.guests.seeker((source, index));
                 self.progress.count(seeker, *outcome, context.threshold());
             }
-            self.whole.count(hit);
+            self.whole.count(hit, cost);
             self.drought.count(hit);
-            self.patches.count(self.role((source, index)), hit);
+            self.patches.count(self.role((source, index)), hit, cost);
             if let Some(arm) = arm_of(source) {
-                self.arms[arm].count(hit);
+                self.arms[arm].count(hit, cost);
             }
             // Last, because a learned step may replace another.
             if let (Source::Trial, true, Some(steps)) = (source, hit, &mut self.steps) {

@@ -71,7 +71,7 @@ impl<S: Real> Sources<S> {
         let trial = if modelled {
             Trial::beside_model(self.barren())
         } else {
-            Trial::new(self.planned, self.barren())
+            Trial::new(self.planned, self.barren()).until_known(&self.whole)
         };
         let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
         if steps || is_worth(0) {
@@ -120,6 +120,14 @@ impl<S: Real> Sources<S> {
     fn barren(&self) -> usize {
         let arms = self.arms.iter().chain(self.guests.credits());
         arms.filter(|arm| arm.is_barren()).count()
+    }
+
+    /// The index of a source among the names of all.
+    pub(super) fn place(&self, (source, index): Tag) -> usize {
+        match source {
+            Source::Guest => self.guests.place(index),
+            _ => source as usize,
+        }
     }
 
     pub(super) fn role(&self, (source, index): Tag) -> Role {

@@ -99,7 +99,7 @@ impl<S: Real> Sources<S> {
             Source::Trial => {
                 if !self.draw_trial(rng) || !self.is_fresh(context) {
                     // Counts as a miss; otherwise an exhausted source would be asked forever.
-                    self.arms[TRIAL].count(false);
+                    self.rejected(TRIAL);
                     return true;
                 }
                 out.push(&self.position);
@@ -109,7 +109,7 @@ impl<S: Real> Sources<S> {
             }
             Source::Cross => {
                 if !recombine(&self.hits, rng, &mut self.position) || !self.is_fresh(context) {
-                    self.arms[CROSS].count(false);
+                    self.rejected(CROSS);
                     return true;
                 }
                 out.push(&self.position);
@@ -161,10 +161,16 @@ impl<S: Real> Sources<S> {
             _ => self.climbers.tell(index, out.point(last), Outcome::NonFinite),
         }
         if let Some(arm) = arm_of(source) {
-            self.arms[arm].count(false);
+            self.rejected(arm);
         }
         out.truncate(last);
         true
+    }
+
+    /// Counts a miss of a point that is not evaluated.
+    fn rejected(&mut self, arm: usize) {
+        self.rejections += 1;
+        self.arms[arm].count(false, 1.0);
     }
 
     /// Writes the next point of the lattice that is not visited; `false` at its end.
