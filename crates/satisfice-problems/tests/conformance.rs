@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::testing;
+use satisfice::{Budget, Search, testing};
 use satisfice_problems::*;
 
 fn keeps_the_laws<P: Catalogued>(settings: &[(&str, &str)]) {
@@ -68,4 +68,34 @@ fn continuous() {
     }
     keeps_the_laws::<SmallRegions>(&[("steps", "2"), ("dimension", "2"), ("radius", "0.1")]);
     keeps_the_laws::<MixedAxes>(&[]);
+}
+
+/// Hits are too rare for the suite to meet them by chance, so the default engine finds some.
+fn components_of_hits_are_within_their_limits<P: Catalogued<Scalar = f64>>(settings: &[(&str, &str)]) {
+    let values = Params::with(P::PARAMETERS, P::NAME, settings.iter().copied()).unwrap();
+    let problem = P::from_params(&values).unwrap();
+    let report = Search::new()
+        .seed(2)
+        .run(&problem, &Budget::evaluations(100))
+        .unwrap();
+    assert!(report.hit_count() >= 1, "{}", P::NAME);
+    let components = problem.components().unwrap();
+    let mut all = vec![f64::NAN; components.count()];
+    for hit in report.hits() {
+        components.write(hit.solution, &mut all);
+        assert!(all.iter().all(|x| x.abs() <= 1.0 + 1e-9), "{}: {all:?}", P::NAME);
+    }
+}
+
+#[test]
+fn components() {
+    components_of_hits_are_within_their_limits::<Arm>(&[]);
+    components_of_hits_are_within_their_limits::<SevenJoints>(&[]);
+    components_of_hits_are_within_their_limits::<SallenKey>(&[]);
+    components_of_hits_are_within_their_limits::<Roots>(&[]);
+    components_of_hits_are_within_their_limits::<Himmelblau>(&[]);
+    components_of_hits_are_within_their_limits::<Puma>(&[]);
+    components_of_hits_are_within_their_limits::<System>(&[]);
+    components_of_hits_are_within_their_limits::<PeriodicPoints>(&[]);
+    components_of_hits_are_within_their_limits::<PeriodicPoints>(&[("unknowns", "start"), ("period", "3")]);
 }

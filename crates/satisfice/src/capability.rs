@@ -99,3 +99,58 @@ pub trait Bounds<S> {
     /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation.
     fn lower_bound(&self, region: &Region<S>) -> Option<S>;
 }
+
+/// The components of F: quantities all of which are near 0 at a hit, such as the residuals of equations, the errors of a design, or how far
+/// a tool is from its goal along each axis. F, their norm or the largest of their magnitudes, has kinks and valleys where they
+/// are smooth, so that an engine which models F knows far more by modelling each of them: with isolated roots it needs a fraction
+/// of the evaluations.
+///
+/// ```
+/// use satisfice::{Budget, Components, Located, SatisficingProblem, Search, Space, engine::Surrogate};
+///
+/// /// Where a circle and a parabola cross.
+/// struct Crossings(Space<f64>);
+///
+/// impl Crossings {
+///     fn residuals(x: &[f64]) -> [f64; 2] {
+///         [x[0] * x[0] + x[1] * x[1] - 1.0, x[0] * x[0] - x[1] - 0.5]
+///     }
+/// }
+///
+/// impl SatisficingProblem for Crossings {
+///     type Scalar = f64;
+///     type Solution = Located<f64>;
+///     fn space(&self) -> &Space<f64> { &self.0 }
+///     fn decode(&self, values: &[f64]) -> Located<f64> { Located::new(values.to_vec(), 0.05) }
+///     fn fitness(&self, at: &Located<f64>) -> f64 {
+///         let [a, b] = Self::residuals(&at.coordinates);
+///         a.abs().max(b.abs())
+///     }
+///     fn threshold(&self) -> f64 { 1e-3 }
+///     fn components(&self) -> Option<&dyn Components<f64, Located<f64>>> { Some(self) }
+/// }
+///
+/// impl Components<f64, Located<f64>> for Crossings {
+///     fn count(&self) -> usize { 2 }
+///     fn write(&self, at: &Located<f64>, components: &mut [f64]) {
+///         components.copy_from_slice(&Self::residuals(&at.coordinates).map(|residual| residual / 1e-3));
+///     }
+/// }
+///
+/// let crossings = Crossings(Space::cube(2, -2.0, 2.0)?);
+/// assert_eq!(satisfice::testing::problem::check(&crossings, 1), []);
+/// let report = Search::with(Surrogate::default()).run(&crossings, &Budget::evaluations(40))?;
+/// assert_eq!(report.hit_count(), 2);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
+pub trait Components<S, T> {
+    /// Number of components: at least 1, and the same for all solutions.
+    fn count(&self) -> usize;
+
+    /// Writes the components of a solution, each divided by its limit: at every hit all magnitudes are at most 1, NaN where there is no such
+    /// number. If F is the largest magnitude or a norm, the limits are delta; if it is a sum of squares, its root.
+    ///
+    /// An engine that models components asks for those of every point it is told, once, beside the fitness. Where both need the same costly
+    /// work, let the problem keep its last result.
+    fn write(&self, solution: &T, components: &mut [S]);
+}

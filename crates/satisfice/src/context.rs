@@ -35,6 +35,14 @@ pub trait Context<S: Real> {
     /// are many.
     fn neighbours(&self, of: &[S], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[S]));
 
+    /// Number of [components](crate::Components) of F; 0 where the problem declares none.
+    fn component_count(&self) -> usize {
+        0
+    }
+
+    /// Computes the components of F at a position: one decoding, and about the cost of F.
+    fn components(&self, _position: &[S], _components: &mut [S]) {}
+
     /// Whether the problem declares a neighbourhood, together with an encoding.
     fn offers_neighbours(&self) -> bool;
 

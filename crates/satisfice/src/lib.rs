@@ -43,7 +43,7 @@ pub use archive::{Archive, Hit};
 pub use batch::{Batch, Outcome};
 pub use best::Best;
 pub use budget::{Budget, Cancel, StopReason};
-pub use capability::{Bounds, Encoding, Neighbourhood};
+pub use capability::{Bounds, Components, Encoding, Neighbourhood};
 pub use context::Context;
 pub use engine::{Engine, WarmStart};
 pub use error::Error;

@@ -1,6 +1,8 @@
 //! Problems: what a candidate means, how good it is, and when it is good enough.
 
-use crate::capability::{Bounds, Encoding, Neighbourhood};
+use std::sync::Arc;
+
+use crate::capability::{Bounds, Components, Encoding, Neighbourhood};
 use crate::description::Description;
 use crate::error::Error;
 use crate::identity::{AxisSeparation, Identity, Located, Separation};
@@ -83,6 +85,11 @@ pub trait SatisficingProblem: Sync {
         None
     }
 
+    /// The components of F, which are near 0 at a hit, for engines that model F; `None`, the default, if they are not offered.
+    fn components(&self) -> Option<&dyn Components<Self::Scalar, Self::Solution>> {
+        None
+    }
+
     /// The representative of a hit, for example a root polished to the last digit or a pair in ascending order; `None`, the
     /// default, if the hit represents itself. Called for hits only. Two hits with the same representative count once.
     ///
@@ -105,7 +112,31 @@ pub struct FnProblem<S, F> {
     threshold: S,
     separation: Separation<S>,
     fitness: F,
+    components: Option<FnComponents<S>>,
     name: String,
+}
+
+/// The components of F of a [`FnProblem`].
+#[derive(Clone)]
+struct FnComponents<S> {
+    count: usize,
+    write: Arc<dyn Fn(&[S], &mut [S]) + Send + Sync>,
+}
+
+impl<S> core::fmt::Debug for FnComponents<S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{} components", self.count)
+    }
+}
+
+impl<S: Real> Components<S, Located<S>> for FnComponents<S> {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn write(&self, solution: &Located<S>, components: &mut [S]) {
+        (self.write)(&solution.coordinates, components);
+    }
 }
 
 /// The closure of a problem that is [boxed](FnProblem::boxed).
@@ -149,6 +180,7 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
         threshold,
         separation,
         fitness,
+        components: None,
         name: "closure".to_owned(),
     }
 }
@@ -232,6 +264,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
             threshold: self.threshold,
             separation: self.separation,
             fitness: Box::new(self.fitness),
+            components: self.components,
             name: self.name,
         }
     }
@@ -242,6 +275,30 @@ impl<S: Real, F> FnProblem<S, F> {
     #[must_use]
     pub fn named(mut self, name: &str) -> Self {
         name.clone_into(&mut self.name);
+        self
+    }
+
+    /// The same problem with the [components](Components) of F: `write` gets values and writes `count` numbers, each divided by its
+    /// limit, so that at every hit all magnitudes are at most 1.
+    ///
+    /// ```
+    /// use satisfice::{Budget, Search, Space, engine::Surrogate, from_fn};
+    /// let (space, delta) = (Space::cube(3, -2.0, 2.0)?, 1e-3);
+    /// let residuals = |x: &[f64]| [x[0] * x[1] - 1.0, x[1] + x[2] * x[2] - 2.0, x[0] - x[1] * x[2]];
+    /// let roots = from_fn(space, delta, move |x: &[f64]| residuals(x).into_iter().fold(0.0, |f, r| r.abs().max(f)))
+    ///     .components(3, move |x, components| components.copy_from_slice(&residuals(x).map(|r| r / delta)));
+    /// let report = Search::with(Surrogate::default()).run(&roots, &Budget::evaluations(40))?;
+    /// assert_eq!(report.hit_count(), 3);
+    /// # Ok::<(), satisfice::Error>(())
+    /// ```
+    #[must_use]
+    pub fn components(
+        mut self,
+        count: usize,
+        write: impl Fn(&[S], &mut [S]) + Send + Sync + 'static,
+    ) -> Self {
+        let write = Arc::new(write);
+        self.components = (count > 0).then_some(FnComponents { count, write });
         self
     }
 
@@ -310,6 +367,9 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     }
     fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
         Some(self)
+    }
+    fn components(&self) -> Option<&dyn Components<S, Located<S>>> {
+        self.components.as_ref().map(|components| components as _)
     }
     fn description(&self) -> Description {
         Description {

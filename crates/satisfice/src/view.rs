@@ -260,6 +260,16 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
             self.lattice_neighbours(of, indices, visit);
         }
     }
+    fn component_count(&self) -> usize {
+        self.problem
+            .components()
+            .map_or(0, |components| components.count())
+    }
+    fn components(&self, position: &[P::Scalar], out: &mut [P::Scalar]) {
+        if let Some(components) = self.problem.components() {
+            self.with_scratch(position, |scratch| components.write(self.decode(scratch).0, out));
+        }
+    }
     fn offers_neighbours(&self) -> bool {
         self.problem.neighbourhood().is_some() && self.problem.encoding().is_some()
     }

@@ -165,8 +165,29 @@ impl SallenKey {
     }
 }
 
+/// The logarithms of frequency and quality by those of the window, by their tolerances and the threshold.
+impl satisfice::Components<f64, Vec<u32>> for SallenKey {
+    fn count(&self) -> usize {
+        2
+    }
+
+    fn write(&self, cells: &Vec<u32>, components: &mut [f64]) {
+        let Some(parts) = self.parts(cells) else {
+            return components.fill(f64::NAN);
+        };
+        let window = &self.window;
+        let frequency = (parts.frequency() / window.frequency).ln() / window.frequency_tolerance;
+        let quality = (parts.quality() / window.quality).ln() / window.quality_tolerance;
+        components.copy_from_slice(&[frequency / self.threshold, quality / self.threshold]);
+    }
+}
+
 impl SatisficingProblem for SallenKey {
     lattice_methods!();
+
+    fn components(&self) -> Option<&dyn satisfice::Components<f64, Vec<u32>>> {
+        Some(self)
+    }
 
     #[inline]
     fn fitness(&self, cells: &Vec<u32>) -> f64 {

@@ -99,8 +99,30 @@ impl Arm {
     }
 }
 
+/// How far the tip is from the goal along each axis, by the threshold.
+impl satisfice::Components<f64, Vec<u32>> for Arm {
+    fn count(&self) -> usize {
+        2
+    }
+
+    fn write(&self, cells: &Vec<u32>, components: &mut [f64]) {
+        if !self.lattice.holds(cells) {
+            return components.fill(f64::NAN);
+        }
+        let mut tip = [0.0; 2];
+        self.walk(cells, |joint| tip = joint);
+        for ((component, tip), goal) in components.iter_mut().zip(tip).zip(GOAL) {
+            *component = (tip - goal) / self.threshold;
+        }
+    }
+}
+
 impl SatisficingProblem for Arm {
     lattice_methods!();
+
+    fn components(&self) -> Option<&dyn satisfice::Components<f64, Vec<u32>>> {
+        Some(self)
+    }
 
     #[inline]
     fn fitness(&self, cells: &Vec<u32>) -> f64 {

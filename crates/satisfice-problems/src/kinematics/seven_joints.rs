@@ -142,8 +142,29 @@ fn along(from: Vector, direction: Vector, length: f64) -> Vector {
     core::array::from_fn(|k| from[k] + length * direction[k])
 }
 
+/// How far the tool is from the goal along each axis, by the threshold.
+impl satisfice::Components<f64, Vec<u32>> for SevenJoints {
+    fn count(&self) -> usize {
+        3
+    }
+
+    fn write(&self, cells: &Vec<u32>, components: &mut [f64]) {
+        let joints = self.joints(cells);
+        let Some(tool) = joints.last() else {
+            return components.fill(f64::NAN);
+        };
+        for ((component, tool), goal) in components.iter_mut().zip(tool).zip(GOAL) {
+            *component = (tool - goal) / self.threshold;
+        }
+    }
+}
+
 impl SatisficingProblem for SevenJoints {
     lattice_methods!();
+
+    fn components(&self) -> Option<&dyn satisfice::Components<f64, Vec<u32>>> {
+        Some(self)
+    }
 
     fn fitness(&self, cells: &Vec<u32>) -> f64 {
         let joints = self.joints(cells);

@@ -2,7 +2,7 @@
 
 use satisfice::interval::{Interval, IntervalOps, lower_bound, side};
 use satisfice::{Axis, Error, Located, Region, Space};
-use satisfice::{Bounds, Encoding};
+use satisfice::{Bounds, Components, Encoding};
 
 use crate::number::{Dual, Number};
 
@@ -99,6 +99,22 @@ impl Equations {
     }
 }
 
+/// The residuals, by the root of the threshold.
+impl Components<f64, Located<f64>> for Equations {
+    fn count(&self) -> usize {
+        self.residuals
+    }
+
+    fn write(&self, solution: &Located<f64>, components: &mut [f64]) {
+        if solution.coordinates.len() != self.space.dimension() {
+            return components.fill(f64::NAN);
+        }
+        (self.functions.real)(&solution.coordinates, components);
+        let limit = self.threshold.sqrt();
+        components.iter_mut().for_each(|component| *component /= limit);
+    }
+}
+
 impl Encoding<f64, Located<f64>> for Equations {
     fn encode(&self, solution: &Located<f64>, values: &mut [f64]) -> bool {
         let fits = solution.coordinates.len() == values.len() && self.space.contains(&solution.coordinates);
@@ -158,6 +174,9 @@ macro_rules! root_methods {
             Some(&self.equations)
         }
         fn bounds(&self) -> Option<&dyn satisfice::Bounds<f64>> {
+            Some(&self.equations)
+        }
+        fn components(&self) -> Option<&dyn satisfice::Components<f64, satisfice::Located<f64>>> {
             Some(&self.equations)
         }
         fn canonical(&self, hit: &satisfice::Located<f64>) -> Option<satisfice::Located<f64>> {

@@ -1,7 +1,7 @@
 //! Periodic points of Hénon's map: isolated roots of a coupled map, or of a steep one by shooting.
 
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
-use satisfice::{Encoding, Error, Located, Region, SatisficingProblem, SearchRng, Space};
+use satisfice::{Components, Encoding, Error, Located, Region, SatisficingProblem, SearchRng, Space};
 
 use crate::lattice::description;
 
@@ -181,10 +181,13 @@ impl PeriodicPoints {
 
     /// The norm of the residuals of a cycle.
     fn residual(&self, x: &[f64]) -> f64 {
+        let residual = |k| self.residual_at(x, k);
+        (0..x.len()).map(residual).map(|e| e * e).sum::<f64>().sqrt()
+    }
+
+    fn residual_at(&self, x: &[f64], k: usize) -> f64 {
         let n = x.len();
-        let residual =
-            |k: usize| x[(k + 1) % n] + self.b * x[(k + n - 1) % n] + x[k] * x[k] - self.forcing[k];
-        (0..n).map(residual).map(|e| e * e).sum::<f64>().sqrt()
+        x[(k + 1) % n] + self.b * x[(k + n - 1) % n] + x[k] * x[k] - self.forcing[k]
     }
 
     /// Visits x_0, x_1 … x_(n+1) of the orbit that starts with x_0 and x_1.
@@ -218,6 +221,31 @@ impl PeriodicPoints {
     }
 }
 
+/// The residuals, by the threshold.
+impl Components<f64, Located<f64>> for PeriodicPoints {
+    fn count(&self) -> usize {
+        self.space.dimension()
+    }
+
+    fn write(&self, solution: &Located<f64>, components: &mut [f64]) {
+        let x = &solution.coordinates;
+        if x.len() != self.space.dimension() {
+            return components.fill(f64::NAN);
+        }
+        if self.shoots {
+            let [last, now] = self.shoot(x, |_| {});
+            components.copy_from_slice(&[last - x[0], now - x[1]]);
+        } else {
+            for (k, component) in components.iter_mut().enumerate() {
+                *component = self.residual_at(x, k);
+            }
+        }
+        components
+            .iter_mut()
+            .for_each(|component| *component /= self.threshold);
+    }
+}
+
 impl SatisficingProblem for PeriodicPoints {
     type Scalar = f64;
     type Solution = Located<f64>;
@@ -241,6 +269,9 @@ impl SatisficingProblem for PeriodicPoints {
         } else {
             self.residual(x)
         }
+    }
+    fn components(&self) -> Option<&dyn Components<f64, Located<f64>>> {
+        Some(self)
     }
     fn threshold(&self) -> f64 {
         self.threshold

@@ -35,6 +35,8 @@ pub enum ProblemLaw {
     Neighbours,
     /// No F in a region is below its lower bound, which is not NaN.
     LowerBound,
+    /// There is a component, all are the same each time, and none exceeds 1 at a hit.
+    Components,
     /// The representative of a hit is its own representative and a hit.
     Canonical,
 }
@@ -46,6 +48,8 @@ const MOST_NEIGHBOURS: usize = 500;
 /// Regions examined, and points in each.
 const REGIONS: usize = 100;
 const SAMPLES: usize = 30;
+/// By how much rounding may lift a component of a hit above 1.
+const ROUNDING: f64 = 1e-6;
 
 type Point<P> = Vec<<P as SatisficingProblem>::Scalar>;
 
@@ -66,6 +70,7 @@ pub fn check<P: SatisficingProblem>(problem: &P, seed: u64) -> Vec<Violation<Pro
     suite.encode(&points);
     suite.neighbours(&points);
     suite.lower_bound(&points, &mut rng);
+    suite.components(&points);
     suite.canonical(&points);
     suite.violations
 }
@@ -327,6 +332,35 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
                     point,
                     format!("F is {fitness}, the bound of that point alone {bound}"),
                 );
+            }
+        }
+    }
+
+    fn components(&mut self, points: &[Point<P>]) {
+        let Some(components) = self.problem.components() else {
+            return;
+        };
+        let count = components.count();
+        if count == 0 {
+            self.say(ProblemLaw::Components, &points[0], "there are none");
+        }
+        let one = P::Scalar::of(1.0 + ROUNDING);
+        for point in points {
+            let solution = self.problem.decode(point);
+            let [first, again] = [(); 2].map(|()| {
+                let mut all = vec![P::Scalar::of(f64::NAN); count];
+                components.write(&solution, &mut all);
+                all
+            });
+            if !first.iter().zip(&again).all(|(&a, &b)| same_bits(a, b)) {
+                let what = format!("they are {first:?}, then {again:?}");
+                self.say(ProblemLaw::Components, point, what);
+            }
+            let fitness = self.problem.fitness(&solution);
+            let is_hit = fitness.is_finite() && fitness < self.problem.threshold();
+            if is_hit && !first.iter().all(|x| x.abs() <= one) {
+                let what = format!("F is {fitness}, a hit, and the components are {first:?}");
+                self.say(ProblemLaw::Components, point, what);
             }
         }
     }

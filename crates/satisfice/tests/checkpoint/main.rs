@@ -11,6 +11,7 @@ use satisfice::{
     StopReason, from_fn,
 };
 
+mod components;
 mod refused;
 mod size;
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use core::sync::atomic::{AtomicU32, Ordering};
-use satisfice::{Bounds, Encoding, Neighbourhood};
+use satisfice::{Bounds, Components, Encoding, Neighbourhood};
 
 use satisfice::testing::problem::{ProblemLaw, check};
 use satisfice::{Axis, Region, SatisficingProblem, Space, from_fn};
@@ -44,6 +44,9 @@ enum Fault {
     NeighboursAreWrittenOtherwise,
     BoundIsTooHigh,
     BoundIsNaN,
+    ComponentsAreNone,
+    ComponentsCount,
+    ComponentsExceedTheirLimits,
     RepresentativeIsNoHit,
     RepresentativesWander,
 }
@@ -115,6 +118,9 @@ impl SatisficingProblem for Faulty {
     fn bounds(&self) -> Option<&dyn Bounds<f64>> {
         Some(self)
     }
+    fn components(&self) -> Option<&dyn Components<f64, [i64; 2]>> {
+        Some(self)
+    }
 }
 
 impl Encoding<f64, [i64; 2]> for Faulty {
@@ -166,6 +172,26 @@ impl Bounds<f64> for Faulty {
     }
 }
 
+impl Components<f64, [i64; 2]> for Faulty {
+    fn count(&self) -> usize {
+        if self.fault == Fault::ComponentsAreNone {
+            0
+        } else {
+            2
+        }
+    }
+
+    fn write(&self, &[a, b]: &[i64; 2], components: &mut [f64]) {
+        let limit = match self.fault {
+            Fault::ComponentsAreNone => return,
+            Fault::ComponentsCount => 9.0 + f64::from(self.count()),
+            Fault::ComponentsExceedTheirLimits => 6.0,
+            _ => 9.0,
+        };
+        components.copy_from_slice(&[a as f64 / limit, b as f64 / limit]);
+    }
+}
+
 #[test]
 fn a_broken_problem_is_found_out() {
     for (fault, expected) in [
@@ -182,6 +208,9 @@ fn a_broken_problem_is_found_out() {
         (Fault::NeighboursBeyondTheCount, Some(ProblemLaw::Neighbours)),
         (Fault::BoundIsTooHigh, Some(ProblemLaw::LowerBound)),
         (Fault::BoundIsNaN, Some(ProblemLaw::LowerBound)),
+        (Fault::ComponentsAreNone, Some(ProblemLaw::Components)),
+        (Fault::ComponentsCount, Some(ProblemLaw::Components)),
+        (Fault::ComponentsExceedTheirLimits, Some(ProblemLaw::Components)),
         (Fault::RepresentativeIsNoHit, Some(ProblemLaw::Canonical)),
         (Fault::RepresentativesWander, Some(ProblemLaw::Canonical)),
     ] {

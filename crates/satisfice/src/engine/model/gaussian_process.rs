@@ -38,9 +38,10 @@ impl GaussianProcess {
             return None;
         }
         let inputs: Vec<&[f64]> = points.chunks_exact(axes).collect();
-        let scales = likeliest(&Scales::new(vec![Shape::Line; axes]), &inputs, values, STEPS);
+        let values = [values.to_vec()];
+        let scales = likeliest(&Scales::new(vec![Shape::Line; axes]), &inputs, &values, STEPS);
         Some(Self {
-            process: Process::new(scales, &inputs, values),
+            process: Process::new(scales, &inputs, &values),
         })
     }
 
@@ -57,7 +58,7 @@ impl GaussianProcess {
         );
         let mut block = Block::new(point.iter().map(|&x| [x; LANES]).collect());
         self.process.update(&mut block);
-        let (means, variances) = self.process.predictions(&block);
+        let (means, variances) = self.process.predictions(&block, 0);
         (means[0], variances[0])
     }
 

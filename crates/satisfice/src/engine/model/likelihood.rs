@@ -11,10 +11,10 @@ use super::scales::Scales;
 pub(super) struct Fit {
     pub(super) points: Points,
     pub(super) factor: Factor,
-    /// Mean of the process: generalised least squares.
-    pub(super) mean: f64,
-    /// Variance of the process.
-    pub(super) variance: f64,
+    /// Mean of each output: generalised least squares.
+    pub(super) mean: Vec<f64>,
+    /// Variance of each output.
+    pub(super) variance: Vec<f64>,
 }
 
 /// Variances below this count as this: all values are equal.
@@ -43,41 +43,51 @@ impl Fit {
         }
     }
 
-    /// Sets mean and variance to their likeliest values. Returns `L⁻¹ (y - mean)`.
+    /// Sets means and variances to their likeliest values. Returns `L⁻¹ (y - mean)` for each output.
     #[expect(clippy::cast_precision_loss, reason = "a number of points")]
-    pub(super) fn moments(&mut self, values: &[f64]) -> Vec<f64> {
-        let mut ones = vec![1.0; values.len()];
-        let mut solved = values.to_vec();
+    pub(super) fn moments(&mut self, values: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut ones = vec![1.0; values[0].len()];
         self.factor.solve_one(&mut ones);
-        self.factor.solve_one(&mut solved);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        self.mean = dot(&ones, &solved) / dot(&ones, &ones);
-        for (z, one) in solved.iter_mut().zip(&ones) {
-            *z -= self.mean * one;
+        let weight = dot(&ones, &ones);
+        self.mean.clear();
+        self.variance.clear();
+        let mut all = values.to_vec();
+        for solved in &mut all {
+            self.factor.solve_one(solved);
+            let mean = dot(&ones, solved) / weight;
+            for (z, one) in solved.iter_mut().zip(&ones) {
+                *z -= mean * one;
+            }
+            self.mean.push(mean);
+            self.variance
+                .push((dot(solved, solved) / solved.len() as f64).max(LEAST_VARIANCE));
         }
-        self.variance = (dot(&solved, &solved) / values.len() as f64).max(LEAST_VARIANCE);
-        solved
+        all
     }
 
     /// The negative logarithm of likelihood and prior up to a constant, and its gradient by the logarithms of the scales.
-    /// Mean and variance are profiled out. Cost: n³ / 2.
+    /// Means and variances are profiled out. Cost: n³ / 2.
     ///
     /// Rasmussen, Williams 2006, Eq. 5.9, with `K` in units of the variance.
     #[expect(clippy::cast_precision_loss, reason = "a number of points")]
-    fn evaluate(&mut self, scales: &Scales, inputs: &[&[f64]], values: &[f64]) -> (f64, Vec<f64>) {
+    fn evaluate(&mut self, scales: &Scales, inputs: &[&[f64]], values: &[Vec<f64>]) -> (f64, Vec<f64>) {
         self.factor(scales, inputs);
         let mut weights = self.moments(values);
-        self.factor.solve_transposed(&mut weights);
-        let root = self.variance.sqrt();
-        weights.iter_mut().for_each(|weight| *weight /= root);
+        let mut loss = 0.0;
+        for (weights, variance) in weights.iter_mut().zip(&self.variance) {
+            self.factor.solve_transposed(weights);
+            let root = variance.sqrt();
+            weights.iter_mut().for_each(|weight| *weight /= root);
+            loss += inputs.len() as f64 / 2.0 * variance.ln() + self.factor.log_determinant();
+        }
         let mut gradient = vec![0.0; scales.logs.len()];
         self.slopes(scales, &weights, &mut gradient);
-        let loss = values.len() as f64 / 2.0 * self.variance.ln() + self.factor.log_determinant();
         (loss + scales.prior(&mut gradient), gradient)
     }
 
     /// Adds `½ tr((K⁻¹ - w wᵀ) dK)` for each scale, `weights` being `w = K⁻¹ (y - mean) / σ`.
-    fn slopes(&self, scales: &Scales, weights: &[f64], gradient: &mut [f64]) {
+    fn slopes(&self, scales: &Scales, weights: &[Vec<f64>], gradient: &mut [f64]) {
         let n = self.points.len();
         let inverse: Vec<Vec<Lanes>> = (0..self.points.blocks())
             .map(|b| self.factor.inverse_columns(b))
@@ -90,8 +100,13 @@ impl Fit {
             let (start, count, block) = (b * LANES, self.points.count(b), self.points.block(b));
             for i in start..n {
                 let mut entry = product(&inverse[i / LANES], columns, i, start);
-                for lane in 0..count {
-                    entry[lane] -= weights[i] * weights[start + lane];
+                if weights.len() > 1 {
+                    entry.iter_mut().for_each(|entry| *entry *= weights.len() as f64);
+                }
+                for weights in weights {
+                    for lane in 0..count {
+                        entry[lane] -= weights[i] * weights[start + lane];
+                    }
                 }
                 if i < start + count {
                     trace += entry[i - start];
@@ -175,7 +190,7 @@ impl SignDescent {
 }
 
 /// Improves the scales by [`SignDescent`]. Returns the best scales of all steps.
-pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[f64], steps: usize) -> Scales {
+pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[Vec<f64>], steps: usize) -> Scales {
     let mut fit = Fit::default();
     let mut scales = from.clone();
     let mut best = (f64::INFINITY, from.clone());
@@ -217,6 +232,8 @@ mod tests {
     #[test]
     fn the_gradient_agrees_with_differences() {
         let (mut inputs, values) = data(37);
+        let other = values.iter().map(|y| y * y - 0.3 * y).collect();
+        let values = [values, other];
         for (i, input) in inputs.iter_mut().enumerate() {
             input.extend([(i as f64 * 0.31).fract(), ((i % 3) as f64 + 0.5) / 3.0]);
         }
@@ -269,6 +286,7 @@ mod tests {
     #[test]
     fn an_axis_without_effect_gets_a_long_scale() {
         let (inputs, values) = data(40);
+        let values = [values];
         let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
         let scales = likeliest(&Scales::new(vec![Shape::Line; 2]), &inputs, &values, 40);
         assert!(scales.length(1) > 3.0 * scales.length(0), "{scales:?}");

@@ -9,6 +9,7 @@ use super::process::Process;
 use super::reach::{reach, square};
 use super::record::Record;
 use super::region::TrustRegion;
+use super::roots::steps;
 use super::scales::Scales;
 use super::skill::Skill;
 use super::target::Target;
@@ -32,6 +33,10 @@ const MOST_NEW: usize = 40;
 /// Deviations of the penalty around hits: so many reaches, and at least this share of a length scale.
 const REACHES: f64 = 2.0;
 const SCALES: f64 = 0.5;
+/// Steps towards a root of the modelled components, from the best candidate and so many of the next ones, drawn among so many.
+const NEWTON: usize = 5;
+const STARTS: usize = 2;
+const AMONG: usize = 64;
 /// Candidates that are examined for one proposal.
 const EXAMINED: usize = 4096;
 
@@ -96,11 +101,16 @@ impl Model {
         pool.reset();
         let raw: Vec<f64> = region.known.iter().map(|&i| record.values[i]).collect();
         let target = Target::new(given.context.threshold().f64(), &raw);
-        let values: Vec<f64> = raw.iter().map(|&value| target.of(value)).collect();
+        let target = target.with_components(record, &region.known);
+        let values = outputs(record, &target, &region.known);
+        pool.limits = target.limits();
         let inputs: Vec<&[f64]> = region.known.iter().map(|&i| record.point(i)).collect();
-        let learned: Vec<usize> = learned_from(inputs.len()).collect();
-        let (some, some_values): (Vec<&[f64]>, Vec<f64>) =
-            learned.iter().map(|&i| (inputs[i], values[i])).unzip();
+        let chosen: Vec<usize> = learned_from(inputs.len()).collect();
+        let some: Vec<&[f64]> = chosen.iter().map(|&i| inputs[i]).collect();
+        let some_values: Vec<Vec<f64>> = values
+            .iter()
+            .map(|values| chosen.iter().map(|&i| values[i]).collect())
+            .collect();
         let scales = likeliest(&scales, &some, &some_values, steps);
         let reach = match record.hits.last() {
             Some(&hit) => reach(given.context, given.units, record.point(hit), given.position),
@@ -140,9 +150,13 @@ impl Model {
         for i in self.taken..record.len() {
             if record.duplicates.binary_search(&i).is_err() {
                 self.region.known.push(i);
-                let value = self.target.of(record.values[i]);
-                let error = self.process.push(record.point(i), value);
-                skill.count(value, error);
+                let values = self.target.of_point(record, i);
+                let errors = self.process.push(record.point(i), &values);
+                if self.target.units.is_empty() {
+                    skill.count(values[0], errors[0]);
+                } else {
+                    skill.count_share(self.process.share_of_variance(&errors));
+                }
             }
         }
         self.taken = record.len();
@@ -196,6 +210,7 @@ impl Model {
         rng: &mut SearchRng,
     ) -> Option<Vec<f64>> {
         let ranking = self.pool.ranking(&self.process);
+        let starts = self.starts(&ranking, rng);
         let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
         let lengths = self.lengths();
         let mut longest = 0.5;
@@ -213,7 +228,57 @@ impl Model {
                 best = better;
             }
         }
+        for start in starts {
+            self.descend(given, pending, start, &mut best);
+        }
+        if !self.pool.limits.is_empty() {
+            let start = best.clone();
+            self.descend(given, pending, start, &mut best);
+        }
         Some(best.1)
+    }
+
+    /// Some of the best candidates, from which steps towards roots start, where components are modelled.
+    fn starts(&self, ranking: &[(Score, Place)], rng: &mut SearchRng) -> Vec<(Score, Vec<f64>)> {
+        if self.pool.limits.is_empty() || ranking.is_empty() {
+            return Vec::new();
+        }
+        let start = |_| {
+            let mut x = Vec::new();
+            let (score, place) = ranking[ranking.len() - 1 - rng.below(ranking.len().min(AMONG))];
+            self.pool.coordinates(place, &mut x);
+            (score, x)
+        };
+        (0..STARTS).map(start).collect()
+    }
+
+    /// Steps from a point towards a root of the modelled components, as long as they lead to better candidates; the best allowed one is
+    /// kept.
+    fn descend<S: Real>(
+        &mut self,
+        given: &mut Given<'_, S>,
+        pending: &[Vec<f64>],
+        (mut last, mut at): (Score, Vec<f64>),
+        best: &mut (Score, Vec<f64>),
+    ) {
+        for _ in 0..NEWTON {
+            let block = self
+                .pool
+                .replace(steps(&self.process, given.units, &self.pool.limits, &at));
+            let mut rated: Vec<(Score, Place)> = self.pool.rate(&self.process, block).collect();
+            rated.sort_by(|(a, _), (b, _)| b.order(a));
+            let Some(&(score, place)) = rated.first() else {
+                return;
+            };
+            if score.order(&last).is_le() {
+                return;
+            }
+            last = score;
+            self.pool.coordinates(place, &mut at);
+            if let Some(better) = self.first_allowed(given, rated.into_iter(), pending, Some(best.0)) {
+                *best = better;
+            }
+        }
     }
 
     /// The best allowed candidate of a list that starts with the best, if it is better than `than`.
@@ -268,6 +333,15 @@ impl Model {
             ..score
         }
     }
+}
+
+/// What the model learns of points: the values of each output.
+pub(super) fn outputs(record: &Record, target: &Target, points: &[usize]) -> Vec<Vec<f64>> {
+    let rows: Vec<Vec<f64>> = points.iter().map(|&i| target.of_point(record, i)).collect();
+    let count = rows.first().map_or(0, Vec::len);
+    (0..count)
+        .map(|k| rows.iter().map(|row| row[k]).collect())
+        .collect()
 }
 
 /// Which of `points` scales are learned from: the latest half and every so many of the others.

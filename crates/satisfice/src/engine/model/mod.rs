@@ -15,6 +15,7 @@ mod quadratic;
 mod reach;
 mod record;
 mod region;
+mod roots;
 mod scales;
 mod skill;
 mod surrogate;

@@ -5,6 +5,8 @@ use super::process::{Block, Process};
 
 /// Deviations below the mean at which a candidate is still taken for a possible hit.
 const HOPE: f64 = 2.0;
+/// Square of the deviation of a normal weight with the mass of a box, in squares of half its width.
+pub(super) const WIDTH: f64 = core::f64::consts::FRAC_2_PI;
 
 /// A candidate: its block and its lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,6 +38,17 @@ impl Score {
         }
     }
 
+    /// By the components: the logarithm of the expectation of a normal weight as wide as the limits, which has a closed form.
+    fn of_components(means: &[f64], variances: &[f64], limits: &[f64]) -> Self {
+        let mut value = 0.0;
+        for ((mean, variance), limit) in means.iter().zip(variances).zip(limits) {
+            let square = WIDTH * limit * limit;
+            let sum = variance + square;
+            value += 0.5 * (square / sum).ln() - 0.5 * mean * mean / sum;
+        }
+        Self { hopeful: true, value }
+    }
+
     pub(super) fn order(&self, other: &Self) -> core::cmp::Ordering {
         (self.hopeful.cmp(&other.hopeful)).then(self.value.total_cmp(&other.value))
     }
@@ -49,6 +62,8 @@ pub(super) struct Pool {
     excluded: Vec<[bool; LANES]>,
     /// The block to be replaced next.
     next: usize,
+    /// Limits of the components; none where F itself is modelled.
+    pub(super) limits: Vec<f64>,
 }
 
 impl Pool {
@@ -113,11 +128,27 @@ impl Pool {
     /// The candidates of one block that are not excluded.
     pub(super) fn rate(&mut self, process: &Process, block: usize) -> impl Iterator<Item = (Score, Place)> {
         process.update(&mut self.blocks[block]);
-        let (means, variances) = process.predictions(&self.blocks[block]);
+        let scores = self.scores(process, block);
         let excluded = self.excluded[block];
         (0..LANES)
             .filter(move |&lane| !excluded[lane])
-            .map(move |lane| (Score::new(means[lane], variances[lane]), Place { block, lane }))
+            .map(move |lane| (scores[lane], Place { block, lane }))
+    }
+
+    fn scores(&self, process: &Process, block: usize) -> [Score; LANES] {
+        let block = &self.blocks[block];
+        if self.limits.is_empty() {
+            let (means, variances) = process.predictions(block, 0);
+            return core::array::from_fn(|lane| Score::new(means[lane], variances[lane]));
+        }
+        let all: Vec<_> = (0..process.outputs())
+            .map(|k| process.predictions(block, k))
+            .collect();
+        core::array::from_fn(|lane| {
+            let means: Vec<f64> = all.iter().map(|(means, _)| means[lane]).collect();
+            let variances: Vec<f64> = all.iter().map(|(_, variances)| variances[lane]).collect();
+            Score::of_components(&means, &variances, &self.limits)
+        })
     }
 
     /// Candidates, exclusions and the next block, for [`Pool::restored`].
@@ -145,6 +176,7 @@ impl Pool {
                 .collect(),
             excluded: marks.to_vec(),
             next,
+            limits: Vec::new(),
         })
     }
 }
@@ -152,6 +184,27 @@ impl Pool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The normal weight has the mass of the box, and its expectation under a normal distribution is the integral.
+    #[test]
+    fn components_are_scored_by_the_integral_of_a_weight() {
+        let (mean, variance, limit): (f64, f64, f64) = (0.7, 0.09, 0.2);
+        let square = WIDTH * limit * limit;
+        let (mut mass, mut expected) = (0.0, 0.0);
+        for i in -40_000..40_000 {
+            let x = f64::from(i) * 1e-4;
+            let weight = (-x * x / 2.0 / square).exp();
+            mass += weight * 1e-4;
+            let density =
+                (-(x - mean).powi(2) / 2.0 / variance).exp() / (core::f64::consts::TAU * variance).sqrt();
+            expected += weight * density * 1e-4;
+        }
+        approx::assert_relative_eq!(mass, 2.0 * limit, max_relative = 1e-6);
+        let one = Score::of_components(&[mean], &[variance], &[limit]);
+        approx::assert_relative_eq!(one.value.exp(), expected, max_relative = 1e-6);
+        let two = Score::of_components(&[mean; 2], &[variance; 2], &[limit; 2]);
+        approx::assert_relative_eq!(two.value, 2.0 * one.value);
+    }
 
     #[test]
     fn the_probable_come_first_and_the_bound_ranks_the_rest() {

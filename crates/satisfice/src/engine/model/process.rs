@@ -13,8 +13,8 @@ const LEAST_VARIANCE: f64 = 1e-9;
 pub(super) struct Process {
     pub(super) scales: Scales,
     fit: Fit,
-    /// `L⁻¹ (y - mean)`.
-    solved: Vec<f64>,
+    /// `L⁻¹ (y - mean)` for each output.
+    solved: Vec<Vec<f64>>,
 }
 
 /// A block of candidates and what the points say of them.
@@ -25,8 +25,8 @@ pub(super) struct Block {
     scaled: Vec<Lanes>,
     /// `L⁻¹ k` for each candidate, as far as it is known.
     solved: Vec<Lanes>,
-    /// What the points add to the mean.
-    mean: Lanes,
+    /// What the points add to the mean of each output.
+    mean: Vec<Lanes>,
     /// What the points take from the variance, as a share of it.
     explained: Lanes,
 }
@@ -37,7 +37,7 @@ impl Block {
             scaled: Vec::new(),
             units,
             solved: Vec::new(),
-            mean: [0.0; LANES],
+            mean: Vec::new(),
             explained: [0.0; LANES],
         }
     }
@@ -45,14 +45,14 @@ impl Block {
     /// Forgets the predictions.
     pub(super) fn reset(&mut self) {
         self.solved.clear();
-        self.mean = [0.0; LANES];
+        self.mean.clear();
         self.explained = [0.0; LANES];
     }
 }
 
 impl Process {
     /// The process through these points, with the likeliest mean and variance.
-    pub(super) fn new(scales: Scales, inputs: &[&[f64]], values: &[f64]) -> Self {
+    pub(super) fn new(scales: Scales, inputs: &[&[f64]], values: &[Vec<f64>]) -> Self {
         let mut fit = Fit::default();
         fit.factor(&scales, inputs);
         let solved = fit.moments(values);
@@ -61,11 +61,17 @@ impl Process {
 
     /// Number of points.
     pub(super) fn len(&self) -> usize {
-        self.solved.len()
+        self.solved[0].len()
     }
 
-    /// Adds a point, and returns by how much it was predicted wrongly. Cost: n² / 2.
-    pub(super) fn push(&mut self, input: &[f64], value: f64) -> f64 {
+    /// Adds a point that is believed to have the values that are predicted for it (Ginsbourger, Le Riche, Carraro 2010).
+    pub(super) fn believe(&mut self, input: &[f64]) {
+        let unknown = vec![f64::NAN; self.outputs()];
+        self.push(input, &unknown);
+    }
+
+    /// Adds a point, and returns by how much each output was predicted wrongly. Cost: n² / 2.
+    pub(super) fn push(&mut self, input: &[f64], values: &[f64]) -> Vec<f64> {
         let fit = &mut self.fit;
         fit.points.push(self.scales.scaled_point(input).into_iter());
         let new = fit.points.len() - 1;
@@ -77,19 +83,24 @@ impl Process {
         all.truncate(new);
         fit.factor.push(all.into_iter(), 1.0 + self.scales.noise());
         let row = fit.factor.row(new);
-        let known = row
-            .iter()
-            .zip(&self.solved)
-            .fold(value - fit.mean, |sum, (l, z)| sum - l * z);
-        self.solved.push(known * fit.factor.inverse_pivot(new));
-        known
+        let mut errors = Vec::with_capacity(values.len());
+        for (k, solved) in self.solved.iter_mut().enumerate() {
+            let known = row
+                .iter()
+                .zip(&*solved)
+                .fold(values[k] - fit.mean[k], |sum, (l, z)| sum - l * z);
+            let known = if values[k].is_nan() { 0.0 } else { known };
+            solved.push(known * fit.factor.inverse_pivot(new));
+            errors.push(known);
+        }
+        errors
     }
 
     /// Brings a block back to what the first `len` points say.
     pub(super) fn rewind(&self, block: &mut Block, len: usize) {
         if block.solved.len() > len {
             block.solved.truncate(len);
-            block.mean = [0.0; LANES];
+            block.mean.clear();
             block.explained = [0.0; LANES];
             self.accumulate(block, 0);
         }
@@ -99,7 +110,7 @@ impl Process {
     pub(super) fn truncate(&mut self, len: usize) {
         self.fit.points.truncate(len);
         self.fit.factor.truncate(len);
-        self.solved.truncate(len);
+        self.solved.iter_mut().for_each(|solved| solved.truncate(len));
     }
 
     /// Brings what is known of a block up to date. Cost for each candidate and new point: n.
@@ -118,22 +129,42 @@ impl Process {
 
     #[inline(always)]
     fn accumulate(&self, block: &mut Block, from: usize) {
-        for (solved, z) in block.solved[from..].iter().zip(&self.solved[from..]) {
-            let sums = block.mean.iter_mut().zip(&mut block.explained);
-            for ((mean, explained), solved) in sums.zip(solved) {
-                *mean += solved * z;
+        block.mean.resize(self.solved.len(), [0.0; LANES]);
+        for (mean, known) in block.mean.iter_mut().zip(&self.solved) {
+            for (solved, z) in block.solved[from..].iter().zip(&known[from..]) {
+                for (mean, solved) in mean.iter_mut().zip(solved) {
+                    *mean += solved * z;
+                }
+            }
+        }
+        for solved in &block.solved[from..] {
+            for (explained, solved) in block.explained.iter_mut().zip(solved) {
                 *explained += solved * solved;
             }
         }
     }
 
-    /// Means and variances of a block that is up to date.
+    /// The mean of the squares of these errors, each by the variance of its output.
+    pub(super) fn share_of_variance(&self, errors: &[f64]) -> f64 {
+        let shares = errors.iter().zip(&self.fit.variance);
+        let sum: f64 = shares.map(|(error, variance)| error * error / variance).sum();
+        #[expect(clippy::cast_precision_loss, reason = "a number of outputs")]
+        let count = self.outputs() as f64;
+        sum / count
+    }
+
+    /// Number of outputs.
+    pub(super) fn outputs(&self) -> usize {
+        self.solved.len()
+    }
+
+    /// Means and variances of a block that is up to date, of one output.
     #[inline]
-    pub(super) fn predictions(&self, block: &Block) -> (Lanes, Lanes) {
-        let (mut means, mut variances) = (block.mean, block.explained);
+    pub(super) fn predictions(&self, block: &Block, output: usize) -> (Lanes, Lanes) {
+        let (mut means, mut variances) = (block.mean[output], block.explained);
         for (mean, variance) in means.iter_mut().zip(&mut variances) {
-            *mean += self.fit.mean;
-            *variance = (1.0 - *variance).max(LEAST_VARIANCE) * self.fit.variance;
+            *mean += self.fit.mean[output];
+            *variance = (1.0 - *variance).max(LEAST_VARIANCE) * self.fit.variance[output];
         }
         (means, variances)
     }
@@ -154,7 +185,7 @@ mod tests {
 
     fn process(n: usize) -> Process {
         let inputs: Vec<_> = (0..n).map(point).collect();
-        let values: Vec<_> = inputs.iter().map(|x| value(x)).collect();
+        let values = [inputs.iter().map(|x| value(x)).collect()];
         let inputs: Vec<&[f64]> = inputs.iter().map(|x| &x[..]).collect();
         Process::new(Scales::new(vec![Shape::Line; 2]), &inputs, &values)
     }
@@ -170,7 +201,7 @@ mod tests {
         for (first, tolerance) in [(5, 1e-3), (500, 0.02)] {
             let mut block = block(first);
             process.update(&mut block);
-            let (means, variances) = process.predictions(&block);
+            let (means, variances) = process.predictions(&block, 0);
             for lane in 0..LANES {
                 let truth = value(&point(first + lane));
                 assert!((means[lane] - truth).abs() < tolerance, "{first} {lane}");
@@ -185,10 +216,10 @@ mod tests {
         let axes = scales.axes();
         scales.logs[..axes].fill(0.5_f64.ln());
         let (inputs, values): (Vec<&[f64]>, Vec<f64>) = known.iter().copied().unzip();
-        let process = Process::new(scales, &inputs, &values);
+        let process = Process::new(scales, &inputs, &[values]);
         let mut block = Block::new(at.iter().map(|&x| [x; LANES]).collect());
         process.update(&mut block);
-        let (means, variances) = process.predictions(&block);
+        let (means, variances) = process.predictions(&block, 0);
         (means[0], variances[0])
     }
 
@@ -223,23 +254,23 @@ mod tests {
     fn a_block_that_follows_has_the_bits_of_one_computed_at_once() {
         let (mut growing, mut follows) = (process(20), block(300));
         for i in 20..45 {
-            growing.push(&point(i), value(&point(i)));
+            growing.push(&point(i), &[value(&point(i))]);
             growing.update(&mut follows);
         }
         let mut at_once = block(300);
         growing.update(&mut at_once);
-        assert_eq!(growing.predictions(&follows), growing.predictions(&at_once));
+        assert_eq!(growing.predictions(&follows, 0), growing.predictions(&at_once, 0));
     }
 
     #[test]
     fn a_point_that_is_taken_back_leaves_no_trace() {
         let (mut one, two) = (process(33), process(33));
-        one.push(&point(99), 7.0);
+        one.push(&point(99), &[7.0]);
         one.truncate(33);
         let (mut a, mut b) = (block(300), block(300));
         one.update(&mut a);
         two.update(&mut b);
-        assert_eq!(one.predictions(&a), two.predictions(&b));
+        assert_eq!(one.predictions(&a, 0), two.predictions(&b, 0));
     }
 
     /// The constant liar (Ginsbourger, Le Riche, Carraro 2010): a proposed point is predicted as its lie, nearly for certain, and
@@ -248,18 +279,53 @@ mod tests {
     fn a_pending_point_is_believed_to_have_its_lie() {
         let (mut lied, honest) = (process(40), process(40));
         let far = [5.0, -5.0];
-        lied.push(&far, 0.0);
+        lied.push(&far, &[0.0]);
         let at = Block::new(far.map(|x| [x; LANES]).to_vec());
         for (mut a, mut b, is_far) in [(at.clone(), at, true), (block(700), block(700), false)] {
             lied.update(&mut a);
             honest.update(&mut b);
-            let ((means, after), (_, before)) = (lied.predictions(&a), honest.predictions(&b));
+            let ((means, after), (_, before)) = (lied.predictions(&a, 0), honest.predictions(&b, 0));
             assert!((0..LANES).all(|lane| after[lane] <= before[lane] * (1.0 + 1e-9)));
             assert!(
                 !is_far || (means[0].abs() < 0.02 && after[0] < 0.02 * before[0]),
                 "{means:?} {after:?}"
             );
         }
+    }
+
+    /// Each output is predicted as it would be alone, and a point that is believed moves no prediction.
+    #[test]
+    fn outputs_share_scales_and_nothing_else() {
+        let inputs: Vec<_> = (0..30).map(point).collect();
+        let outputs = [
+            inputs.iter().map(|x| value(x)).collect::<Vec<_>>(),
+            inputs.iter().map(|x| 3.0 - x[0] * x[1]).collect(),
+        ];
+        let inputs: Vec<&[f64]> = inputs.iter().map(|x| &x[..]).collect();
+        let scales = Scales::new(vec![Shape::Line; 2]);
+        let mut both = Process::new(scales.clone(), &inputs, &outputs);
+        both.push(
+            &point(77),
+            &[value(&point(77)), 3.0 - point(77)[0] * point(77)[1]],
+        );
+        let mut block_of_both = block(300);
+        both.update(&mut block_of_both);
+        for (k, output) in outputs.iter().enumerate() {
+            let mut alone = Process::new(scales.clone(), &inputs, core::slice::from_ref(output));
+            let next = [value(&point(77)), 3.0 - point(77)[0] * point(77)[1]];
+            alone.push(&point(77), &next[k..=k]);
+            let mut block = block(300);
+            alone.update(&mut block);
+            assert_eq!(both.predictions(&block_of_both, k), alone.predictions(&block, 0));
+        }
+        let before = both.predictions(&block_of_both, 1);
+        both.believe(&point(302));
+        both.update(&mut block_of_both);
+        let after = both.predictions(&block_of_both, 1);
+        for lane in 0..LANES {
+            approx::assert_relative_eq!(before.0[lane], after.0[lane], max_relative = 1e-12);
+        }
+        assert!(after.1[2] < 0.01 * before.1[2]);
     }
 
     /// Solves `A x = b` by Gaussian elimination with pivots.
@@ -295,10 +361,10 @@ mod tests {
         let known: Vec<_> = (0..23).map(point).collect();
         let y: Vec<f64> = known.iter().map(|x| value(x)).collect();
         let inputs: Vec<&[f64]> = known.iter().map(|x| &x[..]).collect();
-        let process = Process::new(scales, &inputs, &y);
+        let process = Process::new(scales, &inputs, core::slice::from_ref(&y));
         let mut block = block(300);
         process.update(&mut block);
-        let (means, variances) = process.predictions(&block);
+        let (means, variances) = process.predictions(&block, 0);
 
         let covariance = |p: &[f64; 2], q: &[f64; 2]| {
             let (dx, dy) = ((p[0] - q[0]) / (-1.0_f64).exp(), (p[1] - q[1]) / (-0.2_f64).exp());

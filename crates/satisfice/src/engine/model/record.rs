@@ -25,6 +25,8 @@ pub(super) struct Record {
     units: Vec<f64>,
     /// NaN if there is no finite F.
     pub(super) values: Vec<f64>,
+    /// Components of F, as many for each point.
+    components: Vec<f64>,
     /// Indices of hits.
     pub(super) hits: Vec<usize>,
     /// Indices of points that turned out to be the same as a hit.
@@ -72,33 +74,54 @@ impl Record {
         self.values.push(value);
     }
 
+    /// Notes the components of F at the point that was added last.
+    pub(super) fn add_components(&mut self, components: &[f64]) {
+        self.components.extend_from_slice(components);
+    }
+
+    /// The components of F at a point.
+    pub(super) fn components(&self, i: usize) -> &[f64] {
+        let count = self.component_count();
+        &self.components[i * count..(i + 1) * count]
+    }
+
+    /// Number of components of F; 0 where F itself is all that is known.
+    pub(super) fn component_count(&self) -> usize {
+        self.components.len() / self.len().max(1)
+    }
+
     pub(super) fn axes(&self) -> usize {
         self.axes
     }
 
     /// All that has to be saved, for [`Record::restored`].
-    pub(super) fn saved(&self) -> (usize, Vec<f64>, Vec<f64>, [Vec<usize>; 2]) {
+    pub(super) fn saved(&self) -> (usize, [Vec<f64>; 3], [Vec<usize>; 2]) {
+        let numbers = [self.units.clone(), self.values.clone(), self.components.clone()];
         let lists = [self.hits.clone(), self.duplicates.clone()];
-        (self.axes, self.units.clone(), self.values.clone(), lists)
+        (self.axes, numbers, lists)
     }
 
     /// `None` if the lists do not fit each other.
     pub(super) fn restored(
         axes: usize,
-        units: Vec<f64>,
-        values: Vec<f64>,
+        [units, values, components]: [Vec<f64>; 3],
         [hits, duplicates]: [Vec<usize>; 2],
     ) -> Option<Self> {
         let fits = |list: &[usize]| {
             list.is_sorted_by(|a, b| a < b) && list.last().is_none_or(|&last| last < values.len())
         };
-        if units.len() != axes * values.len() || !fits(&hits) || !fits(&duplicates) {
+        let whole = components
+            .len()
+            .checked_rem(values.len())
+            .unwrap_or(components.len());
+        if units.len() != axes * values.len() || whole != 0 || !fits(&hits) || !fits(&duplicates) {
             return None;
         }
         let mut record = Self {
             axes,
             units,
             values,
+            components,
             hits,
             duplicates,
             seen: HashSet::default(),

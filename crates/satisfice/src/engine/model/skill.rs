@@ -32,6 +32,15 @@ impl Skill {
         self.weight = keep * self.weight + 1.0;
     }
 
+    /// Counts a point whose components were predicted with this share of their variance as error. Their values where hits are sought are
+    /// near 0, and their mean there says nothing.
+    pub(super) fn count_share(&mut self, error: f64) {
+        let keep = 1.0 - 1.0 / MEMORY;
+        self.errors = keep * self.errors + error.min(1.0);
+        self.spread = keep * self.spread + 1.0;
+        self.predictions += 1;
+    }
+
     /// Whether the model predicts better than the mean does; `None` before enough predictions tell.
     pub(super) fn is_useful(&self) -> Option<bool> {
         (self.predictions >= ENOUGH).then_some(self.errors < (1.0 - USEFUL) * self.spread)
@@ -75,6 +84,17 @@ mod tests {
             worse.count(value(i), 0.05);
         }
         assert_eq!(worse.is_useful(), Some(true));
+    }
+
+    #[test]
+    fn components_are_predicted_if_errors_are_small_beside_their_variance() {
+        let (mut good, mut bad) = (Skill::default(), Skill::default());
+        for i in 0..100 {
+            assert_eq!(good.is_useful(), (i >= ENOUGH).then_some(true), "{i}");
+            good.count_share(0.5);
+            bad.count_share(if i % 2 == 0 { 0.7 } else { 50.0 });
+        }
+        assert_eq!(bad.is_useful(), Some(false));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
-use super::local::{Given, Model};
+use super::local::{Given, Model, outputs};
 use super::pool::Pool;
 use super::process::Process;
 use super::record::{PointKind, Record};
@@ -28,6 +28,8 @@ engine_settings! {
     ///   that is proposed and not told yet; such points count as told with `F = delta` (constant liar: Ginsbourger, Le Riche,
     ///   Carraro 2010, doi 10.1007/978-3-642-10701-6_6).
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
+    /// - Where the problem tells the [components](crate::capability::Components) of F, each is modelled, with length scales in common, and the score
+    ///   is the probability that all are within their limits. Damped Gauss-Newton steps lead from candidates to roots of the models.
     /// - Points that turn out to be the same as a hit only once they are evaluated are no part of the model; from them the
     ///   engine learns how far apart distinct hits are.
     /// - Logarithmic axes are seen by their logarithm, periodic ones as circles, permutations by the ranks of their keys. Integers are rounded
@@ -171,7 +173,11 @@ impl<S: Real> ModelledSearch<S> {
         model.refresh(&mut given, rng);
         let known = model.process.len();
         for point in &self.pending {
-            model.process.push(point, 0.0);
+            if model.target.units.is_empty() {
+                model.process.push(point, &[0.0]);
+            } else {
+                model.process.believe(point);
+            }
         }
         let chosen = model.choose(&mut given, &self.pending, rng);
         if !self.pending.is_empty() {
@@ -255,6 +261,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
         let mut x = Vec::new();
+        let mut components = vec![S::nan(); context.component_count()];
         for (point, outcome) in batch.points().zip(outcomes) {
             self.units.of_position(context.space(), point, &mut x);
             if let Some(place) = self.pending.iter().position(|pending| *pending == x) {
@@ -266,7 +273,12 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
                 Outcome::Known(f) => self.record.add(&x, f.f64(), PointKind::Duplicate),
                 Outcome::Deleted => self.record.add(&x, f64::NAN, PointKind::Duplicate),
                 Outcome::NonFinite => self.record.add(&x, f64::NAN, PointKind::Miss),
-                Outcome::NotEvaluated => {}
+                Outcome::NotEvaluated => continue,
+            }
+            if !components.is_empty() {
+                context.components(point, &mut components);
+                let all: Vec<f64> = components.iter().map(|x| x.f64()).collect();
+                self.record.add_components(&all);
             }
         }
     }
@@ -312,17 +324,16 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
 
 impl Record {
     fn save(&self, state: &mut State) {
-        let (axes, units, values, [hits, duplicates]) = self.saved();
+        let (axes, numbers, lists) = self.saved();
         Part::save(&axes, state);
-        Part::save(&units, state);
-        Part::save(&values, state);
-        Part::save(&hits, state);
-        Part::save(&duplicates, state);
+        numbers.iter().for_each(|numbers| Part::save(numbers, state));
+        lists.iter().for_each(|list| Part::save(list, state));
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        let (axes, units, values) = (from.read()?, from.read()?, from.read()?);
-        *self = Self::restored(axes, units, values, [from.read()?, from.read()?])
+        let axes = from.read()?;
+        let numbers = [from.read()?, from.read()?, from.read()?];
+        *self = Self::restored(axes, numbers, [from.read()?, from.read()?])
             .ok_or_else(|| Error::State("its points do not fit".to_owned()))?;
         Ok(())
     }
@@ -334,6 +345,7 @@ impl Model {
         Part::save(&self.process.scales.logs, state);
         Part::save(&self.target.delta, state);
         Part::save(&self.target.clip, state);
+        Part::save(&self.target.units, state);
         Part::save(&self.region.known, state);
         Part::save(&self.region.lower, state);
         Part::save(&self.region.upper, state);
@@ -357,6 +369,7 @@ impl Model {
         let target = Target {
             delta: from.read()?,
             clip: from.read()?,
+            units: from.read()?,
         };
         let region = TrustRegion {
             known: from.read()?,
@@ -382,16 +395,17 @@ impl Model {
             && prefix > 0
             && prefix <= region.known.len()
             && taken <= record.len()
+            && target.units.len() == record.component_count()
             && region.known.iter().all(|&i| i < record.len());
-        let (true, Some(pool)) = (fits, pool) else {
+        let (true, Some(mut pool)) = (fits, pool) else {
             return Err(Error::State("its model does not fit".to_owned()));
         };
-        let value = |&i: &usize| target.of(record.values[i]);
+        pool.limits = target.limits();
         let inputs: Vec<&[f64]> = region.known[..prefix].iter().map(|&i| record.point(i)).collect();
-        let values: Vec<f64> = region.known[..prefix].iter().map(value).collect();
+        let values = outputs(record, &target, &region.known[..prefix]);
         let mut process = Process::new(scales, &inputs, &values);
-        for i in &region.known[prefix..] {
-            process.push(record.point(*i), value(i));
+        for &i in &region.known[prefix..] {
+            process.push(record.point(i), &target.of_point(record, i));
         }
         Ok(Self {
             process,

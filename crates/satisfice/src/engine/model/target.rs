@@ -1,14 +1,26 @@
-//! What the model learns in place of F.
+//! What the model learns in place of F, or of its components.
+
+use super::record::Record;
 
 /// Share of the misses whose excess over delta is not clipped.
 const UNCLIPPED: f64 = 0.8;
 
+/// Share of the magnitudes of a component that are below the unit in which it is learned.
+const IN_UNIT: f64 = 0.8;
+/// Largest value that is learned of a component.
+const FARTHEST: f64 = 4.0;
+
 /// `F - delta`, clipped on both sides at a quantile of the misses: how bad a bad point is does not matter, and a few huge
 /// values would flatten the rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// Where the components of F are known, their inverse hyperbolic sines in units of a quantile of their magnitudes: these keep the sign
+/// and the slope at 0, and huge values become bearable.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Target {
     pub(super) delta: f64,
     pub(super) clip: f64,
+    /// The units of the components; none where F itself is learned.
+    pub(super) units: Vec<f64>,
 }
 
 impl Target {
@@ -29,7 +41,47 @@ impl Target {
         Self {
             delta,
             clip: clip.or(last.filter(|&last| last > 0.0)).unwrap_or(1.0),
+            units: Vec::new(),
         }
+    }
+
+    /// The same with units for the components at these points, if the record has them. No unit is below a component's limit.
+    pub(super) fn with_components(mut self, record: &Record, known: &[usize]) -> Self {
+        let unit = |k: usize| {
+            let magnitudes = known.iter().map(|&i| record.components(i)[k].abs());
+            let mut all: Vec<f64> = magnitudes.filter(|x| x.is_finite()).collect();
+            all.sort_unstable_by(f64::total_cmp);
+            #[expect(
+                clippy::cast_precision_loss,
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "an index"
+            )]
+            let index = (all.len() as f64 * IN_UNIT) as usize;
+            all.get(index).map_or(1.0, |&unit| unit.max(1.0))
+        };
+        self.units = (0..record.component_count()).map(unit).collect();
+        self
+    }
+
+    /// The values to learn of point `i`.
+    pub(super) fn of_point(&self, record: &Record, i: usize) -> Vec<f64> {
+        if self.units.is_empty() {
+            return vec![self.of(record.values[i])];
+        }
+        let of = |(x, unit): (&f64, &f64)| {
+            if x.is_nan() {
+                FARTHEST
+            } else {
+                (x / unit).asinh().clamp(-FARTHEST, FARTHEST)
+            }
+        };
+        record.components(i).iter().zip(&self.units).map(of).collect()
+    }
+
+    /// The limits of the components' values at a hit.
+    pub(super) fn limits(&self) -> Vec<f64> {
+        self.units.iter().map(|unit| (1.0 / unit).asinh()).collect()
     }
 
     /// The value to learn, from -1 to 1: negative for a hit. A missing value counts as bad.
@@ -44,6 +96,7 @@ impl Target {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::model::record::PointKind;
 
     #[test]
     fn high_values_are_clipped_and_missing_ones_count_as_high() {
@@ -55,6 +108,26 @@ mod tests {
         assert_eq!(target.of(f64::NAN), 1.0);
         assert_eq!(target.of(1e9), 1.0);
         assert_eq!(target.of(0.0), -0.2);
+    }
+
+    #[test]
+    fn components_are_learned_with_their_signs_in_units_of_their_own() {
+        let mut record = Record::default();
+        record.clear(1);
+        for i in 0..10_u32 {
+            let x = f64::from(i);
+            record.add(&[x / 10.0], x, PointKind::Miss);
+            record.add_components(&[100.0 * (x - 5.0), x / 100.0]);
+        }
+        record.add(&[0.95], f64::NAN, PointKind::Miss);
+        record.add_components(&[f64::NAN, f64::NEG_INFINITY]);
+        let target = Target::new(1.0, &record.values).with_components(&record, &(0..11).collect::<Vec<_>>());
+        // The ninth of ten magnitudes; and never less than the limit.
+        assert_eq!(target.units, [400.0, 1.0]);
+        assert_eq!(target.of_point(&record, 5), [0.0, 0.05_f64.asinh()]);
+        assert_eq!(target.of_point(&record, 0), [-(1.25_f64.asinh()), 0.0]);
+        assert_eq!(target.of_point(&record, 10), [FARTHEST, -FARTHEST]);
+        assert_eq!(target.limits(), [0.0025_f64.asinh(), 1.0_f64.asinh()]);
     }
 
     #[test]

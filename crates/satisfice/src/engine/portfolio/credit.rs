@@ -65,11 +65,12 @@ impl Trial {
         }
     }
 
-    /// For a search with a model of F and `barren` sources without a hit: a source waits until its share amounts to an evaluation.
-    pub(super) fn beside_model(barren: usize) -> Self {
+    /// For a search with a model of F and `barren` sources without a hit: a source waits until its share amounts to an evaluation. The share
+    /// is in proportion to what the others could gain at most: `missed` of the evaluations.
+    pub(super) fn beside_model(barren: usize, missed: f64) -> Self {
         Self {
             start: -1.0,
-            share: SHARE_BESIDE_MODEL / barren.max(1) as f64,
+            share: missed * SHARE_BESIDE_MODEL / barren.max(1) as f64,
             always: true,
             until_known: 0.0,
         }
@@ -105,6 +106,11 @@ impl Credit {
     pub(super) fn is_within(&self, all: &Self, trial: Trial) -> bool {
         let most = trial.start + trial.share * all.total_cost;
         self.total_hits > 0 || self.total_cost <= most
+    }
+
+    /// The share of recent evaluations that were no hits.
+    pub(super) fn missed(&self) -> f64 {
+        1.0 - self.hits / self.evaluations.max(1.0)
     }
 
     /// Whether the source has no hit.
@@ -281,9 +287,13 @@ mod tests {
         assert!(evaluations(1).is_within(&evaluations(10), Trial::new(Some(50), 10)));
         assert!(!evaluations(2).is_within(&evaluations(10), Trial::new(Some(50), 10)));
         // One of six beside a model: the first evaluation after a hundred, even where nothing hits.
-        let beside = Trial::beside_model(6);
+        let beside = Trial::beside_model(6, 1.0);
         assert!(!evaluations(0).is_worth_trying(&evaluations(99), beside));
         assert!(evaluations(0).is_worth_trying(&evaluations(101), beside));
         assert!(!evaluations(1).is_worth_trying(&evaluations(101), beside));
+        // Where nine of ten hit, after a thousand.
+        let beside = Trial::beside_model(6, 0.1);
+        assert!(!evaluations(0).is_worth_trying(&evaluations(999), beside));
+        assert!(evaluations(0).is_worth_trying(&evaluations(1001), beside));
     }
 }

@@ -83,6 +83,8 @@ pub(super) struct Guests<S> {
     sizes: Sizes,
     /// Whether all axes are continuous, and F may be smooth along them.
     continuous: bool,
+    /// Whether the problem tells the components of F, of which the model knows more than descents do.
+    components: bool,
     /// A buffer: what an engine has proposed, or is to be told.
     part: Batch<S>,
     outcomes: Vec<Outcome<S>>,
@@ -158,6 +160,7 @@ impl<S: Real> Guests<S> {
             guests: Vec::new(),
             sizes: Sizes::new(1, None),
             continuous: false,
+            components: false,
             part: Batch::new(1),
             outcomes: Vec::new(),
         }
@@ -172,6 +175,7 @@ impl<S: Real> Guests<S> {
             .iter()
             .all(|axis| axis.kind() == AxisKind::Continuous);
         self.continuous = all && is_smooth(context);
+        self.components = context.component_count() > 0;
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
         self.guests.clear();
@@ -274,6 +278,11 @@ impl<S: Real> Guests<S> {
         Some([find(GuestKind::Model)?, find(GuestKind::Quadratic)?])
     }
 
+    /// Whether the model knows the components of F.
+    pub(super) fn has_components(&self) -> bool {
+        self.components
+    }
+
     /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
     pub(super) fn niching(&self) -> Option<usize> {
         let mut guests = self.guests.iter();
@@ -311,7 +320,7 @@ impl<S: Real> Guests<S> {
         modelled: bool,
         steps: bool,
     ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
-        let descends_first = modelled && self.continuous && !steps;
+        let descends_first = modelled && self.continuous && !self.components && !steps;
         let ready = self.guests.iter().enumerate();
         ready.filter_map(move |(index, guest)| {
             if !guest.open || !guest.own.is_empty() {
@@ -429,7 +438,7 @@ impl<S: Real> Guests<S> {
     }
 
     pub(super) fn save(&self, state: &mut State) {
-        (self.sizes, self.continuous, self.guests.len()).save(state);
+        (self.sizes, self.continuous, self.components, self.guests.len()).save(state);
         for guest in &self.guests {
             (guest.kind, guest.arm, guest.open).save(state);
             (guest.own.start, guest.own.end).save(state);
@@ -439,14 +448,14 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn restore(&mut self, dimension: usize, from: &mut Reader<'_>) -> Result<(), Error> {
         self.part = Batch::new(dimension);
-        let (sizes, continuous, count): (Sizes, bool, usize) = from.read()?;
+        let (sizes, continuous, components, count): (Sizes, bool, bool, usize) = from.read()?;
         if !sizes.are_possible() {
             return Err(Error::State(
                 "its engines are of a size that there is not".to_owned(),
             ));
         }
         self.sizes = sizes;
-        self.continuous = continuous;
+        (self.continuous, self.components) = (continuous, components);
         self.guests.clear();
         for _ in 0..count {
             let (kind, arm, open) = from.read()?;

@@ -8,6 +8,8 @@ use crate::seed::SearchRng;
 
 /// What a source is expected to gain before it was tried, in so many evaluations: descents by quadratic models more than the others.
 const EXPECTED: [f64; 3] = [0.5, 4.0, 1.0];
+/// The same where the model knows the components of F.
+const EXPECTED_BY_COMPONENTS: [f64; 3] = [4.0, 1.0, 0.5];
 const EXPECTED_IN: f64 = 20.0;
 /// The most that one evaluation gains.
 const MOST: f64 = 2.0;
@@ -60,14 +62,19 @@ impl Progress {
         self.least = self.least.min(excess);
     }
 
-    /// Draws the next source, by Thompson sampling on what an evaluation of each gains.
-    pub(super) fn choose(&self, rng: &mut SearchRng) -> Seeker {
+    /// Draws the next source, by Thompson sampling on what an evaluation of each gains. `components`: whether the model knows those of F.
+    pub(super) fn choose(&self, components: bool, rng: &mut SearchRng) -> Seeker {
+        let expected = if components {
+            EXPECTED_BY_COMPONENTS
+        } else {
+            EXPECTED
+        };
         let mut best = (f64::NEG_INFINITY, Seeker::Quadratic);
         for seeker in [Seeker::Model, Seeker::Quadratic, Seeker::Direct] {
             let i = seeker as usize;
             let drawn = draw(
                 rng,
-                self.gains[i] + EXPECTED[i],
+                self.gains[i] + expected[i],
                 self.evaluations[i] + EXPECTED_IN,
             );
             if drawn > best.0 {
@@ -86,7 +93,7 @@ mod tests {
         let mut rng = SearchRng::new(3);
         let mut counts = [0; 3];
         for _ in 0..3000 {
-            counts[progress.choose(&mut rng) as usize] += 1;
+            counts[progress.choose(false, &mut rng) as usize] += 1;
         }
         counts
     }

@@ -49,7 +49,7 @@ impl<S: Real> Sources<S> {
             && !steps
             && let Some([model, quadratic]) = seekers
         {
-            return match self.progress.choose(rng) {
+            return match self.progress.choose(self.guests.has_components(), rng) {
                 Seeker::Model => (Source::Guest, model),
                 Seeker::Quadratic => (Source::Guest, quadratic),
                 Seeker::Direct => (Source::Descent, 0),
@@ -69,7 +69,7 @@ impl<S: Real> Sources<S> {
             }
         };
         let trial = if modelled {
-            Trial::beside_model(self.barren())
+            Trial::beside_model(self.barren(), self.whole.missed())
         } else {
             Trial::new(self.planned, self.barren()).until_known(&self.whole)
         };
