@@ -77,8 +77,8 @@ fn after_an_interrupt_with_a_model_of_the_components() {
         let entry = engine::find(name).unwrap();
         let never = Cancel::new();
         let expected = search(entry, 0.0).run(&meetings(&never, 0), &budget).unwrap();
-        // It searches by them: uniform points meet in one of some hundred.
-        assert!(expected.hit_count() >= 8, "{name}: {}", expected.hit_count());
+        // It searches by them: of uniform points fewer than one in a hundred hits.
+        assert!(expected.hit_count() >= 3, "{name}: {}", expected.hit_count());
         for fatal in [3, 17, 30, 44, 59] {
             let cancel = Cancel::new();
             let problem = meetings(&cancel, fatal);

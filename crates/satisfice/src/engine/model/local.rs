@@ -249,7 +249,7 @@ impl Model {
             self.pool.coordinates(place, &mut x);
             (score, x)
         };
-        (0..STARTS).map(start).collect()
+        (0..self.effort(STARTS)).map(start).collect()
     }
 
     /// Steps from a point towards a root of the modelled components, as long as they lead to better candidates; the best allowed one is
@@ -261,7 +261,7 @@ impl Model {
         (mut last, mut at): (Score, Vec<f64>),
         best: &mut (Score, Vec<f64>),
     ) {
-        for _ in 0..NEWTON {
+        for _ in 0..self.effort(NEWTON) {
             let block = self
                 .pool
                 .replace(steps(&self.process, given.units, &self.pool.limits, &at));
