@@ -263,6 +263,86 @@ fn a_step_without_impact_is_free() {
 }
 
 #[test]
+fn a_step_that_moves_on_answers_like_one_made_anew() {
+    let scenes: Vec<Scene> = (0..4).map(Scene::shaken).collect();
+    let mut kept = scenes[0].step();
+    for (round, scene) in scenes.iter().cycle().take(8).enumerate() {
+        let mut anew = Step::new();
+        for (body, (mesh, to, deforms)) in scene.bodies.iter().enumerate() {
+            // some motions start where the last one ended, some far away
+            let mut from = mesh.vertices().to_vec();
+            let mut to = to.clone();
+            if round % 3 == 2 {
+                let last = scenes[round % scenes.len()].bodies[body].1.clone();
+                (from, to) = (last, from);
+            }
+            if round == 3 {
+                for p in from.iter_mut().chain(&mut to) {
+                    *p = p.map(|x| x * 1e140 - 1e141);
+                }
+            }
+            if round == 5 {
+                from.reverse();
+            }
+            kept.set_motion(body, &from, &to).unwrap();
+            let mesh = mesh.with_vertices(from).unwrap();
+            match deforms {
+                true => anew.add_deforming(&mesh, &to).unwrap(),
+                false => anew.add_rigid(&mesh, &to).unwrap(),
+            };
+        }
+        let delta = Separation::new(if round % 2 == 0 { 0.0 } else { 0.03 }).unwrap();
+        for kind in KINDS {
+            let [p, q] = [&kept, &anew].map(|step| step.hits(kind, delta).unwrap());
+            let pairs = |pairs: &[MovingContact]| pairs.iter().copied().collect::<BTreeSet<_>>();
+            assert_eq!(pairs(&p.pairs), pairs(&q.pairs), "round {round}, {kind}");
+            assert_eq!((p.undecided, q.undecided), (0, 0));
+        }
+        let [p, q] = [&kept, &anew].map(|step| step.earliest(delta, 1e-6).unwrap());
+        assert!(p.is_proved && q.is_proved);
+        assert!(
+            p.time[0] <= q.time[1] && q.time[0] <= p.time[1],
+            "round {round}: {p:?} {q:?}"
+        );
+    }
+}
+
+#[test]
+fn a_motion_that_does_not_fit_changes_nothing() {
+    let scene = Scene::shaken(5);
+    let mut step = scene.step();
+    let before = step.earliest(Separation::TOUCHING, 1e-6).unwrap();
+    let (mesh, to, _) = &scene.bodies[1];
+    let from = mesh.vertices();
+    let mut infinite = to.clone();
+    infinite[3][1] = f64::INFINITY;
+    assert!(matches!(
+        step.set_motion(2, from, to),
+        Err(Error::Parameter { .. })
+    ));
+    assert!(matches!(
+        step.set_motion(1, &from[1..], to),
+        Err(Error::Parameter { .. })
+    ));
+    assert!(matches!(
+        step.set_motion(1, from, &to[1..]),
+        Err(Error::Parameter { .. })
+    ));
+    for [from, to] in [[from, &infinite[..]], [&infinite[..], to]] {
+        let error = step.set_motion(1, from, to);
+        assert!(matches!(
+            error,
+            Err(Error::NonFiniteVertex {
+                vertex: 3,
+                axis: 'y',
+                ..
+            })
+        ));
+    }
+    assert_eq!(step.earliest(Separation::TOUCHING, 1e-6).unwrap(), before);
+}
+
+#[test]
 fn frames_that_do_not_fit_are_refused() {
     let sheet = generate::cloth(1.0, 1.0, 5, 5).unwrap();
     let mut step = Step::new();

@@ -410,6 +410,28 @@ def test_impacts_of_a_falling_sheet():
     assert proved and lower <= first + 1e-9 and upper_bound >= first - 1e-9 and pair[0] in ("vertex-triangle", "edge-edge")
 
 
+def test_a_step_that_moves_on():
+    low, high = A, (B[0] + [0, 0, 1.0], B[1])
+    kept = collision.Step()
+    kept.add(*low[:1], low[0], low[1])
+    kept.add(high[0], high[0], high[1])
+    assert kept.free_step() == 1.0
+    for start, end in [(1.0, 0.5), (0.5, -1.0), (-1.0, 1.0)]:
+        ends = [B[0] + [0, 0, z] for z in (start, end)]
+        kept.set_motion(1, *ends)
+        anew = collision.Step()
+        anew.add(*low[:1], low[0], low[1])
+        anew.add(*ends, high[1])
+        assert kept.free_step() == pytest.approx(anew.free_step(), abs=2e-6)
+        columns = [(found.a, found.b, found.time, found.point_a) for found in (kept.impacts(), anew.impacts())]
+        for one, other in zip(*columns):
+            np.testing.assert_array_equal(one, other)
+    with pytest.raises(ValueError, match="body"):
+        kept.set_motion(2, *ends)
+    with pytest.raises(ValueError, match="vertices at the end"):
+        kept.set_motion(1, ends[0], ends[1][1:])
+
+
 def test_a_sheet_that_folds_onto_itself():
     vertices, faces = sheet(7)
     folded = vertices.copy()

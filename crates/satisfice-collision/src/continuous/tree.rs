@@ -49,7 +49,12 @@ pub(super) struct MovingTree {
     pub(super) levels: Vec<Vec<MovingGroup>>,
     /// For every group the rigid body that all its features belong to, or [`MIXED`]; empty if there is none.
     rigid: Vec<Vec<u32>>,
+    /// How large the boxes around groups were in this order when it was new.
+    extent_when_new: f64,
 }
+
+/// A kept order is given up once the boxes around its groups have grown by this factor.
+const LOOSE: f64 = 1.5;
 
 /// No rigid body: features of several bodies, or of one that collides with itself.
 pub(super) const MIXED: u32 = u32::MAX;
@@ -210,6 +215,20 @@ impl MovingGroup {
         }
     }
 
+    /// The edges of all boxes.
+    fn extent(&self) -> f64 {
+        let mut sum = [0.0; LANES];
+        for end in 0..2 {
+            for k in 0..3 {
+                for (lane, sum) in sum.iter_mut().enumerate() {
+                    // an empty box has less than none
+                    *sum += greater(self.max[end][k][lane] - self.min[end][k][lane], 0.0);
+                }
+            }
+        }
+        sum.iter().map(|&sum: &f32| f64::from(sum)).sum()
+    }
+
     fn union(&self) -> MovingBox {
         let least = |lanes: &Eight| fold(lanes, lesser);
         let most = |lanes: &Eight| fold(lanes, greater);
@@ -242,22 +261,18 @@ impl MovingTree {
             }
         }
         let number = count.div_ceil(LANES).max(1);
-        let mut lowest = vec![MovingGroup::EMPTY; number];
         let mut in_lanes = vec![[u32::MAX; LANES]; number * N];
-        let lanes = lowest.iter_mut().zip(in_lanes.chunks_exact_mut(N));
-        for ((group, in_lanes), features) in lanes.zip(order.chunks(LANES)) {
+        for (in_lanes, features) in in_lanes.chunks_exact_mut(N).zip(order.chunks(LANES)) {
             for (lane, &feature) in features.iter().enumerate() {
-                let corners = corners(feature);
-                group.set_around(lane, &frame.extent(corners));
-                for (lanes, corner) in in_lanes.iter_mut().zip(corners) {
+                for (lanes, corner) in in_lanes.iter_mut().zip(corners(feature)) {
                     lanes[lane] = corner;
                 }
             }
         }
-        let mut levels = vec![lowest];
+        let mut levels = vec![vec![MovingGroup::EMPTY; number]];
         while levels[levels.len() - 1].len() > 1 {
-            let next = groups(levels[levels.len() - 1].iter().map(MovingGroup::union));
-            levels.push(next);
+            let groups = levels[levels.len() - 1].len().div_ceil(LANES);
+            levels.push(vec![MovingGroup::EMPTY; groups]);
         }
         let mut rigid: Vec<Vec<u32>> = Vec::new();
         if has_rigid {
@@ -266,13 +281,50 @@ impl MovingTree {
                 rigid.push(common(&rigid[level - 1]));
             }
         }
-        Self {
+        let mut tree = Self {
             order,
             corners: in_lanes,
             corners_per_feature: N,
             levels,
             rigid,
+            extent_when_new: 0.0,
+        };
+        tree.fit::<N>(frame);
+        tree.extent_when_new = tree.extent(frame);
+        tree
+    }
+
+    /// The tree over the same features in another motion, in the order that it has; `None` if that order has become loose.
+    pub(super) fn refitted<const N: usize>(mut self, frame: &BoxFrame) -> Option<Self> {
+        self.fit::<N>(frame);
+        let is_loose = self.extent(frame) > LOOSE * self.extent_when_new;
+        (!is_loose).then_some(self)
+    }
+
+    /// Sets all boxes.
+    fn fit<const N: usize>(&mut self, frame: &BoxFrame) {
+        let lanes = self.levels[0].iter_mut().zip(self.corners.chunks_exact(N));
+        for (number, (group, in_lanes)) in lanes.enumerate() {
+            let features = self.order.len().saturating_sub(number * LANES).min(LANES);
+            for lane in 0..features {
+                let corners = std::array::from_fn::<_, N, _>(|k| in_lanes[k][lane]);
+                group.set_around(lane, &frame.extent(corners));
+            }
         }
+        for level in 1..self.levels.len() {
+            let (below, above) = self.levels.split_at_mut(level);
+            for (group, children) in above[0].iter_mut().zip(below[level - 1].chunks(LANES)) {
+                for (lane, child) in children.iter().enumerate() {
+                    group.set(lane, &child.union());
+                }
+            }
+        }
+    }
+
+    /// The edges of all boxes around groups, which is how often a search meets one, up to a factor.
+    fn extent(&self, frame: &BoxFrame) -> f64 {
+        let groups = self.levels[1..].iter().flatten();
+        groups.map(MovingGroup::extent).sum::<f64>() / frame.scale
     }
 
     /// The vertices of the features of a group, a lane each.
@@ -374,18 +426,41 @@ fn common(bodies: &[u32]) -> Vec<u32> {
     bodies.chunks(LANES).map(of_eight).collect()
 }
 
-fn groups(boxes: impl ExactSizeIterator<Item = MovingBox>) -> Vec<MovingGroup> {
-    let mut groups = Vec::with_capacity(boxes.len().div_ceil(LANES));
-    for (number, of) in boxes.enumerate() {
-        if number % LANES == 0 {
-            groups.push(MovingGroup::EMPTY);
-        }
-        if let Some(group) = groups.last_mut() {
-            group.set(number % LANES, &of);
-        }
+#[cfg(test)]
+mod tests {
+    use super::super::step::{FeatureList, Step};
+    use crate::distance::Point;
+    use crate::generate;
+
+    #[test]
+    fn an_order_is_kept_while_it_fits() {
+        let cloth = generate::cloth(1.0, 1.0, 20, 20).expect("a cloth");
+        let resting = cloth.vertices();
+        let mut step = Step::new();
+        step.add_deforming(&cloth, resting).expect("one topology");
+        let lists = [FeatureList::Vertices, FeatureList::Edges, FeatureList::Triangles];
+        let orders = |step: &Step| lists.map(|list| step.tree(list).order.clone());
+        let first = orders(&step);
+        // rolled up, far away and larger than before, but each neighbourhood as it was
+        let rolled: Vec<Point> = resting
+            .iter()
+            .map(|&[x, y, _]| [100.0 + 1.2 * y, 0.2 * (6.0 * x).sin(), 0.2 * (6.0 * x).cos()])
+            .collect();
+        step.set_motion(0, resting, &rolled).expect("one topology");
+        assert_eq!(orders(&step), first);
+        // a motion that nothing asks about loses nothing
+        step.set_motion(0, &rolled, &rolled).expect("one topology");
+        step.set_motion(0, &rolled, resting).expect("one topology");
+        assert_eq!(orders(&step), first);
+        // neighbours are torn apart
+        let torn: Vec<Point> = (0..resting.len())
+            .map(|v| resting[v * 67 % resting.len()])
+            .collect();
+        step.set_motion(0, &torn, &torn).expect("one topology");
+        let mut anew = Step::new();
+        let cloth = cloth.with_vertices(torn.clone()).expect("finite");
+        anew.add_deforming(&cloth, &torn).expect("one topology");
+        assert_eq!(orders(&step), orders(&anew));
+        assert_ne!(orders(&step), first);
     }
-    if groups.is_empty() {
-        groups.push(MovingGroup::EMPTY);
-    }
-    groups
 }

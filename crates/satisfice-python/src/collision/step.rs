@@ -17,7 +17,7 @@ use crate::refused;
 #[derive(Default)]
 struct Bodies {
     step: continuous::Step,
-    meshes: Vec<(SharedMesh, Vec<[f64; 3]>)>,
+    meshes: Vec<(SharedMesh, [Vec<[f64; 3]>; 2])>,
 }
 
 /// Meshes at both ends of a step.
@@ -34,8 +34,8 @@ type Columns = (
 
 impl Bodies {
     fn corner(&self, body: u32, vertex: u32) -> ([f64; 3], [f64; 3]) {
-        let (mesh, to) = &self.meshes[body as usize];
-        (mesh.mesh().vertex(vertex), to[vertex as usize])
+        let [from, to] = &self.meshes[body as usize].1;
+        (from[vertex as usize], to[vertex as usize])
     }
 
     fn vertex(&self, of: FeatureOf) -> Moving<[f64; 3]> {
@@ -105,8 +105,26 @@ impl Step {
             } else {
                 bodies.step.add_rigid(mesh.mesh(), &to)?
             };
-            bodies.meshes.push((mesh, to));
+            let from = mesh.mesh().vertices().to_vec();
+            bodies.meshes.push((mesh, [from, to]));
             Ok(number)
+        })
+        .map_err(|error: Error| refused(error))
+    }
+
+    fn set_motion(
+        &self,
+        py: Python<'_>,
+        body: usize,
+        start: PyReadonlyArray2<'_, f64>,
+        end: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let ends = [points(&start)?, points(&end)?];
+        py.detach(|| {
+            let mut bodies = self.lock();
+            bodies.step.set_motion(body, &ends[0], &ends[1])?;
+            bodies.meshes[body].1 = ends;
+            Ok(())
         })
         .map_err(|error: Error| refused(error))
     }

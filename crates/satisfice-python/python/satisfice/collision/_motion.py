@@ -81,6 +81,19 @@ class Step:
         """
         return self._step.add(mesh(start, faces), vertices_of(end), self_collision)
 
+    def set_motion(self, body: int, start: Any, end: Any) -> None:
+        """Give a body another motion: the next step of a simulation. Its trees are kept and fitted to it, which takes a fraction of
+        the time of a step made anew; answers are the same.
+
+        Parameters
+        ----------
+        body : int
+            Its number.
+        start, end : array, shape (n, 3)
+            Its vertices at time 0 and at time 1.
+        """
+        self._step.set_motion(body, vertices_of(start), vertices_of(end))
+
     def impacts(
         self,
         *,
