@@ -157,6 +157,7 @@ pub fn closest_pairs(
         threshold: Threshold::LARGEST,
         keep,
         moved: [Dirty::All; 2],
+        shares_mesh: false,
     };
     query.check()?;
     let mut closest = Closest::new(k, None);

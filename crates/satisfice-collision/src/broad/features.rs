@@ -1,12 +1,13 @@
 //! The vertices, edges or triangles of a body in a box tree that can be kept and refitted.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::boxes::{Box32, BoxTree};
 use super::clip::BlockBounds;
 use super::directions::{self, Directions};
 use super::frame::LocalFrame;
 use super::separating_axis::Triangles;
+use super::traverse::LaneCorners;
 use crate::mesh::{Features, Point, Shape, Topology, Triangle};
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, FeatureKind, Mesh};
@@ -35,6 +36,8 @@ pub struct FeatureTree {
     pub(crate) tree: BoxTree,
     /// The sum of sides when the tree was built, in the unit of the coordinates.
     built_sum_of_sides: f64,
+    /// The vertices of the features in the order of the tree, if anybody has asked.
+    corners_in_order: OnceLock<Vec<[u32; 8]>>,
     threads: usize,
 }
 
@@ -122,6 +125,7 @@ impl FeatureTree {
             moved: vec![true; mesh.vertices().len()],
             tree: BoxTree::default(),
             built_sum_of_sides: 0.0,
+            corners_in_order: OnceLock::new(),
             threads,
         };
         tree.measure(mesh.vertices());
@@ -268,7 +272,7 @@ impl FeatureTree {
     }
 
     #[inline]
-    fn features(&self) -> Features<'_> {
+    pub(crate) fn features(&self) -> Features<'_> {
         self.topology.features(self.kind, self.vertices.len())
     }
 
@@ -291,6 +295,27 @@ impl FeatureTree {
     #[inline]
     pub(crate) fn corners(&self, feature: u32) -> [u32; 3] {
         self.features().corners(feature)
+    }
+
+    /// The vertices of the features in the order of the tree.
+    pub(crate) fn corners_in_order(&self) -> LaneCorners<'_> {
+        let each = match self.kind {
+            FeatureKind::Vertex => 1,
+            FeatureKind::Edge => 2,
+            FeatureKind::Triangle => 3,
+        };
+        let lanes = self.corners_in_order.get_or_init(|| {
+            let mut lanes = vec![[u32::MAX; 8]; self.len().div_ceil(8) * each];
+            for (group, features) in lanes.chunks_exact_mut(each).zip(self.tree.order.chunks(8)) {
+                for (lane, &feature) in features.iter().enumerate() {
+                    for (corners, vertex) in group.iter_mut().zip(self.corners(feature)) {
+                        corners[lane] = vertex;
+                    }
+                }
+            }
+            lanes
+        });
+        LaneCorners { lanes, each }
     }
 
     /// The triangles of a tree over triangles.

@@ -6,7 +6,8 @@ use super::pair::Pair;
 use super::relative::{Composition, Relative};
 use super::separating_axis::Triangles;
 use super::traverse::{CandidateSink, Descend, TreeWork, Trees, Visit};
-use crate::distance::{self, Decision, EdgeBatch, Threshold, Triangle, TriangleBatch};
+use crate::distance::{self, Decision, EdgeBatch, Point, Threshold, TriangleBatch, VertexBatch};
+use crate::mesh::Features;
 use crate::simd::dispatch;
 use crate::{Error, FeatureKind, Placement, Shape};
 
@@ -24,6 +25,8 @@ pub(crate) struct PairQuery<'a> {
     pub(crate) keep: Keep<'a>,
     /// Report only pairs in which at least one feature moved.
     pub(crate) moved: [Dirty; 2],
+    /// Whether both are features of one mesh, of which those that share a vertex are no pair.
+    pub(crate) shares_mesh: bool,
 }
 
 impl PairQuery<'_> {
@@ -46,7 +49,12 @@ impl PairQuery<'_> {
     }
 
     pub(crate) fn keeps(&self, a: u32, b: u32) -> bool {
-        self.keep.is_none_or(|keep| keep(a, b))
+        self.keep.is_none_or(|keep| keep(a, b)) && !(self.shares_mesh && self.share_a_vertex(a, b))
+    }
+
+    fn share_a_vertex(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.a.0.corners(a), self.b.0.corners(b));
+        a.iter().any(|vertex| b.contains(vertex))
     }
 
     /// Calls `then` with both trees in one frame, the coarser one of the two, and with whether the first tree is that of `b`.
@@ -63,6 +71,7 @@ impl PairQuery<'_> {
                     filter,
                     one_body: true,
                     moved: self.moved,
+                    neighbours: self.shares_mesh.then(|| [a.corners_in_order(); 2]),
                 },
                 false,
             );
@@ -77,6 +86,9 @@ impl PairQuery<'_> {
         };
         let (relative, filter) = &Relative::new(&way, self.threshold.get());
         let moved = [moved_a, moved_b];
+        let neighbours = self
+            .shares_mesh
+            .then(|| [a.corners_in_order(), b.corners_in_order()]);
         then(
             Trees {
                 a: &a.tree,
@@ -85,6 +97,7 @@ impl PairQuery<'_> {
                 filter,
                 one_body: false,
                 moved,
+                neighbours,
             },
             flip,
         )
@@ -168,15 +181,34 @@ impl PairQuery<'_> {
         let ((a, pose_a), (b, pose_b)) = if flip { (self.b, self.a) } else { (self.a, self.b) };
         Composition::new(&a.frame, pose_a, &b.frame, pose_b)
     }
+}
 
-    /// Triangle `i` of `a` and triangle `j` of `b` in the world.
-    #[inline]
-    fn triangles(&self, i: u32, j: u32) -> (Triangle, Triangle) {
-        let ((a, pose_a), (b, pose_b)) = (self.a, self.b);
-        (
-            a.triangle(i).map(|p| pose_a.apply(p)),
-            b.triangle(j).map(|p| pose_b.apply(p)),
-        )
+/// The features of a body and where it is.
+#[derive(Clone, Copy)]
+struct Posed<'a> {
+    features: Features<'a>,
+    vertices: &'a [Point],
+    /// `None` for one that leaves every point where it is.
+    pose: Option<&'a Placement>,
+}
+
+impl<'a> Posed<'a> {
+    fn new((tree, pose): (&'a FeatureTree, &'a Placement)) -> Self {
+        Self {
+            features: tree.features(),
+            vertices: tree.vertices(),
+            pose: Some(pose).filter(|&pose| *pose != Placement::IDENTITY),
+        }
+    }
+
+    /// These corners in the world.
+    #[inline(always)]
+    fn corners<const N: usize>(&self, of: [u32; N]) -> [Point; N] {
+        let mut corners = of.map(|vertex| self.vertices[vertex as usize]);
+        if let Some(pose) = self.pose {
+            corners = corners.map(|point| pose.apply(point));
+        }
+        corners
     }
 }
 
@@ -195,11 +227,13 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
     /// Whether the first tree of the descent is `b`.
     flip: bool,
     found: &'a mut Vec<Pair>,
+    bodies: [Posed<'a>; 2],
     /// The separating-axis test, for pairs of triangles.
     axes: Option<SeparatingAxes<'a>>,
     /// Pairs to be decided as a batch, by kind.
     triangles: TriangleBatch<Pair>,
     edges: EdgeBatch<Pair>,
+    vertices: VertexBatch<Pair>,
     /// Pairs after which the descent pauses.
     enough: usize,
     work: TreeWork,
@@ -215,11 +249,13 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
     ) -> Self {
         Self {
             query,
+            bodies: [Posed::new(query.a), Posed::new(query.b)],
             flip,
             found,
             axes,
             triangles: TriangleBatch::new(query.threshold),
             edges: EdgeBatch::new(query.threshold),
+            vertices: VertexBatch::new(query.threshold),
             enough: usize::MAX,
             work: TreeWork::default(),
         }
@@ -237,6 +273,7 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
         let mut answer = |pair, decision: Decision| found.extend(decision.within.then_some(pair));
         self.triangles.finish(&mut answer);
         self.edges.finish(&mut answer);
+        self.vertices.finish(&mut answer);
         TreeWork { visits, ..self.work }
     }
 }
@@ -250,6 +287,12 @@ impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
     }
 
     #[inline(always)]
+    fn neighbours(&mut self, count: u32) {
+        self.work.candidates += u64::from(count);
+        self.work.neighbours += u64::from(count);
+    }
+
+    #[inline(always)]
     fn candidate(&mut self, first: u32, second: u32, sure: bool) {
         let swap = if self.query.one_body {
             first > second
@@ -258,19 +301,14 @@ impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
         };
         let (a, b) = if swap { (second, first) } else { (first, second) };
         self.work.candidates += 1;
-        if !self.query.keeps(a, b) {
+        if self.query.keep.is_some_and(|keep| !keep(a, b)) {
             return;
         }
-        if let Some(axes) = &self.axes {
-            let (one, two) = (&axes.first, &axes.second);
-            if !one.apart(first, two, second, axes.relative, axes.apart) {
-                self.work.decisions += 1;
-                let (p, q) = self.query.triangles(a, b);
-                let found = &mut *self.found;
-                self.triangles.push(&p, &q, Pair { a, b }, |pair, decision| {
-                    found.extend(decision.within.then_some(pair));
-                });
-            }
+        if let Some(axes) = &self.axes
+            && axes
+                .first
+                .apart(first, &axes.second, second, axes.relative, axes.apart)
+        {
             return;
         }
         let (pair, found) = (Pair { a, b }, &mut *self.found);
@@ -280,9 +318,22 @@ impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
         }
         self.work.decisions += 1;
         let answer = |pair, decision: Decision| found.extend(decision.within.then_some(pair));
-        match self.query.shapes(pair) {
-            [Shape::Edge(p), Shape::Edge(q)] => self.edges.push(&p, &q, pair, answer),
-            [p, q] => found.extend(distance::within(&p, &q, self.query.threshold).then_some(pair)),
+        let [one, two] = &self.bodies;
+        let (a, b) = (a as usize, b as usize);
+        match (one.features, two.features) {
+            (Features::Edges(p), Features::Edges(q)) => {
+                self.edges
+                    .push(&one.corners(p[a]), &two.corners(q[b]), pair, answer);
+            }
+            (Features::Vertices(_), Features::Triangles(q)) => {
+                self.vertices
+                    .push(&one.corners([pair.a]), &two.corners(q[b]), pair, answer);
+            }
+            (Features::Triangles(p), Features::Triangles(q)) => {
+                self.triangles
+                    .push(&one.corners(p[a]), &two.corners(q[b]), pair, answer);
+            }
+            _ => found.extend(self.query.within(pair.a, pair.b).then_some(pair)),
         }
     }
 }

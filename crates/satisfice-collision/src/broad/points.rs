@@ -345,6 +345,7 @@ impl PointGrid {
                 threshold: decide.threshold,
                 keep: None,
                 moved: [Dirty::All; 2],
+                shares_mesh: false,
             };
             let pairs = join.all(&query, watch).iter().map(|pair| {
                 let (a, b) = (own[pair.a as usize], ids[pair.b as usize]);

@@ -38,6 +38,8 @@ pub struct TreeWork {
     pub candidates: u64,
     /// Pairs that the distance itself had to decide.
     pub decisions: u64,
+    /// Candidates that were left out because they share a vertex.
+    pub neighbours: u64,
 }
 
 /// Receives the pairs of items that can be within the threshold.
@@ -46,6 +48,8 @@ pub(crate) trait CandidateSink {
     const POINTS: bool;
     /// Receives a pair of items; `sure` if it is certainly within the threshold.
     fn candidate(&mut self, a: u32, b: u32, sure: bool);
+    /// Receives how many pairs were left out because they share a vertex.
+    fn neighbours(&mut self, count: u32);
     /// Whether enough has been found.
     fn enough(&self) -> bool {
         false
@@ -66,6 +70,22 @@ pub(crate) struct Trees<'a> {
     pub(crate) one_body: bool,
     /// Pairs of which neither item moved are not visited.
     pub(crate) moved: [Dirty; 2],
+    /// The vertices of the items of both, if items that share one are not wanted.
+    pub(crate) neighbours: Option<[LaneCorners<'a>; 2]>,
+}
+
+/// The vertices of the items of a tree in its order, eight side by side: as many arrays a group as an item has vertices.
+#[derive(Clone, Copy)]
+pub(crate) struct LaneCorners<'a> {
+    pub(crate) lanes: &'a [[u32; 8]],
+    pub(crate) each: usize,
+}
+
+impl<'a> LaneCorners<'a> {
+    #[inline(always)]
+    fn group(self, group: u32) -> &'a [[u32; 8]] {
+        &self.lanes[group as usize * self.each..][..self.each]
+    }
 }
 
 impl Trees<'_> {
@@ -133,7 +153,7 @@ impl<C: CandidateSink> Work for Descend<'_, C> {
                     a: at.a,
                     b: at.b,
                 };
-                deliver(self.trees, one, self.visit);
+                deliver(lanes, self.trees, one, self.visit);
                 continue;
             }
             let mut near = boxes_within(lanes, self.trees, at) & self.trees.wanted(at);
@@ -215,7 +235,7 @@ fn leaves<L: Lanes, C: CandidateSink>(
             stack.extend(found[n..count].iter().map(|leaf| Visit::leaf(leaf.a, leaf.b)));
             break;
         }
-        deliver(trees, leaf, visit);
+        deliver(lanes, trees, leaf, visit);
     }
     visits
 }
@@ -268,7 +288,8 @@ fn near_in_leaf<L: Lanes, C: CandidateSink>(lanes: L, trees: Trees<'_>, at: Visi
 
 /// Delivers the near and wanted pairs of a leaf.
 #[inline(always)]
-fn deliver<C: CandidateSink>(
+fn deliver<L: Lanes, C: CandidateSink>(
+    lanes: L,
     trees: Trees<'_>,
     Leaf {
         mut near,
@@ -280,6 +301,13 @@ fn deliver<C: CandidateSink>(
     let Trees { a, b, filter, .. } = trees;
     if near != 0 {
         near &= trees.wanted(Visit::leaf(at_a, at_b));
+    }
+    if let Some([of_a, of_b]) = trees.neighbours
+        && near != 0
+    {
+        let shared = near & sharing(lanes, near, of_a.group(at_a), of_b.group(at_b));
+        visit.neighbours(shared.count_ones());
+        near &= !shared;
     }
     if near == 0 {
         return;
@@ -299,4 +327,20 @@ fn deliver<C: CandidateSink>(
         };
         visit.candidate(ids_a[i], ids_b[j], sure);
     }
+}
+
+/// The pairs of lanes that share a vertex, in the rows in which any are near.
+#[inline(always)]
+fn sharing<L: Lanes>(lanes: L, near: u64, a: &[[u32; 8]], b: &[[u32; 8]]) -> u64 {
+    let mut shared = 0;
+    for i in 0..8 {
+        if near >> (8 * i) & 0xff != 0 {
+            for own in a {
+                for other in b {
+                    shared |= u64::from(lanes.equal_ids(other, own[i])) << (8 * i);
+                }
+            }
+        }
+    }
+    shared
 }

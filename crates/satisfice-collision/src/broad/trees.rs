@@ -86,6 +86,7 @@ impl TreeJoin {
             threshold,
             keep,
             moved: [Dirty::All; 2],
+            shares_mesh: false,
         };
         query.check()?;
         self.all(&query, &Watch::none());
@@ -102,6 +103,7 @@ impl TreeJoin {
             threshold,
             keep,
             moved: [Dirty::All; 2],
+            shares_mesh: false,
         };
         self.all(&query, &Watch::none());
         &self.pairs
@@ -183,6 +185,7 @@ impl TreeJoin {
             work.visits += more.visits;
             work.candidates += more.candidates;
             work.decisions += more.decisions;
+            work.neighbours += more.neighbours;
         };
         let go_on = |task: &mut Task| {
             let mut told = task.found.len();
@@ -230,6 +233,7 @@ impl TreeJoin {
             self.work.visits += work.visits;
             self.work.candidates += work.candidates;
             self.work.decisions += work.decisions;
+            self.work.neighbours += work.neighbours;
         }
         let found = self.tasks.iter().map(|task| task.found.as_slice());
         self.sorter.sort(found, &mut self.pairs);

@@ -306,7 +306,7 @@ impl MovingTree {
         let lanes = self.levels[0].iter_mut().zip(self.corners.chunks_exact(N));
         for (number, (group, in_lanes)) in lanes.enumerate() {
             let features = self.order.len().saturating_sub(number * LANES).min(LANES);
-            for lane in 0..features {
+            for lane in (0..LANES).take(features) {
                 let corners = std::array::from_fn::<_, N, _>(|k| in_lanes[k][lane]);
                 group.set_around(lane, &frame.extent(corners));
             }

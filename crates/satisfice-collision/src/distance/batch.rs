@@ -11,6 +11,7 @@ use super::kernel::{Kernel, KernelLimits, LaneVector, Verdicts};
 use super::precision::Precision;
 use super::triangle_triangle::TriangleTriangle;
 use super::vector::{exponent, ldexp};
+use super::vertex_triangle::{self, VertexTriangle};
 use super::{DecidedBy, Decision, Point, Threshold, Triangle, triangle_triangle};
 use crate::simd::{Floats, Lanes, Work, dispatch};
 
@@ -62,6 +63,9 @@ impl<T: Copy + Default> TriangleBatch<T> {
 /// Pairs of edges in a batch.
 pub(crate) type EdgeBatch<T> = Batch<EdgeEdge, 2, 2, T>;
 
+/// Pairs of a vertex and a triangle in a batch.
+pub(crate) type VertexBatch<T> = Batch<VertexTriangle, 1, 3, T>;
+
 /// A kind of pair that is decided in batches.
 pub(super) trait Batched<const M: usize, const N: usize> {
     /// The filter. Local coordinates: the first point of `a` is 0.
@@ -108,13 +112,46 @@ impl Batched<2, 2> for EdgeEdge {
     }
 }
 
+impl Batched<1, 3> for VertexTriangle {
+    #[inline(always)]
+    fn filter<U: Floats<Scalar: Precision>>(
+        kernel: &Kernel<U>,
+        _: [LaneVector<U>; 1],
+        b: [LaneVector<U>; 3],
+        limits: KernelLimits,
+    ) -> Verdicts {
+        kernel.vertex_and_triangle(b, limits)
+    }
+
+    fn decide([a]: &[Point; 1], b: &[Point; 3], threshold: Threshold) -> Decision {
+        vertex_triangle::decide(a, b, threshold)
+    }
+}
+
+/// Hulls of `K` points, a lane each: `[point][axis][lane]`.
+type HullLanes<const K: usize> = [[[f64; LANES]; 3]; K];
+
+/// The hull in a lane.
+fn hull<const K: usize>(of: &HullLanes<K>, lane: usize) -> [Point; K] {
+    of.map(|point| point.map(|lanes| lanes[lane]))
+}
+
+#[inline(always)]
+fn set<const K: usize>(of: &mut HullLanes<K>, lane: usize, hull: &[Point; K]) {
+    for (point, from) in of.iter_mut().zip(hull) {
+        for axis in 0..3 {
+            point[axis][lane] = from[axis];
+        }
+    }
+}
+
 /// Pairs of hulls of `M` and `N` points, as [`TriangleBatch`].
 #[derive(Debug, Clone)]
 pub(crate) struct Batch<P, const M: usize, const N: usize, T> {
     threshold: Threshold,
     single: Scaled,
-    a: [[Point; M]; LANES],
-    b: [[Point; N]; LANES],
+    a: HullLanes<M>,
+    b: HullLanes<N>,
     tags: [T; LANES],
     len: usize,
     pair: PhantomData<P>,
@@ -126,8 +163,8 @@ impl<P: Batched<M, N>, const M: usize, const N: usize, T: Copy + Default> Batch<
         Self {
             threshold,
             single: Scaled::new(threshold),
-            a: [[[0.0; 3]; M]; LANES],
-            b: [[[0.0; 3]; N]; LANES],
+            a: [[[0.0; LANES]; 3]; M],
+            b: [[[0.0; LANES]; 3]; N],
             tags: [T::default(); LANES],
             len: 0,
             pair: PhantomData,
@@ -137,8 +174,8 @@ impl<P: Batched<M, N>, const M: usize, const N: usize, T: Copy + Default> Batch<
     #[inline]
     pub(crate) fn push(&mut self, a: &[Point; M], b: &[Point; N], tag: T, answer: impl FnMut(T, Decision)) {
         let lane = self.len;
-        self.a[lane] = *a;
-        self.b[lane] = *b;
+        set(&mut self.a, lane, a);
+        set(&mut self.b, lane, b);
         self.tags[lane] = tag;
         self.len += 1;
         if self.len == LANES {
@@ -163,7 +200,7 @@ impl<P: Batched<M, N>, const M: usize, const N: usize, T: Copy + Default> Batch<
                     by: DecidedBy::Filter,
                 }
             } else {
-                P::decide(&self.a[lane], &self.b[lane], self.threshold)
+                P::decide(&hull(&self.a, lane), &hull(&self.b, lane), self.threshold)
             };
             answer(self.tags[lane], decision);
         }
@@ -218,15 +255,15 @@ impl Scaled {
 
     /// Pairs multiplied by `first`, where that is not 1. Growing is exact unless it overflows, and what overflows is out of
     /// range. What shrinking rounds off is less than 2^-1000 of delta.
-    fn prepared<const K: usize>(&self, hulls: &[[Point; K]; LANES]) -> [[Point; K]; LANES] {
-        hulls.map(|hull| hull.map(|p| p.map(|x| x * self.first)))
+    fn prepared<const K: usize>(&self, hulls: &HullLanes<K>) -> HullLanes<K> {
+        hulls.map(|point| point.map(|axis| axis.map(|x| x * self.first)))
     }
 }
 
 /// The filter in single precision, all pairs at once.
 struct InSingle<'p, P, const M: usize, const N: usize> {
-    a: &'p [[Point; M]; LANES],
-    b: &'p [[Point; N]; LANES],
+    a: &'p HullLanes<M>,
+    b: &'p HullLanes<N>,
     scaled: Scaled,
     pair: PhantomData<P>,
 }
@@ -238,16 +275,14 @@ impl<P: Batched<M, N>, const M: usize, const N: usize> Work for InSingle<'_, P, 
     fn run<L: Lanes>(self, lanes: L) -> Verdicts {
         let unit = lanes.single();
         let Scaled { scale, limits, .. } = self.scaled;
-        // [vertex][axis][pair]
+        let origin = &self.a[0];
         let mut local_a = [[[0.0_f32; LANES]; 3]; M];
         let mut local_b = [[[0.0_f32; LANES]; 3]; N];
-        for (lane, (a, b)) in self.a.iter().zip(self.b).enumerate() {
+        let of_a = self.a.iter().zip(&mut local_a);
+        for (point, local) in of_a.chain(self.b.iter().zip(&mut local_b)) {
             for axis in 0..3 {
-                for vertex in 0..M {
-                    local_a[vertex][axis][lane] = ((a[vertex][axis] - a[0][axis]) * scale) as f32;
-                }
-                for vertex in 0..N {
-                    local_b[vertex][axis][lane] = ((b[vertex][axis] - a[0][axis]) * scale) as f32;
+                for lane in 0..LANES {
+                    local[axis][lane] = ((point[axis][lane] - origin[axis][lane]) * scale) as f32;
                 }
             }
         }
@@ -267,8 +302,8 @@ impl<P: Batched<M, N>, const M: usize, const N: usize> Work for InSingle<'_, P, 
 
 /// The filter in double precision, half of the pairs at a time.
 struct InDouble<'p, P, const M: usize, const N: usize> {
-    a: &'p [[Point; M]; LANES],
-    b: &'p [[Point; N]; LANES],
+    a: &'p HullLanes<M>,
+    b: &'p HullLanes<N>,
     threshold: Threshold,
     pair: PhantomData<P>,
 }
@@ -288,21 +323,12 @@ impl<P: Batched<M, N>, const M: usize, const N: usize> Work for InDouble<'_, P, 
             let mut a = [[unit.splat(0.0); 3]; M];
             let mut b = [[unit.splat(0.0); 3]; N];
             for axis in 0..3 {
-                let lane = |lane: usize| 4 * half + lane;
-                let of_a = |vertex: usize| {
-                    let at = |k: usize| self.a[lane(k)][vertex][axis];
-                    unit.load(&[at(0), at(1), at(2), at(3)])
-                };
-                let of_b = |vertex: usize| {
-                    let at = |k: usize| self.b[lane(k)][vertex][axis];
-                    unit.load(&[at(0), at(1), at(2), at(3)])
-                };
-                let origin = of_a(0);
-                for (vertex, point) in a.iter_mut().enumerate() {
-                    point[axis] = unit.sub(of_a(vertex), origin);
+                let origin = unit.load(&self.a[0][axis].as_chunks::<4>().0[half]);
+                for (point, lanes) in a.iter_mut().zip(self.a) {
+                    point[axis] = unit.sub(unit.load(&lanes[axis].as_chunks::<4>().0[half]), origin);
                 }
-                for (vertex, point) in b.iter_mut().enumerate() {
-                    point[axis] = unit.sub(of_b(vertex), origin);
+                for (point, lanes) in b.iter_mut().zip(self.b) {
+                    point[axis] = unit.sub(unit.load(&lanes[axis].as_chunks::<4>().0[half]), origin);
                 }
             }
             let verdicts = P::filter(&Kernel { unit }, a, b, limits);
@@ -323,7 +349,7 @@ mod tests {
     /// Machines with and without AVX2 give the same bits, and no answer in single precision contradicts double precision, nor that of one
     /// pair. Returns how many pairs each precision leaves open.
     fn answers_of<P: Batched<M, N>, const M: usize, const N: usize>() -> [u32; 2] {
-        let (mut a, mut b) = ([[[0.0; 3]; M]; LANES], [[[0.0; 3]; N]; LANES]);
+        let (mut a, mut b) = ([[[0.0; LANES]; 3]; M], [[[0.0; LANES]; 3]; N]);
         let mut state = 1_u64;
         let (mut open, mut single_open) = (0, 0);
         for round in 0..500 {
@@ -358,10 +384,11 @@ mod tests {
                 assert_eq!(verdicts.within & verdicts.apart, 0);
                 assert_eq!((verdicts.within | verdicts.apart) & !verdicts.in_range, 0);
                 for lane in 0..LANES {
-                    let decision = P::decide(&a[lane], &b[lane], threshold);
+                    let (one, two) = (hull(a, lane), hull(b, lane));
+                    let decision = P::decide(&one, &two, threshold);
                     assert!(!decision.within || verdicts.apart >> lane & 1 == 0);
                     assert!(decision.within || verdicts.within >> lane & 1 == 0);
-                    let has_nan = a[lane].iter().chain(&b[lane]).flatten().any(|x| x.is_nan());
+                    let has_nan = one.iter().chain(&two).flatten().any(|x| x.is_nan());
                     assert!(!has_nan || verdicts.in_range >> lane & 1 == 0);
                 }
             }
@@ -379,6 +406,7 @@ mod tests {
         for open in [
             answers_of::<TriangleTriangle, 3, 3>(),
             answers_of::<EdgeEdge, 2, 2>(),
+            answers_of::<VertexTriangle, 1, 3>(),
         ] {
             assert!(open.iter().all(|&open| open < 800), "{open:?} of 4000 left open");
         }

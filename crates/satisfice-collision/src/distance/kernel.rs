@@ -1,6 +1,6 @@
 //! The filter for several pairs of features, one per lane, in the precision of the unit.
 //!
-//! Of two edges a formula proposes the difference v of the closest points, and v is the direction of a certificate. Of two triangles each
+//! Of two edges, or a vertex and a triangle, a formula proposes the difference v of the closest points, and v is the direction of a certificate. Of two triangles each
 //! lane runs the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109) for the point closest to 0 in the hull of the
 //! differences `a_i - b_j`: a step goes to the best point between v and the difference w that is lowest in direction v, which
 //! needs no branch. The certificates of `frame` stop it; pairs still open after [`STEPS`] steps are decided one by one.
@@ -83,10 +83,8 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
 
     #[inline(always)]
     fn third(&self, p: LaneVector<U>, q: LaneVector<U>, r: LaneVector<U>) -> LaneVector<U> {
-        let u = self.unit;
         let third = self.splat(1.0 / 3.0);
-        let mean = |k: usize| u.add(u.add(u.mul(p[k], third), u.mul(q[k], third)), u.mul(r[k], third));
-        [mean(0), mean(1), mean(2)]
+        self.mean([p, q, r], [third; 3])
     }
 
     /// The greatest component, in absolute value, of a point and `rho`.
@@ -124,6 +122,87 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         self.judge(v, gap, &[a[1], b[0], b[1]], limits)
     }
 
+    /// A vertex, which is 0, and a triangle.
+    #[inline(always)]
+    pub(super) fn vertex_and_triangle(&self, b: [LaneVector<U>; 3], limits: KernelLimits) -> Verdicts {
+        let u = self.unit;
+        let v = self.nearest_to_zero(b);
+        let gap = u.min(u.min(self.dot(v, b[0]), self.dot(v, b[1])), self.dot(v, b[2]));
+        self.judge(v, gap, &b, limits)
+    }
+
+    /// The point of a triangle that is nearest to 0. Where rounding misleads it is some point of the triangle.
+    #[inline(always)]
+    fn nearest_to_zero(&self, [p, q, r]: [LaneVector<U>; 3]) -> LaneVector<U> {
+        let u = self.unit;
+        let zero = self.splat(0.0);
+        let v = self.nearest_on_edge(p, q);
+        let best = (v, self.dot(v, v));
+        let v = self.nearest_on_edge(q, r);
+        let best = self.nearer(best, (v, self.dot(v, v)));
+        let v = self.nearest_on_edge(r, p);
+        let best = self.nearer(best, (v, self.dot(v, v)));
+        // the foot of 0 on the plane, by the areas that it makes with the edges
+        let n = self.cross(self.sub(q, p), self.sub(r, p));
+        let inverse = u.div(self.splat(1.0), self.dot(n, n));
+        let y = u.mul(self.dot(self.cross(r, p), n), inverse);
+        let z = u.mul(self.dot(self.cross(p, q), n), inverse);
+        let x = u.sub(u.sub(self.splat(1.0), y), z);
+        let v = self.mean([p, q, r], [x, y, z]);
+        // outside, or of no area: as far as can be
+        let least = u.min(u.min(x, y), z);
+        let far = self.splat(f64::INFINITY);
+        let square = u.if_equal(u.max(least, zero), least, self.dot(v, v), far);
+        self.nearer(best, (v, square)).0
+    }
+
+    /// The point of an edge that is nearest to 0.
+    #[inline(always)]
+    fn nearest_on_edge(&self, from: LaneVector<U>, to: LaneVector<U>) -> LaneVector<U> {
+        let e = self.sub(to, from);
+        let t = self.share(self.unit.sub(self.splat(0.0), self.dot(from, e)), self.dot(e, e));
+        self.along(from, e, t)
+    }
+
+    /// That of two points whose square is less.
+    #[inline(always)]
+    fn nearer(
+        &self,
+        (v, of_v): (LaneVector<U>, U::Number),
+        (w, of_w): (LaneVector<U>, U::Number),
+    ) -> (LaneVector<U>, U::Number) {
+        let u = self.unit;
+        let least = u.min(of_v, of_w);
+        let nearer = [
+            u.if_equal(of_v, least, v[0], w[0]),
+            u.if_equal(of_v, least, v[1], w[1]),
+            u.if_equal(of_v, least, v[2], w[2]),
+        ];
+        (nearer, least)
+    }
+
+    /// `from + share * by`.
+    #[inline(always)]
+    fn along(&self, from: LaneVector<U>, by: LaneVector<U>, share: U::Number) -> LaneVector<U> {
+        let u = self.unit;
+        [
+            u.add(from[0], u.mul(share, by[0])),
+            u.add(from[1], u.mul(share, by[1])),
+            u.add(from[2], u.mul(share, by[2])),
+        ]
+    }
+
+    /// `x p + y q + z r`.
+    #[inline(always)]
+    fn mean(&self, [p, q, r]: [LaneVector<U>; 3], [x, y, z]: LaneVector<U>) -> LaneVector<U> {
+        let u = self.unit;
+        [
+            u.add(u.add(u.mul(x, p[0]), u.mul(y, q[0])), u.mul(z, r[0])),
+            u.add(u.add(u.mul(x, p[1]), u.mul(y, q[1])), u.mul(z, r[1])),
+            u.add(u.add(u.mul(x, p[2]), u.mul(y, q[2])), u.mul(z, r[2])),
+        ]
+    }
+
     /// What a difference `v` of two points proves, and the gap in its direction. `others` are all points but the one at 0.
     #[inline(always)]
     fn judge(
@@ -135,9 +214,14 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     ) -> Verdicts {
         let u = self.unit;
         let zero = self.splat(0.0);
-        let rho = others.iter().fold(zero, |rho, &p| self.extent(rho, p));
-        let sum = |k: usize| u.add(u.add(others[0][k], others[1][k]), others[2][k]);
-        let in_range = self.in_range(rho, u.add(u.add(sum(0), sum(1)), sum(2)));
+        let [p, q, r] = *others;
+        let rho = self.extent(self.extent(self.extent(zero, p), q), r);
+        let sum = [
+            u.add(u.add(p[0], q[0]), r[0]),
+            u.add(u.add(p[1], q[1]), r[1]),
+            u.add(u.add(p[2], q[2]), r[2]),
+        ];
+        let in_range = self.in_range(rho, u.add(u.add(sum[0], sum[1]), sum[2]));
         let reach = self.reach(rho, limits);
         let gap_error = u.mul(rho, self.splat(Self::BOUNDS.gap_error));
         let squared = self.dot(v, v);
@@ -270,11 +354,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
         );
         let t = self.share(u.add(u.mul(de, s), er), ee);
         let s = self.share(u.sub(u.mul(de, t), dr), dd);
-        let along = |from: LaneVector<U>, by: LaneVector<U>, share: U::Number| {
-            let to = |k: usize| u.add(from[k], u.mul(share, by[k]));
-            [to(0), to(1), to(2)]
-        };
-        self.sub(along(p, d, s), along(q, e, t))
+        self.sub(self.along(p, d, s), self.along(q, e, t))
     }
 
     /// A quotient clamped to 0..=1; NaN becomes 0.
@@ -304,11 +384,7 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
             let z = u.mul(self.dot(self.cross(d, r), n), inverse);
             let x = u.sub(u.sub(self.splat(1.0), y), z);
             let inside = self.at_most(zero, x) & self.at_most(zero, y) & self.at_most(zero, z);
-            let foot = |k: usize| {
-                let sum = u.add(u.mul(x, face[0][k]), u.mul(y, face[1][k]));
-                u.add(sum, u.mul(z, face[2][k]))
-            };
-            let v = self.sub([foot(0), foot(1), foot(2)], p);
+            let v = self.sub(self.mean(face, [x, y, z]), p);
             within |= inside & self.below(u.mul(self.dot(v, v), self.splat(Self::BOUNDS.above_one)), reach);
         }
         within
@@ -334,7 +410,10 @@ impl<U: Floats<Scalar: Precision>> Kernel<U> {
     #[inline(always)]
     fn cross(&self, p: LaneVector<U>, q: LaneVector<U>) -> LaneVector<U> {
         let u = self.unit;
-        let minor = |k: usize, l: usize| u.sub(u.mul(p[k], q[l]), u.mul(p[l], q[k]));
-        [minor(1, 2), minor(2, 0), minor(0, 1)]
+        [
+            u.sub(u.mul(p[1], q[2]), u.mul(p[2], q[1])),
+            u.sub(u.mul(p[2], q[0]), u.mul(p[0], q[2])),
+            u.sub(u.mul(p[0], q[1]), u.mul(p[1], q[0])),
+        ]
     }
 }

@@ -50,8 +50,8 @@ pub mod vertex_edge;
 pub mod vertex_triangle;
 pub mod vertex_vertex;
 
-pub(crate) use batch::EdgeBatch;
 pub use batch::TriangleBatch;
+pub(crate) use batch::{EdgeBatch, VertexBatch};
 pub use dispatch::{decide, distance, measure, proximity, within};
 pub use edge_edge::EdgeEdge;
 pub use edge_triangle::EdgeTriangle;

@@ -158,9 +158,10 @@ impl Deforming {
             .map(|kept| &kept.tree)
     }
 
-    /// Whether the marks of the tree say what moved in the last frame in which anything did.
+    /// Whether only a part moved in the last frame in which anything did, and the marks of the tree say which.
     pub(super) fn has_marks(&self, kind: FeatureKind) -> bool {
-        self.trees[kind as usize].as_ref().is_some_and(|kept| {
+        let kept = self.trees[kind as usize].as_ref().filter(|_| self.share < 1.0);
+        kept.is_some_and(|kept| {
             kept.version == self.version && kept.from.is_some_and(|from| from + 1 == self.version)
         })
     }

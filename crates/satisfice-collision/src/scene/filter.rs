@@ -40,6 +40,11 @@ impl<'a> PairFilter<'a> {
         self.one_body || self.a.counted.is_some() || self.b.counted.is_some()
     }
 
+    /// Whether it rejects features of one mesh that share a vertex, and nothing else.
+    pub(super) fn is_by_mesh(&self) -> bool {
+        self.one_body && self.rings.is_none() && self.a.counted.is_none()
+    }
+
     /// Adds the rejected pairs to the counts of a query.
     pub(super) fn count(&self, skips: &mut Skips) {
         skips.mesh_neighbours += self.neighbours.load(Ordering::Relaxed);

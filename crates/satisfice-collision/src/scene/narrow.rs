@@ -196,6 +196,7 @@ impl World {
             query.moved = moved;
         }
         let mut pairs = space.join.all(&query, watch).to_vec();
+        skips.mesh_neighbours += space.join.work().neighbours;
         if is_partial {
             let rests = |state: &State, kind, moved, feature| match moved {
                 Dirty::None => true,
@@ -230,13 +231,15 @@ impl World {
     ) -> Option<PairQuery<'a>> {
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
+        let shares_mesh = filter.is_by_mesh();
         Some(PairQuery {
             a: (one.state().tree(kind_a)?, place_a),
             b: (two.state().tree(kind_b)?, place_b),
             one_body: a == b && kind_a == kind_b,
             threshold,
-            keep: filter.is_needed().then_some(keep),
+            keep: (filter.is_needed() && !shares_mesh).then_some(keep),
             moved: [Dirty::All; 2],
+            shares_mesh,
         })
     }
 

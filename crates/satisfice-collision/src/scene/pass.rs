@@ -333,11 +333,11 @@ impl World {
                         query.start(stack);
                     }
                     let mut found = Vec::new();
-                    if self.parallel && stack.len() >= PARTS {
-                        step_in_parts(&query, stack, &mut found);
+                    pass.skips.mesh_neighbours += if self.parallel && stack.len() >= PARTS {
+                        step_in_parts(&query, stack, &mut found)
                     } else {
-                        query.step(stack, VISITS, usize::MAX, &mut found);
-                    }
+                        query.step(stack, VISITS, usize::MAX, &mut found).neighbours
+                    };
                     found.retain(|pair| link.verified.binary_search(pair).is_err());
                     pass.delivered += found.len();
                     link.others.append(&mut found);
@@ -356,19 +356,22 @@ impl World {
     }
 }
 
-/// Continues a descent on the current rayon pool. The results and their order do not depend on the number of threads.
-fn step_in_parts(query: &PairQuery<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pair>) {
+/// Continues a descent on the current rayon pool. The results and their order do not depend on the number of threads. Returns how many
+/// pairs of neighbours were left out.
+fn step_in_parts(query: &PairQuery<'_>, stack: &mut Vec<Visit>, found: &mut Vec<Pair>) -> u64 {
     use rayon::prelude::*;
     let mut parts: Vec<(Vec<Visit>, Vec<Pair>)> = (0..PARTS).map(|_| Default::default()).collect();
     let first = stack.len().saturating_sub(PARTS * VISITS);
     for (at, visit) in stack.drain(first..).enumerate() {
         parts[at % PARTS].0.push(visit);
     }
-    parts.par_iter_mut().for_each(|(stack, found)| {
-        query.step(stack, VISITS_OF_PART, usize::MAX, found);
-    });
+    let go_on = |(stack, found): &mut (Vec<Visit>, Vec<Pair>)| {
+        query.step(stack, VISITS_OF_PART, usize::MAX, found).neighbours
+    };
+    let neighbours = parts.par_iter_mut().map(go_on).sum();
     for (rest, pairs) in &mut parts {
         stack.append(rest);
         found.append(pairs);
     }
+    neighbours
 }

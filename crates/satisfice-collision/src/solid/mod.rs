@@ -185,6 +185,7 @@ fn query<'a>(a: &'a FeatureTree, b: &'a FeatureTree, threshold: Threshold) -> Pa
         threshold,
         keep: None,
         moved: [Dirty::All; 2],
+        shares_mesh: false,
     }
 }
 

@@ -130,6 +130,7 @@ fn one_body_and_a_cutoff() {
         threshold: Threshold::LARGEST,
         keep: Some(&keep),
         moved: [Dirty::All; 2],
+        shares_mesh: false,
     };
     let watch = Watch::none();
     let mut closest = Closest::new(30, None);
@@ -227,6 +228,7 @@ fn equal_distances_are_ordered_by_number() {
             threshold: Threshold::LARGEST,
             keep: None,
             moved: [Dirty::All; 2],
+            shares_mesh: false,
         };
         for k in [1, 5, 100] {
             let mut closest = Closest::new(k, None);

@@ -205,6 +205,7 @@ impl World {
                 threshold: Threshold::LARGEST,
                 keep: Some(&counts),
                 moved: [Dirty::All; 2],
+                shares_mesh: false,
             };
             find_closest(&query, closest, |pair| (slot, pair.b), &Watch::none());
         }
