@@ -185,14 +185,14 @@ impl PairQuery<'_> {
 
 /// The features of a body and where it is.
 #[derive(Clone, Copy)]
-struct Posed<'a> {
+struct PlacedFeatures<'a> {
     features: Features<'a>,
     vertices: &'a [Point],
     /// `None` for one that leaves every point where it is.
     pose: Option<&'a Placement>,
 }
 
-impl<'a> Posed<'a> {
+impl<'a> PlacedFeatures<'a> {
     fn new((tree, pose): (&'a FeatureTree, &'a Placement)) -> Self {
         Self {
             features: tree.features(),
@@ -227,7 +227,7 @@ pub(crate) struct Visitor<'a, const POINTS: bool> {
     /// Whether the first tree of the descent is `b`.
     flip: bool,
     found: &'a mut Vec<Pair>,
-    bodies: [Posed<'a>; 2],
+    bodies: [PlacedFeatures<'a>; 2],
     /// The separating-axis test, for pairs of triangles.
     axes: Option<SeparatingAxes<'a>>,
     /// Pairs to be decided as a batch, by kind.
@@ -249,7 +249,7 @@ impl<'a, const POINTS: bool> Visitor<'a, POINTS> {
     ) -> Self {
         Self {
             query,
-            bodies: [Posed::new(query.a), Posed::new(query.b)],
+            bodies: [PlacedFeatures::new(query.a), PlacedFeatures::new(query.b)],
             flip,
             found,
             axes,

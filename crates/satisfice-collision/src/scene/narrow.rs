@@ -180,12 +180,14 @@ impl World {
         let (one, two) = (self.state(a), self.state(b));
         let (kind_a, kind_b) = self.kind.features();
         let filter = PairFilter::new(self.kind, one.state(), two.state(), a == b);
-        let keep = |i: u32, j: u32| filter.keeps(Pair { a: i, b: j });
+        let keep: &(dyn Fn(u32, u32) -> bool + Sync) = &|i, j| filter.keeps(Pair { a: i, b: j });
         let places = self.places(record.bodies);
-        let Some(mut query) = self.pair_query(record.bodies, &places, self.threshold, &filter, &keep) else {
+        let Some(mut query) = self.pair_query(record.bodies, &places, self.threshold, &filter, keep) else {
             return Ok(Vec::new());
         };
         if all {
+            // the filter counts what it leaves out, as the descent of trees does
+            (query.keep, query.shares_mesh) = (filter.is_needed().then_some(keep), false);
             let pairs = space.join.brute_force(&query, watch).to_vec();
             filter.count(skips);
             return Ok(pairs);
