@@ -38,15 +38,6 @@ impl Box32 {
         }
     }
 
-    /// What both have in common, if they meet.
-    #[inline]
-    pub(crate) fn intersection(&self, other: &Self) -> Self {
-        Self {
-            min: std::array::from_fn(|k| greater(other.min[k], self.min[k])),
-            max: std::array::from_fn(|k| lesser(other.max[k], self.max[k])),
-        }
-    }
-
     /// Twice the centre.
     #[inline]
     pub(crate) fn twice_centre(&self) -> [f32; 3] {

@@ -5,23 +5,46 @@
 //! depth. A new body goes down to the child that grows least, and a full node is split along its longest axis. Rebuilding
 //! orders the bodies as [`BoxTree`](crate::broad) does and fills every node.
 
+mod begun;
 mod follow;
 mod node;
 #[cfg(test)]
 mod tests;
 mod visits;
 
+pub(super) use begun::Meeting;
 pub(super) use follow::Change;
 
 use super::extent::{Extent, largest};
 use crate::Aabb;
 use crate::broad::{Box32, exponent, order_by_median, power_of_two};
+use begun::Search;
 use node::{NONE, Node, at_lane, lane_in, lanes, node_of};
 
 impl Box32 {
     /// Whether two boxes share a point.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
+    }
+
+    /// A box rounded outwards: by the step in which the conversion rounds, or two. It is finite; what lies beyond the range of `f32`
+    /// lies on its end.
+    #[inline(always)]
+    pub(super) fn outside(min: &[f64; 3], max: &[f64; 3]) -> Self {
+        let mut bounds = Self::EMPTY;
+        for k in 0..3 {
+            let low = (min[k] as f32).clamp(f32::MIN, f32::MAX);
+            let high = (max[k] as f32).clamp(f32::MIN, f32::MAX);
+            let step = |x: f32| x.abs() * f32::EPSILON + f32::from_bits(1);
+            bounds.min[k] = (low - step(low)).max(f32::MIN);
+            bounds.max[k] = (high + step(high)).min(f32::MAX);
+        }
+        bounds
+    }
+
+    /// Whether it is the empty box.
+    pub(super) fn is_empty(&self) -> bool {
+        self.min[0] > self.max[0]
     }
 
     /// The bits of the squared distance of two boxes, which are ordered as the numbers are; 0 where there is none.
@@ -36,6 +59,13 @@ impl Box32 {
     }
 }
 
+/// Coordinates in the tree count from the origin, in this unit, which is one divided by the scale.
+pub(super) struct Frame {
+    pub(super) origin: [f64; 3],
+    pub(super) scale: f64,
+    pub(super) unit: f64,
+}
+
 /// The tree. Bodies are named by their slots.
 #[derive(Default)]
 pub(super) struct BodyTree {
@@ -44,6 +74,8 @@ pub(super) struct BodyTree {
     root: Option<u32>,
     /// The place of each body in its leaf, by slot; [`NONE`] for those that are not in the tree.
     places: Vec<u32>,
+    /// The box of each body, by slot; the empty one for those that are not in the tree.
+    boxes: Vec<Box32>,
     origin: [f64; 3],
     scale: f64,
     bodies: usize,
@@ -51,6 +83,7 @@ pub(super) struct BodyTree {
     moves: usize,
     /// Nodes with a changed box, leaves first.
     changed: Vec<u32>,
+    search: Search,
 }
 
 impl BodyTree {
@@ -68,9 +101,9 @@ impl BodyTree {
     }
 
     /// The box of a body in the tree; the empty one for a body that is not there.
+    #[inline]
     pub(super) fn box_of(&self, body: u32) -> Box32 {
-        self.place_of(body)
-            .map_or(Box32::EMPTY, |place| self.box_at(place))
+        self.boxes.get(body as usize).copied().unwrap_or(Box32::EMPTY)
     }
 
     fn box_at(&self, place: u32) -> Box32 {
@@ -81,6 +114,8 @@ impl BodyTree {
     pub(super) fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>()
             + (self.places.capacity() + self.free.capacity() + self.changed.capacity()) * 4
+            + self.boxes.capacity() * size_of::<Box32>()
+            + self.search.bytes()
     }
 
     /// Rebuilds the tree over these boxes, in a frame around them; all of them have changed. Cost: O(n log n).
@@ -88,10 +123,7 @@ impl BodyTree {
         self.choose_frame(boxes);
         let placed = boxes.iter().map(|(body, bounds)| (*body, self.place(bounds)));
         self.arrange(&placed.collect::<Vec<_>>());
-        self.changed.extend(0..self.nodes.len() as u32);
-        for node in &mut self.nodes {
-            node.changed = node.taken();
-        }
+        self.mark_all();
     }
 
     /// Rebuilds the tree over these boxes.
@@ -99,12 +131,14 @@ impl BodyTree {
         self.nodes.clear();
         self.free.clear();
         self.places.fill(NONE);
+        self.boxes.fill(Box32::EMPTY);
         self.changed.clear();
         (self.root, self.bodies, self.moves) = (None, boxes.len(), 0);
-        if let Some(most) = boxes.iter().map(|&(body, _)| body as usize + 1).max()
-            && most > self.places.len()
-        {
-            self.places.resize(most, NONE);
+        if let Some(last) = boxes.iter().map(|&(body, _)| body).max() {
+            self.make_room_for(last);
+        }
+        for (body, bounds) in boxes {
+            self.boxes[*body as usize] = *bounds;
         }
         let order = order_by_median(boxes.iter().map(|(_, bounds)| bounds.twice_centre()), false);
         let mut below: Vec<(u32, Box32)> = order.iter().map(|&at| boxes[at as usize]).collect();
@@ -151,21 +185,10 @@ impl BodyTree {
         };
     }
 
-    /// A box in the frame, rounded outwards: by the step in which the conversion rounds, or two. It is finite, so that an empty lane
-    /// never overlaps it; what lies beyond the range of `f32` lies on its end.
+    /// A box in the frame, rounded outwards. It is finite, so that an empty lane never overlaps it.
     pub(super) fn place(&self, bounds: &Aabb) -> Box32 {
-        let at = |c: f64, k: usize| (((c - self.origin[k]) * self.scale) as f32).clamp(f32::MIN, f32::MAX);
-        let step = |x: f32| x.abs() * f32::EPSILON + f32::from_bits(1);
-        Box32 {
-            min: std::array::from_fn(|k| {
-                let x = at(bounds.min[k], k);
-                (x - step(x)).max(f32::MIN)
-            }),
-            max: std::array::from_fn(|k| {
-                let x = at(bounds.max[k], k);
-                (x + step(x)).min(f32::MAX)
-            }),
-        }
+        let at = |corner: &[f64; 3]| std::array::from_fn(|k| (corner[k] - self.origin[k]) * self.scale);
+        Box32::outside(&at(&bounds.min), &at(&bounds.max))
     }
 
     /// Where the centre of a body's ball may lie so that its box in the tree holds the ball and `half` around it.
@@ -181,6 +204,15 @@ impl BodyTree {
         Aabb {
             min: std::array::from_fn(|k| side(known.min[k], k) + by),
             max: std::array::from_fn(|k| side(known.max[k], k) - by),
+        }
+    }
+
+    /// The frame of the boxes.
+    pub(super) fn frame(&self) -> Frame {
+        Frame {
+            origin: self.origin,
+            scale: self.scale,
+            unit: 1.0 / self.scale,
         }
     }
 
@@ -210,11 +242,17 @@ impl BodyTree {
         self.nodes[node_of(place) as usize].set_box(lane_in(place), to);
     }
 
-    /// Inserts a body. Cost: O(log n).
-    fn insert(&mut self, body: u32, to: &Box32) {
+    fn make_room_for(&mut self, body: u32) {
         if self.places.len() <= body as usize {
             self.places.resize(body as usize + 1, NONE);
+            self.boxes.resize(body as usize + 1, Box32::EMPTY);
         }
+    }
+
+    /// Inserts a body. Cost: O(log n).
+    fn insert(&mut self, body: u32, to: &Box32) {
+        self.make_room_for(body);
+        self.boxes[body as usize] = *to;
         self.bodies += 1;
         let root = match self.root {
             Some(root) => root,
@@ -226,6 +264,9 @@ impl BodyTree {
         };
         let leaf = self.descend(root, to);
         self.attach(leaf, body, to);
+        if let Some(place) = self.place_of(body) {
+            self.mark(place);
+        }
     }
 
     /// The leaf below `node` that grows least by a box; the boxes on the way grow to hold it.
@@ -276,6 +317,13 @@ impl BodyTree {
             self.nodes[home as usize].set(lane, *id, b);
             self.adopt(*id, level, at_lane(home, lane));
         }
+        if level == 0 {
+            // the boxes lie elsewhere now
+            for home in [node, other] {
+                self.nodes[home as usize].changed = self.nodes[home as usize].taken();
+                self.changed.push(home);
+            }
+        }
         let bounds = [node, other].map(|node| self.nodes[node as usize].bounds());
         if full.parent == NONE {
             let root = self.new_node(level + 1);
@@ -296,6 +344,7 @@ impl BodyTree {
             return;
         };
         self.places[body as usize] = NONE;
+        self.boxes[body as usize] = Box32::EMPTY;
         self.bodies -= 1;
         loop {
             let id = node_of(place);
@@ -306,6 +355,7 @@ impl BodyTree {
                 self.shrink(id);
                 return;
             }
+            node.changed = 0;
             self.free.push(id);
             if parent == NONE {
                 self.root = None;

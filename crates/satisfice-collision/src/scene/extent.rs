@@ -1,5 +1,6 @@
 //! The box and the ball around a mesh, and those of its placements.
 
+use crate::broad::Box32;
 use crate::mesh::Point;
 use crate::{Aabb, Mesh, Placement};
 
@@ -51,6 +52,22 @@ impl Extent {
     /// At least the largest coordinate.
     pub(super) fn size(&self) -> f64 {
         self.size
+    }
+
+    /// The box of the vertices, rounded outwards; the empty one where `f32` is too coarse for it.
+    pub(super) fn hull(&self) -> Box32 {
+        let hull = Box32::outside(&self.bounds.min, &self.bounds.max);
+        let wider = |k: usize| {
+            [
+                self.bounds.min[k] - f64::from(hull.min[k]),
+                f64::from(hull.max[k]) - self.bounds.max[k],
+            ]
+        };
+        let fits = |by: f64| (0.0..=1e-3 * self.bounds.size()).contains(&by);
+        match (0..3).all(|k| wider(k).into_iter().all(fits)) {
+            true => hull,
+            false => Box32::EMPTY,
+        }
     }
 
     /// Whether no vertex leaves the range of numbers as long as the translation is small too.

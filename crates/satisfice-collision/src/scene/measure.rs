@@ -16,6 +16,7 @@ impl World {
     /// the bodies alone which of them still hold. Call it between frames; it changes no answer. Cost: one distance per contact.
     pub fn measure_contacts(&mut self) {
         self.predicts = true;
+        self.mark_moved();
         let expected: BTreeMap<u32, Placement> = self
             .came_from
             .iter()

@@ -2,11 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::body::{Body, BodyId};
+use super::body::{Body, BodyId, Motion};
 use super::narrow::Workspace;
 use super::pairs::{self, Status};
 use super::state::State;
+use super::whereabouts::Whereabouts;
 use super::{SharedMesh, World};
+use crate::broad::Box32;
 use crate::{Error, FeatureKind};
 
 /// Counts from which the number of pairs that may not collide follows.
@@ -103,17 +105,28 @@ impl World {
             .is_some_and(|own| own.collides_with_itself());
         if vacant.is_some() {
             self.free.pop();
-            self.states[slot as usize] = Some(state);
-            self.whereabouts[slot as usize] = whereabouts;
         } else {
-            super::push(&mut self.states, Some(state));
-            super::push(&mut self.whereabouts, whereabouts);
+            super::push(&mut self.states, None);
+            super::push(&mut self.whereabouts, Whereabouts::new(generation, false, false));
+            super::push(&mut self.hulls, Box32::EMPTY);
         }
+        self.put(slot, state, whereabouts);
         if collides_with_itself {
             self.add_record([slot; 2]);
         }
         self.unpaired.push(slot);
         Ok(id)
+    }
+
+    /// Puts a body into its slot.
+    fn put(&mut self, slot: u32, state: State, whereabouts: Whereabouts) {
+        let slot = slot as usize;
+        self.hulls[slot] = match state.kind {
+            Motion::Fixed | Motion::Rigid => state.mesh.extent().hull(),
+            Motion::Deforming => Box32::EMPTY,
+        };
+        self.states[slot] = Some(state);
+        self.whereabouts[slot] = whereabouts;
     }
 
     /// Removes a body with its contacts, groups and exclusions. Cost: linear in its kept pairs.
@@ -131,6 +144,7 @@ impl World {
         self.forget_pending(slot);
         if let Some(state) = self.states[slot as usize].take() {
             self.membership.count(&state, false);
+            self.hulls[slot as usize] = Box32::EMPTY;
             // no handle names the place until it is given to another body
             let generation = body.generation.wrapping_add(1);
             self.whereabouts[slot as usize].generation = generation;
@@ -174,8 +188,7 @@ impl World {
             self.remove_record(record);
             self.add_record(bodies);
         }
-        self.states[body.slot as usize] = Some(state);
-        self.whereabouts[body.slot as usize] = whereabouts;
+        self.put(body.slot, state, whereabouts);
         self.unpaired.push(body.slot);
         if let Some(placement) = &next {
             self.place(body, *placement)?;

@@ -19,6 +19,7 @@
 //! # Ok::<(), satisfice_collision::Error>(())
 //! ```
 
+mod ahead;
 mod body;
 mod body_tree;
 mod changes;
@@ -31,6 +32,7 @@ mod measure;
 mod membership;
 mod movers;
 mod narrow;
+mod outdated;
 mod pairs;
 mod pass;
 mod plan;
@@ -54,7 +56,7 @@ pub use query::{NearestFeature, RayHit};
 pub use shared_mesh::SharedMesh;
 pub use skips::Skips;
 
-use crate::broad::{Method, Pair};
+use crate::broad::{Box32, Method, Pair};
 use crate::distance::{self, PairKind, Proximity, Threshold};
 use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement};
 use body_tree::BodyTree;
@@ -95,6 +97,8 @@ pub struct World {
     states: Vec<Option<State>>,
     /// By slot, those of removed bodies too.
     whereabouts: Vec<Whereabouts>,
+    /// By slot, the boxes of fixed and rigid bodies in their own coordinates; empty where there is none, or `f32` is too coarse.
+    hulls: Vec<Box32>,
     /// The generations of the next bodies in free slots, and these slots.
     free: Vec<BodyId>,
     membership: Membership,
@@ -112,6 +116,8 @@ pub struct World {
     has_known_dirty: bool,
     /// Counts the frames in which something changed.
     frame: u64,
+    /// The frame before the first one whose movers are not marked in their records yet.
+    unmarked_since: Option<u64>,
     /// Whether contacts are measured between frames, which needs to know where bodies came from.
     predicts: bool,
     /// Where the bodies that moved in this frame came from; empty unless `predicts`.
@@ -120,8 +126,6 @@ pub struct World {
     answers: u64,
     log: Log,
     workspaces: Vec<Workspace>,
-    /// The number of each body among those whose boxes changed last, by slot.
-    numbers: Vec<u32>,
 }
 
 /// Refuses a feature that a body does not have.
@@ -166,6 +170,7 @@ impl World {
             parallel: false,
             states: Vec::new(),
             whereabouts: Vec::new(),
+            hulls: Vec::new(),
             free: Vec::new(),
             membership: Membership::default(),
             tree: BodyTree::default(),
@@ -176,12 +181,12 @@ impl World {
             has_removed_dirty: false,
             has_known_dirty: false,
             frame: 0,
+            unmarked_since: None,
             predicts: false,
             came_from: Vec::new(),
             answers: 0,
             log: Log::default(),
             workspaces: vec![Workspace::new(false)],
-            numbers: Vec::new(),
         }
     }
 
@@ -276,9 +281,9 @@ impl World {
     pub fn bytes(&self) -> usize {
         self.states.capacity() * size_of::<Option<State>>()
             + self.whereabouts.capacity() * size_of::<Whereabouts>()
+            + self.hulls.capacity() * size_of::<Box32>()
             + self.tree.bytes()
             + self.pairs.bytes()
-            + self.numbers.capacity() * 4
             + (self.unpaired.capacity() + self.dirty.capacity()) * 4
             + self.movers.bytes()
             + self.came_from.capacity() * size_of::<(u32, CompactPlacement)>()

@@ -1,6 +1,7 @@
 //! What moves in the next frame: bodies are placed and deformed.
 
 use super::body::BodyId;
+use super::settle::half_of;
 use super::whereabouts::{Movement, is_upright};
 use super::{World, unknown};
 use crate::distance::Point;
@@ -22,6 +23,10 @@ pub(super) struct Movers {
 impl Movers {
     pub(super) fn is_empty(&self) -> bool {
         self.placed.is_empty() && self.deformed.is_empty()
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.placed.len() + self.deformed.len()
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -103,7 +108,10 @@ impl World {
             && !(whereabouts.is_upright(whereabouts.last()) && is_upright(rotation))
             && let Some(state) = &mut self.states[slot]
         {
-            step = state.turn(whereabouts, rotation, self.frame);
+            let (tree, half) = (&self.tree, half_of(self.threshold));
+            step = state.turn(whereabouts, rotation, self.frame, |state| {
+                tree.room(&tree.box_of(body.slot), state.mesh.extent(), half)
+            });
         }
         let shifted = whereabouts.shift(translation, self.frame);
         if step == Movement::Rests {

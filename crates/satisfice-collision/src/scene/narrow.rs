@@ -1,5 +1,6 @@
 //! The pairs of features of two bodies, or of one with itself, by a plan.
 
+use super::extent::largest;
 use super::filter::PairFilter;
 use super::pairs::{Record, Status};
 use super::plan::{Plan, Situation};
@@ -93,6 +94,28 @@ impl World {
     pub(super) fn boxes_apart(&self, [a, b]: [u32; 2]) -> bool {
         let bounds = |slot| self.state(slot).bounds();
         a != b && intersection(&bounds(a), &inflate(&bounds(b), self.threshold.get())).is_none()
+    }
+
+    /// Whether the hulls of two bodies that are not turned show that their inflated boxes do not meet.
+    pub(super) fn hulls_apart(&self, bodies: [u32; 2]) -> bool {
+        let [a, b] = bodies.map(|slot| {
+            let (whereabouts, hull) = (&self.whereabouts[slot as usize], &self.hulls[slot as usize]);
+            let place = whereabouts.present(self.frame);
+            let is_known = whereabouts.is_upright(place) && !hull.is_empty();
+            is_known.then(|| (whereabouts.translation(place), hull))
+        });
+        let (Some((at, one)), Some((to, two))) = (a, b) else {
+            return false;
+        };
+        let [low, high] = [two.min, two.max].map(|corner| corner.map(f64::from));
+        let [least, most] = [one.min, one.max].map(|corner| corner.map(f64::from));
+        // more than rounding moves the sides of posed boxes
+        let far = [&at, &to, &low, &high, &least, &most].map(largest);
+        let apart = self.threshold.get() * (1.0 + 1e-12) + 1e-13 * far.iter().sum::<f64>();
+        (0..3).any(|k| {
+            let way = to[k] - at[k];
+            (way + low[k] - most[k]).max(least[k] - high[k] - way) > apart
+        })
     }
 
     /// Finds the pairs of a record, or those found before the watch stops it. The trees of the plan exist.

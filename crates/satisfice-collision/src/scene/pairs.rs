@@ -54,6 +54,8 @@ pub(super) struct Record {
 #[derive(Default)]
 pub(super) struct Records {
     records: Vec<Record>,
+    /// The bodies of each record once more, so that looking through all of them reads little.
+    bodies: Vec<[u32; 2]>,
     free: Vec<u32>,
     /// The first member of each body's list, by slot.
     heads: Vec<u32>,
@@ -97,6 +99,7 @@ impl Records {
     pub(super) fn bytes(&self) -> usize {
         let contacts = self.records.iter().map(|record| record.pairs.capacity());
         self.records.capacity() * size_of::<Record>()
+            + self.bodies.capacity() * size_of::<[u32; 2]>()
             + (self.free.capacity() + self.heads.capacity()) * 4
             + contacts.sum::<usize>() * size_of::<Pair>()
     }
@@ -129,10 +132,12 @@ impl Records {
         let id = match self.free.pop() {
             Some(id) => {
                 self.records[id as usize] = record;
+                self.bodies[id as usize] = bodies;
                 id
             }
             None => {
                 super::push(&mut self.records, record);
+                super::push(&mut self.bodies, bodies);
                 self.records.len() as u32 - 1
             }
         };
@@ -156,6 +161,7 @@ impl Records {
         let record = &mut self.records[id as usize];
         let (bodies, next, before) = (record.bodies, record.next, record.before);
         record.bodies = [NONE; 2];
+        self.bodies[id as usize] = [NONE; 2];
         record.slack = None;
         let pairs = std::mem::take(&mut record.pairs);
         self.own -= usize::from(bodies[0] == bodies[1]);
@@ -178,6 +184,19 @@ impl Records {
         self.records
             .get(id as usize)
             .is_some_and(|record| record.bodies[0] != NONE)
+    }
+
+    /// The bodies of a record, if it exists.
+    pub(super) fn bodies_of(&self, id: u32) -> Option<[u32; 2]> {
+        self.bodies
+            .get(id as usize)
+            .copied()
+            .filter(|bodies| bodies[0] != NONE)
+    }
+
+    /// The bodies of the records from this one on; [`NONE`] for those that do not exist.
+    pub(super) fn bodies_from(&self, first: u32) -> &[[u32; 2]] {
+        self.bodies.get(first as usize..).unwrap_or_default()
     }
 
     /// The first member of a body's list.

@@ -2,25 +2,27 @@
 //! move.
 
 use super::World;
-use super::body_tree::{BodyTree, Change};
+use super::ahead::Ahead;
+use super::body_tree::{BodyTree, Change, Meeting};
 use super::pairs::{NONE, Status};
 use super::state::State;
 use super::whereabouts::Whereabouts;
 use crate::Aabb;
 use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
+use crate::simd::dispatch;
 
 /// The box of a moving body is widened by so many frames of its motion, where it goes...
-const FRAMES: f64 = 8.0;
+pub(super) const FRAMES: f64 = 8.0;
 /// ...and by so many in every direction...
-const ASIDE: f64 = 4.0;
+pub(super) const ASIDE: f64 = 4.0;
 /// ...but by at most these shares of its size.
-const MOST: f64 = 0.25;
-const MOST_ASIDE: f64 = 1.0 / 16.0;
-/// All records are looked through, in their order in memory, if more than this share of the bodies moves.
-const ALL_RECORDS: f64 = 0.2;
-/// Bodies that leave their boxes are fetched from memory so many at a time, side by side.
-const SIDE_BY_SIDE: usize = 32;
+pub(super) const MOST: f64 = 0.25;
+pub(super) const MOST_ASIDE: f64 = 1.0 / 16.0;
+/// All pairs are looked through, in their order in memory, if more than this share of the bodies leave their boxes.
+const ALL_PAIRS: f64 = 1.0 / 64.0;
+/// Pairs are looked through so many at a time: first for changed bodies, without a branch, then those.
+const AT_A_TIME: usize = 1024;
 
 impl World {
     /// Changes the threshold for the next frame, which searches all pairs of bodies again.
@@ -89,20 +91,14 @@ impl World {
         let mut changes = Vec::new();
         self.move_rigid(&mut changes);
         self.move_deforming(&mut changes);
-        let many = self.movers.placed.len() + self.movers.deformed.len();
-        let many = many as f64 > ALL_RECORDS * self.len() as f64;
         self.add_unpaired(&mut changes);
         if self.tree.is_empty() || self.tree.has_left_frame() {
             changes = self.build_tree();
         } else if !changes.is_empty() {
             self.tree.follow(&mut changes);
         }
-        if many {
-            self.go_through_records(&changes);
-        } else {
-            self.mark_records();
-            self.end_pairs(&changes);
-        }
+        self.note_movers();
+        self.end_pairs(&changes);
         self.begin_pairs(&changes);
         self.movers.placed.clear();
         self.movers.deformed.clear();
@@ -123,41 +119,35 @@ impl World {
             }
         }
         let half = self.half_threshold();
-        let mut leaving = std::mem::take(&mut self.movers.leaving);
-        let mut gone = Vec::with_capacity(SIDE_BY_SIDE);
-        for chunk in leaving.chunks(SIDE_BY_SIDE) {
-            gone.clear();
-            for &slot in chunk {
-                // a body that was removed, replaced or placed again may stay
-                let whereabouts = &mut self.whereabouts[slot as usize];
-                if std::mem::take(&mut whereabouts.leaves)
-                    && !whereabouts.is_in_room()
-                    && let Some(state) = &self.states[slot as usize]
-                {
-                    gone.push((slot, state.fits));
-                }
-            }
-            for &(slot, fits) in &gone {
-                self.leave(slot, fits, half, changes);
-            }
+        let leaving = std::mem::take(&mut self.movers.leaving);
+        changes.reserve(leaving.len());
+        let others = dispatch(Ahead {
+            leaving: &leaving,
+            whereabouts: &mut self.whereabouts,
+            hulls: &self.hulls,
+            tree: &self.tree,
+            half,
+            changes,
+        });
+        for slot in others {
+            self.leave(slot, half, changes);
         }
-        leaving.clear();
         self.movers.leaving = leaving;
+        self.movers.leaving.clear();
     }
 
     /// Gives a rigid body another box in the tree, unless it is in the one that it has.
-    fn leave(&mut self, slot: u32, fits: bool, half: f64, changes: &mut Vec<Change>) {
+    fn leave(&mut self, slot: u32, half: f64, changes: &mut Vec<Change>) {
         let Some(state) = self.states[slot as usize].as_mut() else {
             return;
         };
         let whereabouts = &mut self.whereabouts[slot as usize];
         let new = state.at(whereabouts, self.frame).bounds();
         // a ball that fitted fills the box about as well as the body does
-        if fits || !self.tree.holds(slot, &inflate(&new, half)) {
+        if state.fits || !self.tree.holds(slot, &inflate(&new, half)) {
             let (from, motion) = state.came_from(whereabouts);
             let fat = fattened(&new, half, from, motion);
             let fat = self.tree.place(&fat);
-            // at once: the body may be far away in memory later
             give_room(&self.tree, state, whereabouts, &fat, half);
             changes.push(Change::to(slot, fat));
         }
@@ -227,77 +217,31 @@ impl World {
             is_recheck: self.tree.contains(body),
             ..Change::to(body, Box32::EMPTY)
         };
-        let changes = boxes.iter().map(change).collect();
+        let mut changes: Vec<Change> = boxes.iter().map(change).collect();
         self.tree.build(&boxes);
-        for &(slot, _) in &boxes {
-            if let Some(state) = self.states[slot as usize].as_mut() {
-                let known = self.tree.box_of(slot);
-                give_room(
-                    &self.tree,
-                    state,
-                    &mut self.whereabouts[slot as usize],
-                    &known,
-                    half,
-                );
+        for change in &mut changes {
+            let slot = change.body as usize;
+            change.to = self.tree.box_of(change.body);
+            if let Some(state) = self.states[slot].as_mut() {
+                give_room(&self.tree, state, &mut self.whereabouts[slot], &change.to, half);
             }
         }
         changes
     }
 
-    /// Marks the records of all bodies that have moved, and removes those whose boxes are apart now.
-    fn go_through_records(&mut self, changes: &[Change]) {
-        if self.pairs.len() == 0 {
-            return;
-        }
-        let mut has_moved = vec![false; self.states.len()];
-        for &slot in self.movers.placed.iter().chain(&self.movers.deformed) {
-            has_moved[slot as usize] = true;
-        }
-        let mut has_changed = vec![false; self.states.len()];
-        for change in changes {
-            has_changed[change.body as usize] = true;
-        }
-        for id in 0..self.pairs.end() {
-            if !self.pairs.contains(id) {
-                continue;
-            }
-            let record = &mut self.pairs[id];
-            let [a, b] = record.bodies.map(|slot| slot as usize);
-            if has_moved[a] || has_moved[b] {
-                self.has_known_dirty |= record.has_moved();
-                if !std::mem::replace(&mut record.is_dirty, true) {
-                    self.dirty.push(id);
-                }
-            }
-            if (has_changed[a] || has_changed[b]) && a != b && !self.tree.overlap(a as u32, b as u32) {
-                self.remove_record(id);
-            }
-        }
-    }
-
-    /// Marks the records of the bodies that have moved: they are no longer current.
-    fn mark_records(&mut self) {
-        for &slot in self.movers.placed.iter().chain(&self.movers.deformed) {
-            let mut member = self.pairs.first(slot);
-            while member != NONE {
-                let record = member / 2;
-                member = self.pairs.next(member);
-                let known = &mut self.pairs[record];
-                self.has_known_dirty |= known.has_moved();
-                if !std::mem::replace(&mut known.is_dirty, true) {
-                    self.dirty.push(record);
-                }
-            }
-        }
-    }
-
-    /// Two boxes inflated by this meet if their bodies can be within the threshold.
     fn half_threshold(&self) -> f64 {
-        self.threshold.get() * 0.5 * (1.0 + 1e-9)
+        half_of(self.threshold)
     }
 
     /// Removes the records of changed bodies whose boxes are apart now.
     fn end_pairs(&mut self, changes: &[Change]) {
+        if self.pairs.len() == 0 {
+            return;
+        }
+        if changes.len() as f64 > ALL_PAIRS * self.len() as f64 {
+            self.end_among_all(changes);
+            return;
+        }
         for change in changes {
             let mut member = self.pairs.first(change.body);
             while member != NONE {
@@ -311,41 +255,64 @@ impl World {
         }
     }
 
+    /// The same, looking through all pairs in their order in memory.
+    fn end_among_all(&mut self, changes: &[Change]) {
+        // one more, for removed records
+        let none = self.states.len();
+        let mut has_changed = vec![0_u8; none + 1];
+        for change in changes {
+            has_changed[change.body as usize] = 1;
+        }
+        let mut changed = [0; AT_A_TIME];
+        for start in (0..self.pairs.end()).step_by(AT_A_TIME) {
+            let mut count = 0;
+            for (record, bodies) in (start..).zip(self.pairs.bodies_from(start).iter().take(AT_A_TIME)) {
+                let [a, b] = bodies.map(|slot| has_changed[none.min(slot as usize)]);
+                changed[count] = record;
+                count += usize::from(a | b);
+            }
+            for &record in &changed[..count] {
+                if let Some([a, b]) = self.pairs.bodies_of(record)
+                    && a != b
+                    && !self.tree.overlap(a, b)
+                {
+                    self.remove_record(record);
+                }
+            }
+        }
+    }
+
     /// Adds records for bodies whose boxes meet now and did not before. Two bodies that may collide have a record if their boxes in
     /// the tree meet, so that the boxes tell whether there was one.
     fn begin_pairs(&mut self, changes: &[Change]) {
         if changes.is_empty() {
             return;
         }
-        let mut numbers = std::mem::take(&mut self.numbers);
-        numbers.resize(self.states.len(), 0);
-        for (number, change) in (0..).zip(changes) {
-            numbers[change.body as usize] = number;
-        }
-        let tree = std::mem::take(&mut self.tree);
-        tree.changed_pairs(|a, b| {
-            let [one, two] = [a, b].map(|body| {
-                let change = changes.get(numbers[body as usize] as usize);
-                change.filter(|change| change.body == body)
-            });
-            let had_record = if [one, two].into_iter().flatten().any(|change| change.is_recheck) {
-                self.pairs
-                    .of(a)
-                    .any(|record| self.pairs[record].bodies.contains(&b))
-            } else {
-                let before = |change: Option<&Change>, body| {
-                    change.map_or_else(|| tree.box_of(body), |change| change.before)
-                };
-                before(one, a).overlaps(&before(two, b))
-            };
-            if !had_record && self.collides(a, b) {
-                self.pair_up(a, b);
-            }
-        });
+        let mut tree = std::mem::take(&mut self.tree);
+        tree.begun(
+            changes,
+            |Meeting {
+                 bodies: [a, b],
+                 is_recheck,
+             }| {
+                let is_known = is_recheck
+                    && self
+                        .pairs
+                        .of(a)
+                        .any(|record| self.pairs[record].bodies.contains(&b));
+                if !is_known && self.collides(a, b) {
+                    self.pair_up(a, b);
+                }
+            },
+        );
+        tree.forget_changes();
         self.tree = tree;
-        self.tree.forget_changes();
-        self.numbers = numbers;
     }
+}
+
+/// Two boxes inflated by this meet if their bodies can be within the threshold.
+pub(super) fn half_of(threshold: Threshold) -> f64 {
+    threshold.get() * 0.5 * (1.0 + 1e-9)
 }
 
 /// The middle of a box.
@@ -355,7 +322,7 @@ fn middle(bounds: &Aabb) -> Point {
 
 /// Tells a body how far it may go in a box.
 fn give_room(tree: &BodyTree, state: &mut State, whereabouts: &mut Whereabouts, bounds: &Box32, half: f64) {
-    state.set_room(whereabouts, tree.room(bounds, state.mesh.extent(), half));
+    state.set_room(whereabouts, &tree.room(bounds, state.mesh.extent(), half));
 }
 
 /// A box that will hold a body, and `half` around it, for some frames if it continues as from a box around `from` to `new`, and for some

@@ -7,20 +7,17 @@ use super::SharedMesh;
 use super::body::{Body, Motion};
 use super::deforming::Deforming;
 use super::extent::largest;
-use super::whereabouts::{Movement, NOWHERE, Rotations, Whereabouts};
+use super::whereabouts::{Movement, Rotations, Whereabouts};
 use crate::broad::{BlockBounds, Dirty, FeatureTree};
 use crate::mesh::Point;
 use crate::placement::{CompactPlacement, rotate};
 use crate::{Aabb, Error, FeatureKind, Placement, Shape};
 
-/// A body in its world, besides its whereabouts. What is read of a rigid body that leaves its box comes first, on one line of memory.
-#[repr(C, align(8))]
+/// A body in its world, besides its whereabouts.
 pub(super) struct State {
     pub(super) mesh: SharedMesh,
-    /// Where the centre of a rigid body may go so that its box in the tree still holds it, however it turns.
-    centre_room: Aabb,
     pub(super) kind: Motion,
-    /// Whether the centre was there when the box was chosen.
+    /// Whether the ball around a rigid body was in its box in the tree when the box was chosen.
     pub(super) fits: bool,
     /// The rotations of its places.
     rotations: Rotations,
@@ -45,7 +42,6 @@ impl State {
         whereabouts.begin(&mut rotations, &body.placement);
         let state = Self {
             rotations,
-            centre_room: NOWHERE,
             fits: false,
             kind: body.motion,
             motion: f64::INFINITY,
@@ -73,33 +69,34 @@ impl State {
         check(&self.mesh, &placement, &self.mesh.extent().posed(&placement))
     }
 
-    /// Turns the body in the next frame, if that is another rotation than the one given last.
+    /// Turns the body in the next frame, if that is another rotation than the one given last. `centre_room` is where the centre of a
+    /// rigid body may go so that its box in the tree still holds it, however it turns.
     pub(super) fn turn(
         &mut self,
         whereabouts: &mut Whereabouts,
         rotation: &[f64; 4],
         frame: u64,
+        centre_room: impl FnOnce(&Self) -> Aabb,
     ) -> Movement {
         if !whereabouts.turns_to(&self.rotations, rotation) {
             return Movement::Rests;
         }
         let step = whereabouts.turn(&mut self.rotations, rotation, frame);
-        self.give_room(whereabouts);
+        self.give_room(whereabouts, &centre_room(self));
         step
     }
 
-    /// Chooses where the centre may go; a room that does not hold it says so.
-    pub(super) fn set_room(&mut self, whereabouts: &mut Whereabouts, centre_room: Aabb) {
-        self.centre_room = centre_room;
-        self.give_room(whereabouts);
+    /// Tells where the centre may go; a room that does not hold it says so.
+    pub(super) fn set_room(&mut self, whereabouts: &mut Whereabouts, centre_room: &Aabb) {
+        self.give_room(whereabouts, centre_room);
         self.fits = whereabouts.is_in_room();
     }
 
-    fn give_room(&self, whereabouts: &mut Whereabouts) {
+    fn give_room(&self, whereabouts: &mut Whereabouts, centre_room: &Aabb) {
         let rotation = whereabouts.rotation(&self.rotations);
         let centre = self.mesh.extent().centre();
         let offset = rotation.map_or(centre, |rotation| rotate(*rotation, centre));
-        whereabouts.give_room(&self.centre_room, &offset);
+        whereabouts.give_room(centre_room, &offset);
     }
 
     /// The placement given last.

@@ -95,7 +95,7 @@ impl World {
 
     /// The contacts as of the last update, in no particular order of bodies; those of two bodies are sorted.
     pub fn contacts(&self) -> impl Iterator<Item = Contact> {
-        let shown = self.pairs.iter().filter(|(_, record)| record.status.is_shown());
+        let shown = self.pairs.iter().filter(|(_, record)| self.is_shown(record));
         shown.flat_map(|(_, record)| record.pairs.iter().map(|&pair| self.contact(record, pair)))
     }
 
@@ -104,7 +104,7 @@ impl World {
     pub fn sorted_contacts(&self) -> Vec<Contact> {
         let shown = self.pairs.iter().map(|(_, record)| record);
         let mut records: Vec<_> = shown
-            .filter(|record| record.status.is_shown() && !record.pairs.is_empty())
+            .filter(|record| !record.pairs.is_empty() && self.is_shown(record))
             .collect();
         records.sort_unstable_by_key(|record| record.bodies);
         let mut contacts = Vec::with_capacity(records.iter().map(|record| record.pairs.len()).sum());
@@ -227,8 +227,12 @@ impl World {
     /// Chooses how to find the pairs of a record, and sees to the trees for it.
     fn prepare(&mut self, record: u32) -> Result<Plan, Error> {
         let known = &self.pairs[record];
-        let (bodies, situation) = (known.bodies, self.situation(known));
-        let plan = situation.plan();
+        let bodies = known.bodies;
+        // most of those whose boxes are apart need nothing else
+        let plan = match known.status != Status::Current && self.hulls_apart(bodies) {
+            true => Plan::Apart,
+            false => self.situation(known).plan(),
+        };
         if matches!(plan, Plan::Tree | Plan::All) {
             self.ensure_trees(bodies)?;
         }
@@ -269,6 +273,7 @@ impl World {
 
     /// The records to examine, each once. The caller puts them back.
     pub(super) fn take_dirty(&mut self) -> Vec<u32> {
+        self.mark_moved();
         let mut dirty = std::mem::take(&mut self.dirty);
         if std::mem::take(&mut self.has_removed_dirty) {
             dirty.retain(|&record| self.pairs.contains(record) && self.pairs[record].is_dirty);

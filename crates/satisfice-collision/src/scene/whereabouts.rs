@@ -22,6 +22,8 @@ pub(super) struct Whereabouts {
     last: bool,
     /// The frame in which the place given last is the present one.
     pub(super) moved_at: u64,
+    /// The same of the place before that, where the one given last is that of the next frame.
+    moved_before: u64,
     /// Translations.
     at: [Point; 2],
     /// Where the translation may be so that the body's box in the tree still holds it, turned as it was given last.
@@ -63,6 +65,7 @@ impl Whereabouts {
             leaves: false,
             last: false,
             moved_at: 0,
+            moved_before: 0,
             at: [[0.0; 3]; 2],
             room: NOWHERE,
             turns: [UPRIGHT; 2],
@@ -94,6 +97,14 @@ impl Whereabouts {
     #[inline]
     pub(super) fn is_pending(&self, frame: u64) -> bool {
         self.moved_at > frame
+    }
+
+    /// The frame in which it came to its present place.
+    pub(super) fn came_at(&self, frame: u64) -> u64 {
+        match self.is_pending(frame) {
+            true => self.moved_before,
+            false => self.moved_at,
+        }
     }
 
     /// The number of the place given last.
@@ -167,11 +178,12 @@ impl Whereabouts {
         }
         let next = 1 - present;
         (self.at[next], self.turns[next]) = (to, turn);
-        (self.last, self.moved_at) = (next == 1, frame + 1);
-        match was_pending {
-            true => Movement::Continues,
-            false => Movement::Begins,
+        self.last = next == 1;
+        if was_pending {
+            return Movement::Continues;
         }
+        (self.moved_before, self.moved_at) = (self.moved_at, frame + 1);
+        Movement::Begins
     }
 
     /// Tells where the centre of the body, which is so far from its origin, may go.
@@ -185,6 +197,19 @@ impl Whereabouts {
             min: std::array::from_fn(low),
             max: std::array::from_fn(high),
         };
+    }
+
+    /// Tells where the body, turned as it is, may go.
+    #[inline]
+    pub(super) fn set_room(&mut self, room: Aabb) {
+        self.room = room;
+    }
+
+    /// The last two translations, the older one first, if neither place turns the body.
+    #[inline]
+    pub(super) fn upright_way(&self) -> Option<[Point; 2]> {
+        let last = self.last();
+        (self.turns == [UPRIGHT; 2]).then(|| [self.at[1 - last], self.at[last]])
     }
 
     /// Whether the place given last lies in the room.

@@ -201,7 +201,7 @@ pub(crate) trait Lanes: Copy + Send + Sync {
 /// A comparison of eight `f32`.
 pub(crate) type Mask<L> = <<L as Lanes>::Single as Floats>::Mask;
 /// Four `f64` in registers.
-type DoubleNumber<L> = <<L as Lanes>::Double as Floats>::Number;
+pub(crate) type DoubleNumber<L> = <<L as Lanes>::Double as Floats>::Number;
 
 /// A piece of work that runs inside a function compiled for the vector unit found.
 pub(crate) trait Work {

@@ -115,6 +115,7 @@ impl World {
     /// The records of the present frame in the order of their bodies.
     pub(super) fn by_bodies(&mut self) -> Vec<u32> {
         self.settle();
+        self.mark_moved();
         let mut records: Vec<_> = self
             .pairs
             .iter()
