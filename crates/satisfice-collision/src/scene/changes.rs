@@ -54,31 +54,31 @@ pub(super) struct Log {
     entries: Vec<Entry>,
     /// Whether an update has ended since the first entry.
     is_over: bool,
-    /// Whether the entries are forgotten. Their memory is given back by the next update, not by whoever places a body.
-    is_void: bool,
+    /// So many entries, the first ones, are forgotten. Their memory is given back by the next update, not by whoever places a body.
+    void: usize,
 }
 
 impl Log {
     /// Starts a new frame and forgets the last update.
     pub(super) fn begin(&mut self) {
-        self.is_void |= std::mem::take(&mut self.is_over);
+        if std::mem::take(&mut self.is_over) {
+            self.void = self.entries.len();
+        }
+    }
+
+    /// Gives back the memory of what is forgotten.
+    pub(super) fn clean(&mut self) {
+        self.entries.drain(..std::mem::take(&mut self.void));
     }
 
     /// An update has ended.
     pub(super) fn end(&mut self) {
-        self.clear_void();
+        self.clean();
         self.is_over = true;
-    }
-
-    fn clear_void(&mut self) {
-        if std::mem::take(&mut self.is_void) {
-            self.entries.clear();
-        }
     }
 
     /// Notes which pairs there were before.
     pub(super) fn note(&mut self, bodies: [BodyId; 2], record: u32, before: Vec<Pair>) {
-        self.clear_void();
         self.entries.push(Entry {
             bodies,
             record,

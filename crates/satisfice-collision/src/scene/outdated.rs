@@ -42,7 +42,7 @@ impl World {
             let Some(bodies) = self.pairs.bodies_of(id) else {
                 continue;
             };
-            if !self.has_moved_since(bodies, since) {
+            if !self.has_moved_since(bodies, since) || self.stays_apart(id) {
                 continue;
             }
             let known = &mut self.pairs[id];
@@ -55,6 +55,12 @@ impl World {
                 self.dirty.push(id);
             }
         }
+    }
+
+    /// Whether the boxes of a record were apart, and still are: nothing is to be found.
+    fn stays_apart(&self, id: u32) -> bool {
+        let record = &self.pairs[id];
+        record.apart && record.status == Status::Current && self.hulls_apart(record.bodies)
     }
 
     /// Whether the contacts of a record are those of the present frame.

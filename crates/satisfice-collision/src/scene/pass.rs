@@ -109,6 +109,7 @@ impl World {
     #[must_use]
     pub fn pass(&mut self) -> Pass {
         self.log.begin();
+        self.log.clean();
         self.settle();
         self.dirty = self.take_dirty();
         let mut order: Vec<_> = self

@@ -15,7 +15,7 @@ use crate::simd::dispatch;
 /// The box of a moving body is widened by so many frames of its motion, where it goes...
 pub(super) const FRAMES: f64 = 8.0;
 /// ...and by so many in every direction...
-pub(super) const ASIDE: f64 = 4.0;
+pub(super) const ASIDE: f64 = 6.0;
 /// ...but by at most these shares of its size.
 pub(super) const MOST: f64 = 0.25;
 pub(super) const MOST_ASIDE: f64 = 1.0 / 16.0;

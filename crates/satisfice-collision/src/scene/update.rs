@@ -116,6 +116,7 @@ impl World {
 
     fn refresh(&mut self, watch: &Watch<'_>) -> Result<Update, Error> {
         self.log.begin();
+        self.log.clean();
         self.settle();
         let mut skips = Skips::default();
         let mut dirty = self.take_dirty();
