@@ -433,6 +433,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.whole, self.patches, self.progress) = from.read()?;
         self.drought = from.read()?;
         (self.chosen, self.planned) = from.read()?;
+        self.pace = Pace::new(self.planned.is_none());
         (self.batch, self.block, self.next_descent) = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();
