@@ -28,7 +28,7 @@ engine_settings! {
     ///   that is proposed and not told yet; such points count as told with `F = delta` (constant liar: Ginsbourger, Le Riche,
     ///   Carraro 2010, doi 10.1007/978-3-642-10701-6_6).
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
-    /// - Where the problem tells the [components](crate::capability::Components) of F, each is modelled, with length scales in common, and the score
+    /// - Where the problem tells the [components](crate::Components) of F, each is modelled, with length scales in common, and the score
     ///   is the probability that all are within their limits. Damped Gauss-Newton steps lead from candidates to roots of the models.
     /// - Points that turn out to be the same as a hit only once they are evaluated are no part of the model; from them the
     ///   engine learns how far apart distinct hits are.

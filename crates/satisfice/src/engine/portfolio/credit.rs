@@ -14,7 +14,7 @@ const PRIOR_HITS: f64 = 0.15;
 /// Largest share of all evaluations for one source without a hit, and for all such sources together.
 const BARREN_SHARE: f64 = 0.04;
 const BARREN_SHARES: f64 = 0.18;
-/// Largest share for all of them together while a model of F is at work: the model learns less from their evaluations than from its own.
+/// Largest share of the evaluations that do not hit for all of them together while a model of F is at work: the model learns less from their evaluations than from its own.
 const SHARE_BESIDE_MODEL: f64 = 0.06;
 /// A source without a hit may begin with one evaluation for every `PLANNED` planned ones, and `BARREN_START` at most.
 const PLANNED: f64 = 50.0;
