@@ -121,7 +121,7 @@ pub trait Bounds<S> {
 ///     type Scalar = f64;
 ///     type Solution = Located<f64>;
 ///     fn space(&self) -> &Space<f64> { &self.0 }
-///     fn decode(&self, values: &[f64]) -> Located<f64> { Located::new(values.to_vec(), 0.05) }
+///     fn decode(&self, values: &[f64]) -> Located<f64> { Located::new(values, 0.05) }
 ///     fn fitness(&self, at: &Located<f64>) -> f64 {
 ///         let [a, b] = Self::residuals(&at.coordinates);
 ///         a.abs().max(b.abs())

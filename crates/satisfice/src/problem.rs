@@ -116,11 +116,14 @@ pub struct FnProblem<S, F> {
     name: String,
 }
 
+/// Writes the components of F at values.
+type WriteComponents<S> = dyn Fn(&[S], &mut [S]) + Send + Sync;
+
 /// The components of F of a [`FnProblem`].
 #[derive(Clone)]
 struct FnComponents<S> {
     count: usize,
-    write: Arc<dyn Fn(&[S], &mut [S]) + Send + Sync>,
+    write: Arc<WriteComponents<S>>,
 }
 
 impl<S> core::fmt::Debug for FnComponents<S> {

@@ -6,7 +6,7 @@ use core::ops::Range;
 use crate::accounting::Ledger;
 use crate::archive::Archive;
 use crate::budget::Budget;
-use crate::capability::{Encoding, Neighbourhood};
+use crate::capability::{Components, Encoding, Neighbourhood};
 use crate::context::Context;
 use crate::problem::SatisficingProblem;
 use crate::scalar::Real;
@@ -261,9 +261,7 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         }
     }
     fn component_count(&self) -> usize {
-        self.problem
-            .components()
-            .map_or(0, |components| components.count())
+        self.problem.components().map_or(0, Components::count)
     }
     fn components(&self, position: &[P::Scalar], out: &mut [P::Scalar]) {
         if let Some(components) = self.problem.components() {
