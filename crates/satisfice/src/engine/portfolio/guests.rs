@@ -278,7 +278,6 @@ impl<S: Real> Guests<S> {
         Some([find(GuestKind::Model)?, find(GuestKind::Quadratic)?])
     }
 
-    /// Whether the model knows the components of F.
     pub(super) fn has_components(&self) -> bool {
         self.components
     }
