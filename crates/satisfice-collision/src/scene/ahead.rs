@@ -1,6 +1,6 @@
 //! Next boxes of bodies that leave theirs and are not turned.
 
-use super::body_tree::{BodyTree, Change, Frame};
+use super::body_tree::{BodyTree, Change, TreeFrame};
 use super::settle::{ASIDE, FRAMES, MOST, MOST_ASIDE};
 use super::whereabouts::Whereabouts;
 use crate::Aabb;
@@ -50,7 +50,7 @@ impl Work for Ahead<'_> {
 #[inline(always)]
 pub(super) fn ahead<L: Lanes>(
     unit: L,
-    frame: &Frame,
+    frame: &TreeFrame,
     hull: &Box32,
     [from, to]: [Point; 2],
     half: f64,

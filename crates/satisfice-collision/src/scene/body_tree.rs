@@ -60,7 +60,7 @@ impl Box32 {
 }
 
 /// Coordinates in the tree count from the origin, in this unit, which is one divided by the scale.
-pub(super) struct Frame {
+pub(super) struct TreeFrame {
     pub(super) origin: [f64; 3],
     pub(super) scale: f64,
     pub(super) unit: f64,
@@ -208,8 +208,8 @@ impl BodyTree {
     }
 
     /// The frame of the boxes.
-    pub(super) fn frame(&self) -> Frame {
-        Frame {
+    pub(super) fn frame(&self) -> TreeFrame {
+        TreeFrame {
             origin: self.origin,
             scale: self.scale,
             unit: 1.0 / self.scale,

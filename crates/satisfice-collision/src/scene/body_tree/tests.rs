@@ -284,7 +284,7 @@ fn a_body_in_its_room_is_in_its_box() {
     }
 }
 
-struct OneAhead<'a>(&'a Frame, &'a Box32, [[f64; 3]; 2], f64);
+struct OneAhead<'a>(&'a TreeFrame, &'a Box32, [[f64; 3]; 2], f64);
 
 impl Work for OneAhead<'_> {
     type Output = (Box32, Aabb);
