@@ -81,6 +81,11 @@ pub trait Context<S: Real> {
         None
     }
 
+    /// Whether time is limited and evaluations are not: such a search may choose by the clock, any other gives the same hits again.
+    fn is_timed(&self) -> bool {
+        false
+    }
+
     /// Whether the time of the slice has run out: nothing proposed from now on is evaluated, so that an engine need not go on with
     /// costly work. `false` where no time limits the slice, which does then not depend on the clock.
     fn is_out_of_time(&self) -> bool {

@@ -310,6 +310,9 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         let timed = self.evaluations_planned().is_none();
         timed.then(|| self.ledger.seconds_an_evaluation()).flatten()
     }
+    fn is_timed(&self) -> bool {
+        self.evaluations_planned().is_none() && self.ledger.budget.time.is_some()
+    }
     fn is_out_of_time(&self) -> bool {
         self.ledger.is_out_of_time()
     }

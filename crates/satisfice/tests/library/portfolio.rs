@@ -174,3 +174,18 @@ fn niching_searches_once_no_source_finds_anything() {
     let later = proposed(5_600);
     assert!(later > 1_000, "{later}");
 }
+
+/// No time is limited, so that no source is charged with time.
+#[test]
+fn a_search_for_some_hits_finds_the_same_again() {
+    let ring = from_fn(Space::lattice(4, 1000).unwrap(), 3.0, |x: &[f64]| {
+        (x.iter().map(|x| (x - 500.0).powi(2)).sum::<f64>().sqrt() - 300.0).abs()
+    });
+    let search = || {
+        let report = Search::new().seed(4).run(&ring, &Budget::hits(3_000)).unwrap();
+        assert_eq!(report.hit_count(), 3_000);
+        (report.counts.evaluations, report.hits().last().unwrap().evaluation)
+    };
+    let first = search();
+    assert_eq!([first; 3], [search(), search(), search()]);
+}

@@ -63,6 +63,10 @@ impl<const SOURCES: usize> Pace<SOURCES> {
         }
     }
 
+    pub(super) fn is_timed(&self) -> bool {
+        self.timed
+    }
+
     /// Begins a turn of a source; the stopwatch, if it is measured.
     pub(super) fn proposes(&mut self, source: usize) -> Option<Stopwatch> {
         (self.timed && self.proposals[source].is_due()).then(Stopwatch::start)

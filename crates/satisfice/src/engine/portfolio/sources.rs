@@ -164,7 +164,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.next_descent = 0;
         self.arms = [Credit::default(); ARMS];
         self.whole = Credit::default();
-        self.pace = Pace::new(context.evaluations_planned().is_none());
+        self.pace = Pace::new(context.is_timed());
         self.patches = Patches::default();
         self.drought = Drought::default();
         self.progress = Progress::default();
@@ -201,7 +201,8 @@ impl<S: Real> Engine<S> for Sources<S> {
             1
         };
         let wanted = self.asked_for.unwrap_or_else(|| context.parallel().max(first));
-        self.is_quick = context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
+        self.is_quick =
+            context.is_timed() && context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
         let slow = if self.is_quick { SLOW_WHERE_QUICK } else { SLOW };
         self.batch = self
             .asked_for
@@ -409,7 +410,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position.save(state);
         (self.whole, self.patches, self.progress.clone()).save(state);
         self.drought.save(state);
-        (self.chosen, self.planned).save(state);
+        (self.chosen, self.planned, self.pace.is_timed()).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);
         for descent in &self.descents {
@@ -432,8 +433,9 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position = from.read()?;
         (self.whole, self.patches, self.progress) = from.read()?;
         self.drought = from.read()?;
-        (self.chosen, self.planned) = from.read()?;
-        self.pace = Pace::new(self.planned.is_none());
+        let timed;
+        (self.chosen, self.planned, timed) = from.read()?;
+        self.pace = Pace::new(timed);
         (self.batch, self.block, self.next_descent) = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();
