@@ -184,7 +184,10 @@ fn a_search_for_some_hits_finds_the_same_again() {
     let search = || {
         let report = Search::new().seed(4).run(&ring, &Budget::hits(3_000)).unwrap();
         assert_eq!(report.hit_count(), 3_000);
-        (report.counts.evaluations, report.hits().last().unwrap().evaluation)
+        (
+            report.counts.evaluations,
+            report.hits().last().unwrap().evaluation,
+        )
     };
     let first = search();
     assert_eq!([first; 3], [search(), search(), search()]);
