@@ -14,7 +14,8 @@ const PRIOR_HITS: f64 = 0.15;
 /// Largest share of all evaluations for one source without a hit, and for all such sources together.
 const BARREN_SHARE: f64 = 0.04;
 const BARREN_SHARES: f64 = 0.18;
-/// Largest share of the evaluations that do not hit for all of them together while a model of F is at work: the model learns less from their evaluations than from its own.
+/// Largest share of the evaluations that do not hit for all of them together while a model of F is at work: the model learns less from
+/// their evaluations than from its own.
 const SHARE_BESIDE_MODEL: f64 = 0.06;
 /// A source without a hit may begin with one evaluation for every `PLANNED` planned ones, and `BARREN_START` at most.
 const PLANNED: f64 = 50.0;
@@ -78,8 +79,8 @@ impl Trial {
 }
 
 impl Credit {
-    /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to the hits expected of it. Where hits are rare, little else tells the sources
-    /// apart, so misses are not forgotten.
+    /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to
+    /// the hits expected of it. Where hits are rare, little else tells the sources apart, so misses are not forgotten.
     #[inline]
     pub(super) fn count(&mut self, hit: bool, cost: f64) {
         if self.hits > 0.0 {
