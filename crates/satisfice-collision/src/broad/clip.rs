@@ -2,6 +2,7 @@
 //! coordinates of a frame.
 
 use super::frame::LocalFrame;
+use crate::mesh::all_finite;
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Aabb, Error};
 
@@ -41,7 +42,7 @@ impl BlockBounds {
                 .reduce(|| true, |a, b| a & b)
         };
         if !finite {
-            check_finite(points)?;
+            all_finite(points.iter().copied())?;
         }
         self.whole = self.boxes.iter().copied().reduce(|a, b| union(&a, &b));
         Ok(())
@@ -69,23 +70,6 @@ impl BlockBounds {
         let runs = (0..).zip(&self.boxes);
         list.extend(runs.filter_map(|(run, bounds)| intersection(bounds, region).map(|_| run)));
     }
-}
-
-/// Names the first point that is not finite.
-///
-/// # Errors
-/// [`Error::NonFiniteVertex`].
-fn check_finite(points: &[[f64; 3]]) -> Result<(), Error> {
-    for (vertex, point) in points.iter().enumerate() {
-        if let Some(k) = point.iter().position(|c| !c.is_finite()) {
-            return Err(Error::NonFiniteVertex {
-                vertex,
-                axis: ['x', 'y', 'z'][k],
-                value: point[k],
-            });
-        }
-    }
-    Ok(())
 }
 
 const EMPTY: Aabb = Aabb {

@@ -7,7 +7,7 @@ use super::relative::{Composition, Relative};
 use super::separating_axis::Triangles;
 use super::traverse::{CandidateSink, Descend, TreeWork, Trees, Visit};
 use crate::distance::{self, Decision, EdgeBatch, Point, Threshold, TriangleBatch, VertexBatch};
-use crate::mesh::Features;
+use crate::mesh::{Features, all_finite};
 use crate::simd::dispatch;
 use crate::{Error, FeatureKind, Placement, Shape};
 
@@ -360,15 +360,5 @@ fn check_pose(tree: &FeatureTree, pose: &Placement) -> Result<(), Error> {
     if (4.0 * farthest + moved).is_finite() {
         return Ok(());
     }
-    for (vertex, &point) in tree.vertices().iter().enumerate() {
-        let posed = pose.apply(point);
-        if let Some(k) = posed.iter().position(|c| !c.is_finite()) {
-            return Err(Error::NonFiniteVertex {
-                vertex,
-                axis: ['x', 'y', 'z'][k],
-                value: posed[k],
-            });
-        }
-    }
-    Ok(())
+    all_finite(tree.vertices().iter().map(|&point| pose.apply(point)))
 }

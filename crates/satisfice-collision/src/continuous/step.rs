@@ -5,6 +5,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use super::Moving;
 use super::tree::{BoxFrame, MIXED, MovingTree};
 use crate::distance::{PairKind, Point, Segment, Triangle};
+use crate::mesh::all_finite;
 use crate::{Error, Mesh};
 
 /// Meshes that move from one frame to the next, every vertex along a straight line at constant speed.
@@ -379,14 +380,5 @@ fn check(what: &'static str, frame: &[Point], count: usize) -> Result<(), Error>
             "as many as at the other end; both frames need the same topology",
         ));
     }
-    for (vertex, point) in frame.iter().enumerate() {
-        if let Some(k) = point.iter().position(|x| !x.is_finite()) {
-            return Err(Error::NonFiniteVertex {
-                vertex,
-                axis: ['x', 'y', 'z'][k],
-                value: point[k],
-            });
-        }
-    }
-    Ok(())
+    all_finite(frame.iter().copied())
 }

@@ -41,18 +41,3 @@ pub(super) fn checked_index(
             vertices,
         })
 }
-
-/// The point, if all of its coordinates are finite.
-///
-/// # Errors
-/// [`Error::NonFiniteVertex`], which names `vertex`.
-pub(super) fn finite(vertex: usize, point: [f64; 3]) -> Result<[f64; 3], Error> {
-    match point.iter().position(|c| !c.is_finite()) {
-        None => Ok(point),
-        Some(k) => Err(Error::NonFiniteVertex {
-            vertex,
-            axis: ['x', 'y', 'z'][k],
-            value: point[k],
-        }),
-    }
-}

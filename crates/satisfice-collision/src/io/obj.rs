@@ -3,11 +3,11 @@
 //! The reader is our own, since the kept ones serve renderers: `tobj` drops vertices without a face, renumbers the
 //! others and names no line in its errors.
 
-use super::faces::{Faces, checked_index, finite};
+use super::faces::{Faces, checked_index};
 use super::format::{Format, Reader};
 use super::text::{Lines, Words, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, finite};
 
 const NAME: &str = "OBJ";
 

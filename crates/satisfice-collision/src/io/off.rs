@@ -1,10 +1,10 @@
 //! OFF: a line of counts, then a line for each vertex and each face.
 
-use super::faces::{Faces, checked_index, finite};
+use super::faces::{Faces, checked_index};
 use super::format::{Format, Reader};
 use super::text::{Lines, Words, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, finite};
 
 const NAME: &str = "OFF";
 

@@ -1,10 +1,10 @@
 //! STL, ASCII or binary. The format has no vertex numbers: corners with equal coordinates become one vertex.
 
-use super::faces::{Faces, finite};
+use super::faces::Faces;
 use super::format::{Format, Reader};
 use super::text::{Lines, Words, quoted, real, without_mark};
 use crate::error::Error;
-use crate::mesh::{Mesh, weld};
+use crate::mesh::{Mesh, finite, weld};
 
 const NAME: &str = "STL";
 const HEADER: usize = 84;

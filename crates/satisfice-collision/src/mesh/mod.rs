@@ -4,6 +4,7 @@ mod aabb;
 mod adjacency;
 mod edges;
 mod feature;
+mod finite;
 mod weld;
 
 use std::sync::{Arc, OnceLock};
@@ -11,11 +12,10 @@ use std::sync::{Arc, OnceLock};
 pub use aabb::Aabb;
 pub use adjacency::Adjacency;
 pub use feature::{FeatureKind, Features, Point, Segment, Shape, Triangle};
+pub(crate) use finite::{all_finite, finite};
 pub use weld::weld;
 
 use crate::error::{Element, Error};
-
-const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// A body: vertices, explicit edges (the lines of an OBJ file) and triangles, all by vertex number.
 ///
@@ -217,16 +217,7 @@ fn check_vertices(vertices: &[[f64; 3]]) -> Result<(), Error> {
             vertices: vertices.len(),
         });
     }
-    for (vertex, point) in vertices.iter().enumerate() {
-        if let Some(k) = point.iter().position(|c| !c.is_finite()) {
-            return Err(Error::NonFiniteVertex {
-                vertex,
-                axis: AXES[k],
-                value: point[k],
-            });
-        }
-    }
-    Ok(())
+    all_finite(vertices.iter().copied())
 }
 
 fn check_indices<const N: usize>(

@@ -3,6 +3,7 @@
 
 use proptest::prelude::*;
 
+use super::finite::AXES;
 use super::*;
 
 fn points(n: usize) -> Vec<[f64; 3]> {

@@ -11,11 +11,11 @@ use at_once::{PointShape, TriangleShape};
 use header::{Definition, Encoding, Header, Kind, Number};
 use numbers::{Ascii, Binary, Numbers};
 
-use super::faces::{Faces, checked_index, finite};
+use super::faces::{Faces, checked_index};
 use super::format::{Format, Reader};
 use super::text::without_mark;
 use crate::error::{Element, Error};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, finite};
 
 const NAME: &str = "PLY";
 const AXES: [&str; 3] = ["x", "y", "z"];
