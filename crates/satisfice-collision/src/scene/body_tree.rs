@@ -16,6 +16,7 @@ pub(super) use begun::Meeting;
 pub(super) use follow::Change;
 
 use super::extent::{Extent, largest};
+use super::whereabouts::Room;
 use crate::Aabb;
 use crate::broad::{Box32, exponent, order_by_median, power_of_two};
 use begun::Search;
@@ -38,6 +39,29 @@ impl Box32 {
             let step = |x: f32| x.abs() * f32::EPSILON + f32::from_bits(1);
             bounds.min[k] = (low - step(low)).max(f32::MIN);
             bounds.max[k] = (high + step(high)).min(f32::MAX);
+        }
+        bounds
+    }
+
+    /// A box rounded inwards, by as much; of what lies beyond the range of `f32` only what is in it. It may be empty.
+    #[inline(always)]
+    pub(super) fn inside(min: &[f64; 3], max: &[f64; 3]) -> Self {
+        let mut bounds = Self::EMPTY;
+        for k in 0..3 {
+            // what is no number stays so: nothing is in the box
+            let low = if min[k] < f64::from(f32::MIN) {
+                f32::MIN
+            } else {
+                min[k] as f32
+            };
+            let high = if max[k] > f64::from(f32::MAX) {
+                f32::MAX
+            } else {
+                max[k] as f32
+            };
+            let step = |x: f32| x.abs() * f32::EPSILON + f32::from_bits(1);
+            bounds.min[k] = low + step(low);
+            bounds.max[k] = high - step(high);
         }
         bounds
     }
@@ -66,18 +90,52 @@ pub(super) struct TreeFrame {
     pub(super) unit: f64,
 }
 
+impl Default for TreeFrame {
+    fn default() -> Self {
+        Self::new([0.0; 3], 1.0)
+    }
+}
+
+impl TreeFrame {
+    /// The scale is a power of two.
+    fn new(origin: [f64; 3], scale: f64) -> Self {
+        Self {
+            origin,
+            scale,
+            unit: 1.0 / scale,
+        }
+    }
+}
+
+/// What the tree knows of a body, on half a line of memory.
+#[derive(Clone, Copy)]
+#[repr(C, align(32))]
+struct Leaf {
+    /// Its box; the empty one if it is not in the tree.
+    bounds: Box32,
+    /// Its place in its node, or [`NONE`].
+    place: u32,
+    /// Its number among the changes of the last search; out of date if it was not among them.
+    number: u32,
+}
+
+impl Leaf {
+    const NONE: Self = Self {
+        bounds: Box32::EMPTY,
+        place: NONE,
+        number: 0,
+    };
+}
+
 /// The tree. Bodies are named by their slots.
 #[derive(Default)]
 pub(super) struct BodyTree {
     nodes: Vec<Node>,
     free: Vec<u32>,
     root: Option<u32>,
-    /// The place of each body in its leaf, by slot; [`NONE`] for those that are not in the tree.
-    places: Vec<u32>,
-    /// The box of each body, by slot; the empty one for those that are not in the tree.
-    boxes: Vec<Box32>,
-    origin: [f64; 3],
-    scale: f64,
+    /// By slot.
+    leaves: Vec<Leaf>,
+    frame: TreeFrame,
     bodies: usize,
     /// Bodies put elsewhere since the tree was built.
     moves: usize,
@@ -94,16 +152,16 @@ impl BodyTree {
 
     /// The place of a body in its leaf.
     fn place_of(&self, body: u32) -> Option<u32> {
-        self.places
-            .get(body as usize)
-            .copied()
-            .filter(|&place| place != NONE)
+        let place = self.leaves.get(body as usize)?.place;
+        (place != NONE).then_some(place)
     }
 
     /// The box of a body in the tree; the empty one for a body that is not there.
     #[inline]
     pub(super) fn box_of(&self, body: u32) -> Box32 {
-        self.boxes.get(body as usize).copied().unwrap_or(Box32::EMPTY)
+        self.leaves
+            .get(body as usize)
+            .map_or(Box32::EMPTY, |leaf| leaf.bounds)
     }
 
     fn box_at(&self, place: u32) -> Box32 {
@@ -113,8 +171,8 @@ impl BodyTree {
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>()
-            + (self.places.capacity() + self.free.capacity() + self.changed.capacity()) * 4
-            + self.boxes.capacity() * size_of::<Box32>()
+            + (self.free.capacity() + self.changed.capacity()) * 4
+            + self.leaves.capacity() * size_of::<Leaf>()
             + self.search.bytes()
     }
 
@@ -130,15 +188,14 @@ impl BodyTree {
     fn arrange(&mut self, boxes: &[(u32, Box32)]) {
         self.nodes.clear();
         self.free.clear();
-        self.places.fill(NONE);
-        self.boxes.fill(Box32::EMPTY);
+        self.leaves.fill(Leaf::NONE);
         self.changed.clear();
         (self.root, self.bodies, self.moves) = (None, boxes.len(), 0);
         if let Some(last) = boxes.iter().map(|&(body, _)| body).max() {
             self.make_room_for(last);
         }
         for (body, bounds) in boxes {
-            self.boxes[*body as usize] = *bounds;
+            self.leaves[*body as usize].bounds = *bounds;
         }
         let order = order_by_median(boxes.iter().map(|(_, bounds)| bounds.twice_centre()), false);
         let mut below: Vec<(u32, Box32)> = order.iter().map(|&at| boxes[at as usize]).collect();
@@ -168,7 +225,7 @@ impl BodyTree {
     fn choose_frame(&mut self, boxes: &[(u32, Aabb)]) {
         let mut all = boxes.iter().map(|(_, bounds)| bounds);
         let Some(first) = all.next() else {
-            (self.origin, self.scale) = ([0.0; 3], 1.0);
+            self.frame = TreeFrame::default();
             return;
         };
         let whole = all.fold(*first, |mut whole, bounds| {
@@ -176,49 +233,65 @@ impl BodyTree {
             whole.include(bounds.max);
             whole
         });
-        self.origin = std::array::from_fn(|k| whole.min[k] / 2.0 + whole.max[k] / 2.0);
-        let half = (0..3).fold(0.0_f64, |half, k| half.max(whole.max[k] - self.origin[k]));
-        self.scale = match exponent(half) {
+        let origin = std::array::from_fn(|k| whole.min[k] / 2.0 + whole.max[k] / 2.0);
+        let half = (0..3).fold(0.0_f64, |half, k| half.max(whole.max[k] - origin[k]));
+        let scale = match exponent(half) {
             _ if half == 0.0 => 1.0,
             -60..=60 => 1.0,
             e => power_of_two((-e).clamp(-1000, 1000)),
         };
+        self.frame = TreeFrame::new(origin, scale);
     }
 
     /// A box in the frame, rounded outwards. It is finite, so that an empty lane never overlaps it.
     pub(super) fn place(&self, bounds: &Aabb) -> Box32 {
-        let at = |corner: &[f64; 3]| std::array::from_fn(|k| (corner[k] - self.origin[k]) * self.scale);
+        let at = |corner: &[f64; 3]| {
+            std::array::from_fn(|k| (corner[k] - self.frame.origin[k]) * self.frame.scale)
+        };
         Box32::outside(&at(&bounds.min), &at(&bounds.max))
     }
 
-    /// Where the centre of a body's ball may lie so that its box in the tree holds the ball and `half` around it.
-    pub(super) fn room(&self, known: &Box32, extent: &Extent, half: f64) -> Aabb {
+    /// How far the centre of the ball around a body has to be from the sides of this box in the tree, so that the box holds the ball and
+    /// `half` around it.
+    fn reach(&self, known: &Box32, extent: &Extent, half: f64) -> f64 {
         let farthest = (0..3).fold(0.0_f32, |most, k| {
             most.max(known.min[k].abs()).max(known.max[k].abs())
         });
-        let far = f64::from(farthest) / self.scale + largest(&self.origin);
+        let far = f64::from(farthest) * self.frame.unit + largest(&self.frame.origin);
         let reach = extent.radius() + half + 2.0 * extent.blur(far);
         // the sums round once each
-        let by = (reach + 1e-15 * far) * (1.0 + 1e-15) + f64::MIN_POSITIVE;
-        let side = |c: f32, k: usize| f64::from(c) / self.scale + self.origin[k];
-        Aabb {
-            min: std::array::from_fn(|k| side(known.min[k], k) + by),
-            max: std::array::from_fn(|k| side(known.max[k], k) - by),
-        }
+        (reach + 1e-15 * far) * (1.0 + 1e-15) + f64::MIN_POSITIVE
+    }
+
+    /// Where a translation may be so that this box in the tree holds the ball around the body, whose centre is at `offset` before it, and
+    /// `half` around it.
+    pub(super) fn room(&self, known: &Box32, extent: &Extent, offset: &[f64; 3], half: f64) -> Room {
+        let (by, scale) = (self.reach(known, extent, half), self.frame.scale);
+        let low = |k: usize| f64::from(known.min[k]) + (by - offset[k]) * scale;
+        let high = |k: usize| f64::from(known.max[k]) - (by + offset[k]) * scale;
+        Room::within(&std::array::from_fn(low), &std::array::from_fn(high))
+    }
+
+    /// Whether this box in the tree holds the ball around the body with its centre here, and `half` around it.
+    #[inline]
+    pub(super) fn holds_ball(&self, known: &Box32, extent: &Extent, centre: &[f64; 3], half: f64) -> bool {
+        let TreeFrame { origin, scale, .. } = &self.frame;
+        let by = self.reach(known, extent, half) * scale;
+        (0..3).fold(true, |inside, k| {
+            let at = (centre[k] - origin[k]) * scale;
+            inside & (f64::from(known.min[k]) + by <= at) & (at <= f64::from(known.max[k]) - by)
+        })
     }
 
     /// The frame of the boxes.
-    pub(super) fn frame(&self) -> TreeFrame {
-        TreeFrame {
-            origin: self.origin,
-            scale: self.scale,
-            unit: 1.0 / self.scale,
-        }
+    #[inline(always)]
+    pub(super) fn frame(&self) -> &TreeFrame {
+        &self.frame
     }
 
     fn adopt(&mut self, child: u32, level: u8, parent: u32) {
         if level == 0 {
-            self.places[child as usize] = parent;
+            self.leaves[child as usize].place = parent;
         } else {
             self.nodes[child as usize].parent = parent;
         }
@@ -243,16 +316,15 @@ impl BodyTree {
     }
 
     fn make_room_for(&mut self, body: u32) {
-        if self.places.len() <= body as usize {
-            self.places.resize(body as usize + 1, NONE);
-            self.boxes.resize(body as usize + 1, Box32::EMPTY);
+        if self.leaves.len() <= body as usize {
+            self.leaves.resize(body as usize + 1, Leaf::NONE);
         }
     }
 
     /// Inserts a body. Cost: O(log n).
     fn insert(&mut self, body: u32, to: &Box32) {
         self.make_room_for(body);
-        self.boxes[body as usize] = *to;
+        self.leaves[body as usize].bounds = *to;
         self.bodies += 1;
         let root = match self.root {
             Some(root) => root,
@@ -343,8 +415,7 @@ impl BodyTree {
         let Some(mut place) = self.place_of(body) else {
             return;
         };
-        self.places[body as usize] = NONE;
-        self.boxes[body as usize] = Box32::EMPTY;
+        self.leaves[body as usize] = Leaf::NONE;
         self.bodies -= 1;
         loop {
             let id = node_of(place);

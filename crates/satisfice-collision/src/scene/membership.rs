@@ -6,7 +6,7 @@ use super::body::{Body, BodyId, Motion};
 use super::narrow::Workspace;
 use super::pairs::{self, Status};
 use super::state::State;
-use super::whereabouts::Whereabouts;
+use super::whereabouts::{Room, Whereabouts};
 use super::{SharedMesh, World};
 use crate::broad::Box32;
 use crate::{Error, FeatureKind};
@@ -108,6 +108,7 @@ impl World {
         } else {
             super::push(&mut self.states, None);
             super::push(&mut self.whereabouts, Whereabouts::new(generation, false, false));
+            super::push(&mut self.rooms, Room::NONE);
             super::push(&mut self.hulls, Box32::EMPTY);
         }
         self.put(slot, state, whereabouts);
@@ -127,6 +128,7 @@ impl World {
         };
         self.states[slot] = Some(state);
         self.whereabouts[slot] = whereabouts;
+        self.rooms[slot] = Room::NONE;
     }
 
     /// Removes a body with its contacts, groups and exclusions. Cost: linear in its kept pairs.

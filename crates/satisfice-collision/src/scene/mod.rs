@@ -66,7 +66,7 @@ use movers::Movers;
 use narrow::Workspace;
 use pairs::{Record, Records};
 use state::{Present, State};
-use whereabouts::Whereabouts;
+use whereabouts::{Room, Whereabouts};
 
 /// Bodies, a kind of feature pair and a threshold.
 ///
@@ -97,6 +97,8 @@ pub struct World {
     states: Vec<Option<State>>,
     /// By slot, those of removed bodies too.
     whereabouts: Vec<Whereabouts>,
+    /// By slot, where rigid bodies may go without leaving their boxes in the tree.
+    rooms: Vec<Room>,
     /// By slot, the boxes of fixed and rigid bodies in their own coordinates; empty where there is none, or `f32` is too coarse.
     hulls: Vec<Box32>,
     /// The generations of the next bodies in free slots, and these slots.
@@ -170,6 +172,7 @@ impl World {
             parallel: false,
             states: Vec::new(),
             whereabouts: Vec::new(),
+            rooms: Vec::new(),
             hulls: Vec::new(),
             free: Vec::new(),
             membership: Membership::default(),
@@ -279,7 +282,10 @@ impl World {
     /// Bytes held beside the meshes and their trees.
     #[must_use]
     pub fn bytes(&self) -> usize {
+        let elsewhere = self.states.iter().flatten().map(State::bytes);
         self.states.capacity() * size_of::<Option<State>>()
+            + elsewhere.sum::<usize>()
+            + self.rooms.capacity() * size_of::<Room>()
             + self.whereabouts.capacity() * size_of::<Whereabouts>()
             + self.hulls.capacity() * size_of::<Box32>()
             + self.tree.bytes()

@@ -2,7 +2,7 @@
 
 use super::body::BodyId;
 use super::settle::half_of;
-use super::whereabouts::{Movement, is_upright};
+use super::whereabouts::{Movement, Room, is_upright};
 use super::{World, unknown};
 use crate::distance::Point;
 use crate::{Error, Placement};
@@ -95,10 +95,13 @@ impl World {
             Some(whereabouts) if whereabouts.generation == body.generation => whereabouts,
             _ => return Err(unknown(body)),
         };
-        if !whereabouts.is_rigid {
+        if !whereabouts.is_rigid() {
             return Err(not_rigid());
         }
-        if !whereabouts.allows(&translation)
+        // what is in the room is in the range of numbers
+        let mut stays = rotation.is_none() && self.rooms[slot].holds(self.tree.frame(), &translation);
+        if !stays
+            && !whereabouts.allows(&translation)
             && let Some(state) = &self.states[slot]
         {
             state.check_place(whereabouts, rotation, &translation)?;
@@ -108,22 +111,28 @@ impl World {
             && !(whereabouts.is_upright(whereabouts.last()) && is_upright(rotation))
             && let Some(state) = &mut self.states[slot]
         {
-            let (tree, half) = (&self.tree, half_of(self.threshold));
-            step = state.turn(whereabouts, rotation, self.frame, |state| {
-                tree.room(&tree.box_of(body.slot), state.mesh.extent(), half)
-            });
+            step = state.turn(whereabouts, rotation, self.frame);
         }
+        let turns = step != Movement::Rests;
         let shifted = whereabouts.shift(translation, self.frame);
-        if step == Movement::Rests {
+        if !turns {
             step = shifted;
         }
         if step == Movement::Rests {
             return Ok(());
         }
+        if turns && let Some(state) = &self.states[slot] {
+            // the room was that of the last rotation, and who turns may go on to turn
+            self.rooms[slot] = Room::NONE;
+            let (bounds, half) = (self.tree.box_of(body.slot), half_of(self.threshold));
+            stays = state.stays(whereabouts, &self.tree, &bounds, half);
+        } else if rotation.is_some() {
+            stays = self.rooms[slot].holds(self.tree.frame(), &translation);
+        }
         if step == Movement::Begins {
             super::push(&mut self.movers.placed, body.slot);
         }
-        if !whereabouts.is_in_room() && !std::mem::replace(&mut whereabouts.leaves, true) {
+        if !stays && !whereabouts.set_leaves(true) {
             super::push(&mut self.movers.leaving, body.slot);
         }
         Ok(())
@@ -152,7 +161,7 @@ impl World {
         };
         deforming.deform(vertices)?;
         let whereabouts = &mut self.whereabouts[body.slot as usize];
-        if !std::mem::replace(&mut whereabouts.leaves, true) {
+        if !whereabouts.set_leaves(true) {
             super::push(&mut self.movers.deformed, body.slot);
         }
         Ok(())

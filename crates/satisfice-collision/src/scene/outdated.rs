@@ -1,20 +1,28 @@
-//! Records whose bodies have moved, noted in the frame where few bodies move, and else when somebody asks for contacts: until
-//! then, kept pairs are not looked through.
+//! Records whose bodies have moved, noted in the frame where few bodies move among many records, and else when somebody asks for
+//! contacts: until then, kept pairs are not looked through.
 
 use super::World;
 use super::pairs::{NONE, Record, Status};
+use super::whereabouts::MEMORY;
 
-/// Records are marked at once if at most this share of the bodies moves.
+/// Records are marked at once if at most this share of the bodies moves, and there are more records than that.
 const FEW: f64 = 0.2;
 
 impl World {
     /// Marks the records of the bodies that have moved, or puts that off.
     pub(super) fn note_movers(&mut self) {
-        if self.pairs.len() == 0 || self.unmarked_since.is_some() {
+        if let Some(since) = self.unmarked_since {
+            if self.frame - since > MEMORY {
+                self.mark_moved();
+            }
+            return;
+        }
+        if self.pairs.len() == 0 {
             return;
         }
         let movers = self.movers.placed.iter().chain(&self.movers.deformed);
-        if self.movers.len() as f64 > FEW * self.len() as f64 {
+        let are_fewer = self.pairs.end() as usize <= self.movers.len();
+        if are_fewer || self.movers.len() as f64 > FEW * self.len() as f64 {
             self.unmarked_since = Some(self.frame - 1);
             return;
         }

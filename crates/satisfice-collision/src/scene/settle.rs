@@ -3,10 +3,8 @@
 
 use super::World;
 use super::ahead::Ahead;
-use super::body_tree::{BodyTree, Change, Meeting};
+use super::body_tree::{Change, Meeting};
 use super::pairs::{NONE, Status};
-use super::state::State;
-use super::whereabouts::Whereabouts;
 use crate::Aabb;
 use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
@@ -19,6 +17,8 @@ pub(super) const ASIDE: f64 = 6.0;
 /// ...but by at most these shares of its size.
 pub(super) const MOST: f64 = 0.25;
 pub(super) const MOST_ASIDE: f64 = 1.0 / 16.0;
+/// A body that meets no other one has so many times as much room in every direction.
+pub(super) const ALONE: f64 = 1.5;
 /// All pairs are looked through, in their order in memory, if more than this share of the bodies leave their boxes.
 const ALL_PAIRS: f64 = 1.0 / 64.0;
 /// Pairs are looked through so many at a time: first for changed bodies, without a branch, then those.
@@ -86,13 +86,13 @@ impl World {
         let (states, whereabouts) = (&self.states, &self.whereabouts);
         self.movers.clean(|slot| {
             let slot = slot as usize;
-            states[slot].is_some() && (whereabouts[slot].moved_at == frame || whereabouts[slot].leaves)
+            states[slot].is_some() && (whereabouts[slot].moved_at() == frame || whereabouts[slot].leaves())
         });
         let mut changes = Vec::new();
         self.move_rigid(&mut changes);
         self.move_deforming(&mut changes);
         self.add_unpaired(&mut changes);
-        if self.tree.is_empty() || self.tree.has_left_frame() {
+        if self.tree.is_empty() || (!changes.is_empty() && self.tree.has_left_frame()) {
             changes = self.build_tree();
         } else if !changes.is_empty() {
             self.tree.follow(&mut changes);
@@ -124,8 +124,10 @@ impl World {
         let others = dispatch(Ahead {
             leaving: &leaving,
             whereabouts: &mut self.whereabouts,
+            rooms: &mut self.rooms,
             hulls: &self.hulls,
             tree: &self.tree,
+            pairs: &self.pairs,
             half,
             changes,
         });
@@ -138,17 +140,17 @@ impl World {
 
     /// Gives a rigid body another box in the tree, unless it is in the one that it has.
     fn leave(&mut self, slot: u32, half: f64, changes: &mut Vec<Change>) {
-        let Some(state) = self.states[slot as usize].as_mut() else {
+        let Some(state) = &self.states[slot as usize] else {
             return;
         };
-        let whereabouts = &mut self.whereabouts[slot as usize];
+        let whereabouts = &self.whereabouts[slot as usize];
         let new = state.at(whereabouts, self.frame).bounds();
         // a ball that fitted fills the box about as well as the body does
         if state.fits || !self.tree.holds(slot, &inflate(&new, half)) {
             let (from, motion) = state.came_from(whereabouts);
             let fat = fattened(&new, half, from, motion);
             let fat = self.tree.place(&fat);
-            give_room(&self.tree, state, whereabouts, &fat, half);
+            self.give_room(slot, &fat, half);
             changes.push(Change::to(slot, fat));
         }
     }
@@ -159,12 +161,12 @@ impl World {
         let mut deformed = std::mem::take(&mut self.movers.deformed);
         deformed.retain(|&slot| {
             let from = middle(&self.state(slot).bounds());
-            self.whereabouts[slot as usize].leaves = false;
+            self.whereabouts[slot as usize].set_leaves(false);
             let state = self.state_mut(slot);
             let motion = state.deforming.as_mut().and_then(|deforming| deforming.advance());
             let Some(motion) = motion else { return false };
             state.motion = motion;
-            self.whereabouts[slot as usize].moved_at = frame;
+            self.whereabouts[slot as usize].note_motion(frame);
             let new = self.state(slot).bounds();
             if !self.tree.holds(slot, &inflate(&new, half)) {
                 let fat = fattened(&new, half, from, motion);
@@ -183,15 +185,7 @@ impl World {
         let half = self.half_threshold();
         for body in std::mem::take(&mut self.unpaired) {
             let bounds = self.tree.place(&inflate(&self.state(body).bounds(), half));
-            if let Some(state) = self.states[body as usize].as_mut() {
-                give_room(
-                    &self.tree,
-                    state,
-                    &mut self.whereabouts[body as usize],
-                    &bounds,
-                    half,
-                );
-            }
+            self.give_room(body, &bounds, half);
             changes.push(Change {
                 is_recheck: self.tree.contains(body),
                 ..Change::to(body, bounds)
@@ -220,13 +214,21 @@ impl World {
         let mut changes: Vec<Change> = boxes.iter().map(change).collect();
         self.tree.build(&boxes);
         for change in &mut changes {
-            let slot = change.body as usize;
             change.to = self.tree.box_of(change.body);
-            if let Some(state) = self.states[slot].as_mut() {
-                give_room(&self.tree, state, &mut self.whereabouts[slot], &change.to, half);
-            }
+            self.give_room(change.body, &change.to, half);
         }
         changes
+    }
+
+    /// Tells a body how far it may go in a box; a room that does not hold it says so.
+    fn give_room(&mut self, slot: u32, bounds: &Box32, half: f64) {
+        let slot = slot as usize;
+        if let Some(state) = self.states[slot].as_mut() {
+            let whereabouts = &self.whereabouts[slot];
+            let room = state.room(whereabouts, &self.tree, bounds, half);
+            state.fits = room.holds(self.tree.frame(), whereabouts.next());
+            self.rooms[slot] = room;
+        }
     }
 
     fn half_threshold(&self) -> f64 {
@@ -318,11 +320,6 @@ pub(super) fn half_of(threshold: Threshold) -> f64 {
 /// The middle of a box.
 fn middle(bounds: &Aabb) -> Point {
     std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0)
-}
-
-/// Tells a body how far it may go in a box.
-fn give_room(tree: &BodyTree, state: &mut State, whereabouts: &mut Whereabouts, bounds: &Box32, half: f64) {
-    state.set_room(whereabouts, &tree.room(bounds, state.mesh.extent(), half));
 }
 
 /// A box that will hold a body, and `half` around it, for some frames if it continues as from a box around `from` to `new`, and for some

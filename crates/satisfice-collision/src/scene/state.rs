@@ -5,15 +5,17 @@ use std::sync::Arc;
 
 use super::SharedMesh;
 use super::body::{Body, Motion};
+use super::body_tree::BodyTree;
 use super::deforming::Deforming;
 use super::extent::largest;
-use super::whereabouts::{Movement, Rotations, Whereabouts};
-use crate::broad::{BlockBounds, Dirty, FeatureTree};
-use crate::mesh::Point;
+use super::whereabouts::{Movement, Room, Rotations, Whereabouts};
+use crate::broad::{BlockBounds, Box32, Dirty, FeatureTree};
+use crate::mesh::{Point, all_finite};
 use crate::placement::{CompactPlacement, rotate};
 use crate::{Aabb, Error, FeatureKind, Placement, Shape};
 
-/// A body in its world, besides its whereabouts.
+/// A body in its world, besides its whereabouts: on one line of memory.
+#[repr(align(64))]
 pub(super) struct State {
     pub(super) mesh: SharedMesh,
     pub(super) kind: Motion,
@@ -69,34 +71,49 @@ impl State {
         check(&self.mesh, &placement, &self.mesh.extent().posed(&placement))
     }
 
-    /// Turns the body in the next frame, if that is another rotation than the one given last. `centre_room` is where the centre of a
-    /// rigid body may go so that its box in the tree still holds it, however it turns.
+    /// Turns the body in the next frame, if that is another rotation than the one given last.
     pub(super) fn turn(
         &mut self,
         whereabouts: &mut Whereabouts,
         rotation: &[f64; 4],
         frame: u64,
-        centre_room: impl FnOnce(&Self) -> Aabb,
     ) -> Movement {
-        if !whereabouts.turns_to(&self.rotations, rotation) {
-            return Movement::Rests;
+        match whereabouts.turns_to(&self.rotations, rotation) {
+            true => whereabouts.turn(&mut self.rotations, rotation, frame),
+            false => Movement::Rests,
         }
-        let step = whereabouts.turn(&mut self.rotations, rotation, frame);
-        self.give_room(whereabouts, &centre_room(self));
-        step
     }
 
-    /// Tells where the centre may go; a room that does not hold it says so.
-    pub(super) fn set_room(&mut self, whereabouts: &mut Whereabouts, centre_room: &Aabb) {
-        self.give_room(whereabouts, centre_room);
-        self.fits = whereabouts.is_in_room();
+    /// Where the translation may be so that the box `bounds` in the tree holds the ball around a rigid body, and `half` around it.
+    pub(super) fn room(&self, whereabouts: &Whereabouts, tree: &BodyTree, bounds: &Box32, half: f64) -> Room {
+        tree.room(bounds, self.mesh.extent(), &self.offset(whereabouts), half)
     }
 
-    fn give_room(&self, whereabouts: &mut Whereabouts, centre_room: &Aabb) {
-        let rotation = whereabouts.rotation(&self.rotations);
+    /// Whether that box holds this ball after the translation given last.
+    #[inline]
+    pub(super) fn stays(
+        &self,
+        whereabouts: &Whereabouts,
+        tree: &BodyTree,
+        bounds: &Box32,
+        half: f64,
+    ) -> bool {
+        let (at, offset) = (whereabouts.next(), self.offset(whereabouts));
+        let centre = std::array::from_fn(|k| at[k] + offset[k]);
+        tree.holds_ball(bounds, self.mesh.extent(), &centre, half)
+    }
+
+    /// The centre of a rigid body, turned as it was given last, before the translation.
+    #[inline]
+    fn offset(&self, whereabouts: &Whereabouts) -> Point {
         let centre = self.mesh.extent().centre();
-        let offset = rotation.map_or(centre, |rotation| rotate(*rotation, centre));
-        whereabouts.give_room(centre_room, &offset);
+        let rotation = whereabouts.rotation(&self.rotations);
+        rotation.map_or(centre, |rotation| rotate(*rotation, centre))
+    }
+
+    /// Bytes held elsewhere by a body that does not deform.
+    pub(super) fn bytes(&self) -> usize {
+        self.rotations.bytes()
     }
 
     /// The placement given last.
@@ -218,7 +235,7 @@ impl<'a> Present<'a> {
 
     /// The frame in which it moved last, or that in which it will move.
     pub(super) fn moved_at(&self) -> u64 {
-        self.whereabouts.moved_at
+        self.whereabouts.moved_at()
     }
 
     /// What moved in frame `frame`, of the features of a kind.
@@ -297,15 +314,5 @@ fn check(mesh: &SharedMesh, placement: &Placement, bounds: &Aabb) -> Result<(), 
     if bounds.min.iter().chain(&bounds.max).all(|c| c.is_finite()) {
         return Ok(());
     }
-    for (vertex, &point) in mesh.mesh().vertices().iter().enumerate() {
-        let posed = placement.apply(point);
-        if let Some(k) = posed.iter().position(|c| !c.is_finite()) {
-            return Err(Error::NonFiniteVertex {
-                vertex,
-                axis: ['x', 'y', 'z'][k],
-                value: posed[k],
-            });
-        }
-    }
-    Ok(())
+    all_finite(mesh.mesh().vertices().iter().map(|&point| placement.apply(point)))
 }

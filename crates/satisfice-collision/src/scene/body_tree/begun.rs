@@ -19,8 +19,6 @@ pub(in crate::scene) struct Meeting {
 /// Memory of a search.
 #[derive(Default)]
 pub(super) struct Search {
-    /// The number of each body among the changes, by slot; out of date for bodies that did not change.
-    numbers: Vec<u32>,
     /// Numbers of changes, node by node.
     waiting: Vec<u32>,
     /// Open nodes, and where their changes begin and end.
@@ -31,8 +29,7 @@ pub(super) struct Search {
 
 impl Search {
     pub(super) fn bytes(&self) -> usize {
-        4 * (self.numbers.capacity() + self.waiting.capacity() + 3 * self.open.capacity())
-            + self.masks.capacity()
+        4 * (self.waiting.capacity() + 3 * self.open.capacity()) + self.masks.capacity()
     }
 }
 
@@ -41,9 +38,8 @@ impl BodyTree {
     /// bodies to be checked again, each once. Cost: linear in the changes and in the pairs of which one has changed, and logarithmic in the bodies.
     pub(in crate::scene) fn begun(&mut self, changes: &[Change], visit: impl FnMut(Meeting)) {
         let mut search = std::mem::take(&mut self.search);
-        search.numbers.resize(self.places.len(), 0);
         for (number, change) in (0..).zip(changes) {
-            search.numbers[change.body as usize] = number;
+            self.leaves[change.body as usize].number = number;
         }
         dispatch(Begun {
             tree: self,
@@ -143,13 +139,14 @@ impl<V: FnMut(Meeting)> Begun<'_, V> {
         }
         for lane in lanes(changed) {
             let body = node.child[lane];
-            let at = self.search.numbers[body as usize];
+            let leaf = &self.tree.leaves[body as usize];
+            let at = leaf.number;
             let other = self.changes.get(at as usize).filter(|other| other.body == body);
             let (before, is_recheck) = match other {
                 // the other one tells it; a body does not meet itself
                 Some(_) if at <= number => continue,
                 Some(other) => (other.before, other.is_recheck | change.is_recheck),
-                None => (self.tree.box_of(body), change.is_recheck),
+                None => (leaf.bounds, change.is_recheck),
             };
             if is_recheck || !change.before.overlaps(&before) {
                 (self.visit)(Meeting {

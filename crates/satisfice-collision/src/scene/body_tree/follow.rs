@@ -1,6 +1,6 @@
 //! Changed boxes: many at once, from the bottom up.
 
-use super::{BodyTree, NONE, Node, lane_in, node_of};
+use super::{BodyTree, Leaf, NONE, Node, lane_in, node_of};
 use crate::broad::Box32;
 
 /// The tree is rebuilt if more than this share of the bodies change their leaf in a frame.
@@ -46,14 +46,11 @@ impl BodyTree {
         self.changed.resize(changes.len(), 0);
         let mut count = 0;
         for (number, change) in (0..).zip(changes.iter_mut()) {
-            let Some(place) = self.place_of(change.body) else {
-                change.before = Box32::EMPTY;
-                strangers.push(number);
-                continue;
-            };
-            change.before = self.boxes[change.body as usize];
-            if self.stays(place, &change.to) {
-                self.boxes[change.body as usize] = change.to;
+            let leaf = self.leaves.get(change.body as usize).copied();
+            let Leaf { bounds, place, .. } = leaf.unwrap_or(Leaf::NONE);
+            change.before = bounds;
+            if place != NONE && self.stays(place, &change.to) {
+                self.leaves[change.body as usize].bounds = change.to;
                 let node = &mut self.nodes[node_of(place) as usize];
                 node.set_box(lane_in(place), &change.to);
                 // as `mark`, without a branch that waits for the node
@@ -124,13 +121,13 @@ impl BodyTree {
         let mut boxes = Vec::with_capacity(self.bodies + changes.len());
         for change in changes {
             match self.contains(change.body) {
-                true => self.boxes[change.body as usize] = change.to,
+                true => self.leaves[change.body as usize].bounds = change.to,
                 false => boxes.push((change.body, change.to)),
             }
         }
-        for (body, &place) in (0..).zip(&self.places) {
-            if place != NONE {
-                boxes.push((body, self.box_of(body)));
+        for (body, leaf) in (0..).zip(&self.leaves) {
+            if leaf.place != NONE {
+                boxes.push((body, leaf.bounds));
             }
         }
         self.arrange(&boxes);

@@ -6,6 +6,7 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use super::super::ahead::ahead;
 use super::*;
 use crate::broad::inflate;
+use crate::placement::rotate;
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Placement, generate};
 
@@ -231,7 +232,7 @@ fn boxes_in_one_place_are_all_found() {
 impl BodyTree {
     /// Whether a box in the tree encloses `bounds`, which is not rounded.
     fn encloses(&self, known: &Box32, bounds: &Aabb) -> bool {
-        let at = |c: f64, k: usize| (c - self.origin[k]) * self.scale;
+        let at = |c: f64, k: usize| (c - self.frame.origin[k]) * self.frame.scale;
         (0..3).all(|k| {
             f64::from(known.min[k]) <= at(bounds.min[k], k) && at(bounds.max[k], k) <= f64::from(known.max[k])
         })
@@ -267,11 +268,14 @@ fn a_body_in_its_room_is_in_its_box() {
         boxes.tree.build(&all);
         let mut inside = 0;
         for body in 0..8 {
-            let room = boxes.tree.room(&boxes.tree.box_of(body), &extent, half);
             for _ in 0..200 {
                 let near = placement(&mut boxes, places[body as usize].translation(), 8.0);
-                let centre = near.apply(extent.centre());
-                if (0..3).all(|k| room.min[k] <= centre[k] && centre[k] <= room.max[k]) {
+                let (known, offset) = (
+                    boxes.tree.box_of(body),
+                    rotate(near.quaternion(), extent.centre()),
+                );
+                let room = boxes.tree.room(&known, &extent, &offset, half);
+                if room.holds(boxes.tree.frame(), &near.translation()) {
                     inside += 1;
                     for &vertex in mesh.vertices() {
                         let ball = inflate(&Aabb::point(near.apply(vertex)), half);
@@ -287,11 +291,11 @@ fn a_body_in_its_room_is_in_its_box() {
 struct OneAhead<'a>(&'a TreeFrame, &'a Box32, [[f64; 3]; 2], f64);
 
 impl Work for OneAhead<'_> {
-    type Output = (Box32, Aabb);
+    type Output = (Box32, Room);
 
     #[inline(always)]
-    fn run<L: Lanes>(self, unit: L) -> (Box32, Aabb) {
-        ahead(unit, self.0, self.1, self.2, self.3)
+    fn run<L: Lanes>(self, unit: L) -> (Box32, Room) {
+        ahead(unit, self.0, self.1, self.2, self.3, self.3 > 0.0)
     }
 }
 
@@ -337,13 +341,10 @@ fn a_body_moved_in_its_room_is_in_its_box() {
         for [from, step, further, zero] in ways {
             let moved = |by: [f64; 3], from: [f64; 3]| std::array::from_fn(|k| from[k] + (by[k] - zero[k]));
             let to = moved(step, from);
-            let (bounds, room) = dispatch(OneAhead(&frame, &hull, [from, to], half));
+            let (bounds, room) = dispatch(OneAhead(frame, &hull, [from, to], half));
             for place in [to, moved(further, to)] {
-                if !room.contains(place) {
-                    assert!(
-                        place != to || scale == 1e100 || shift != 0.0,
-                        "{room:?} {place:?}"
-                    );
+                if !room.holds(frame, &place) {
+                    assert!(place != to || scale == 1e100 || shift != 0.0, "{place:?}");
                     continue;
                 }
                 inside += 1;

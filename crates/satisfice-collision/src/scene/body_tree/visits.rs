@@ -102,7 +102,7 @@ impl BodyTree {
         segment: [[f64; 3]; 2],
         mut visit: impl FnMut(u32) -> Result<f64, E>,
     ) -> Result<(), E> {
-        let local = |p: [f64; 3]| std::array::from_fn(|k| (p[k] - self.origin[k]) * self.scale);
+        let local = |p: [f64; 3]| std::array::from_fn(|k| (p[k] - self.frame.origin[k]) * self.frame.scale);
         let slabs = Slabs::new(segment.map(local), 0.0);
         let mut bound = 1.0;
         let mut open: BinaryHeap<Reverse<(u64, u32, u32)>> = BinaryHeap::new();
@@ -132,7 +132,7 @@ impl BodyTree {
     fn way(&self, gap: u32) -> f64 {
         // the subtraction, the squares, the sums and the root round; what underflows proves nothing
         let gap = f64::from(f32::from_bits(gap)).sqrt() - 1e-22;
-        (gap * (1.0 - 1e-6)).max(0.0) / self.scale
+        (gap * (1.0 - 1e-6)).max(0.0) / self.frame.scale
     }
 
     /// Whether the box of a body in the tree holds `bounds`.
@@ -160,8 +160,9 @@ impl<V: FnMut(u32)> Work for Overlapping<'_, V> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, unit: L) {
         self.stack.clear();
-        self.stack.extend(self.tree.root);
-        while let Some(node) = self.stack.pop() {
+        let mut next = self.tree.root;
+        // nothing is allocated where nothing is found
+        while let Some(node) = next {
             let at = &self.tree.nodes[node as usize];
             for lane in lanes(at.overlaps(unit, &self.bounds)) {
                 match at.level {
@@ -169,6 +170,7 @@ impl<V: FnMut(u32)> Work for Overlapping<'_, V> {
                     _ => self.stack.push(at.child[lane]),
                 }
             }
+            next = self.stack.pop();
         }
     }
 }

@@ -185,3 +185,32 @@ fn frames_in_which_nothing_was_refitted_are_not_taken_for_frames_at_rest() {
     let found: Vec<[u32; 2]> = found.iter().map(|contact| [contact.a, contact.b]).collect();
     assert!(!expected.is_empty() && found == expected);
 }
+
+/// Two bodies part, and for a long time questions are asked about boxes alone: contacts of long ago are not shown, even while one of
+/// the two is about to move again.
+#[test]
+fn contacts_of_long_ago_are_not_shown() {
+    let ball = crate::scene::SharedMesh::from(generate::icosphere(0.5, 1).unwrap());
+    let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.1).unwrap());
+    let at = |x: f64| Placement::from_translation([x, 0.0, 0.0]).unwrap();
+    let [_, other, third] = [0.0, 1.0, 50.0].map(|x| world.add(Body::rigid(ball.clone()).at(at(x))).unwrap());
+    let before = world.frame().unwrap().contacts.len();
+    let nowhere = crate::Aabb::point([-1e9; 3]);
+    world.translate(other, [1.15, 0.0, 0.0]).unwrap();
+    // longer than a body remembers when it came
+    for frame in 0..70_000 {
+        world
+            .translate(third, [f64::from(50 + frame % 2), 0.0, 0.0])
+            .unwrap();
+        assert!(world.bodies_in(&nowhere).unwrap().is_empty());
+    }
+    assert_eq!(world.kept_pairs(), 1, "their boxes still meet");
+    world.translate(other, [1.05, 0.0, 0.0]).unwrap();
+    assert!(before > 0 && world.contacts().count() == 0);
+    let now = world.frame().unwrap().contacts;
+    let posed = [0.0, 1.05].map(|x| PosedMesh {
+        mesh: at(x).place(ball.mesh()).unwrap(),
+        ring: None,
+    });
+    assert!(!now.is_empty() && now == referee(&posed, PairKind::TriangleTriangle, 0.1));
+}
