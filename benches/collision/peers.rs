@@ -11,7 +11,15 @@ type Point = [f32; 3];
 
 /// The coordinates rounded to `f32`, as both want them.
 pub(crate) fn single(points: &[[f64; 3]]) -> Vec<Point> {
-    points.iter().map(|p| p.map(|c| c as f32)).collect()
+    let mut rounded = Vec::new();
+    round(points, &mut rounded);
+    rounded
+}
+
+/// The same in a list that is there already.
+pub(crate) fn round(points: &[[f64; 3]], rounded: &mut Vec<Point>) {
+    rounded.clear();
+    rounded.extend(points.iter().map(|p| p.map(|c| c as f32)));
 }
 
 /// kiddo: one tree built, one query a point.

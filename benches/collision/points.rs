@@ -144,6 +144,7 @@ pub(crate) fn fresh(report: &mut Report) {
         let truth = truth(&scene, &[point_tree(a), point_tree(b)], threshold);
         let (fa, fb, r) = (peers::single(a), peers::single(b), *delta as f32);
         let (mut one, mut many) = (PointGrid::new(), pool.install(PointGrid::parallel));
+        let mut rounded = [const { Vec::new() }; 2];
         let mut methods = vec![
             Method::new("ours: grid", || {
                 plain(one.between(a, b, threshold).expect("finite points"))
@@ -161,6 +162,13 @@ pub(crate) fn fresh(report: &mut Report) {
                     &fb,
                     r,
                 )
+            }),
+            // from the coordinates that ours is given, in memory that is there already
+            Method::new("plain grid f32, rounding first", || {
+                for (points, rounded) in [a, b].into_iter().zip(&mut rounded) {
+                    peers::round(points, rounded);
+                }
+                plain_grid::between(&rounded[0], &rounded[1], r)
             }),
         ];
         if *small {
@@ -184,9 +192,10 @@ pub(crate) fn fresh(report: &mut Report) {
         }
         let times = report.compare(name, &truth, methods);
         report.line(&format!(
-            "Fastest rival / ours {}; plain grid / ours {}; kiddo / plain grid {}; one thread / all threads {:.2} (least {:.2}).",
+            "Fastest rival / ours {}; plain grid / ours {}, rounding first {}; kiddo / plain grid {}; one thread / all threads {:.2} (least {:.2}).",
             least(times[3].ratios(times[0]), times[4].ratios(times[0])),
             times[2].ratios(times[0]),
+            times[5].ratios(times[0]),
             times[3].ratios(times[2]),
             times[0].warm / times[1].warm,
             times[0].least / times[1].least,

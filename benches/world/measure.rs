@@ -248,10 +248,12 @@ fn without_pairs(scene: &Scene, meshes: &Meshes, frames: usize) -> f64 {
     let (mut world, bodies) = build(&apart, meshes);
     let (mut centres, mut moved) = (apart.centres.clone(), Vec::new());
     let mut course = Course::new(centres.len());
-    for _ in 0..frames {
+    for frame in 0..frames {
         course.step(&apart, &mut centres, &mut moved);
         for &body in &moved {
-            let to = Placement::from_translation(centres[body]).expect("finite");
+            let angle = scene.turn * (frame as f64 + body as f64);
+            let turned = Placement::from_axis_angle([0.0, 0.0, 1.0], angle).expect("finite");
+            let to = turned.moved(centres[body]).expect("finite");
             world.place(bodies[body], to).expect("a body");
         }
         find_pairs(&mut world);
