@@ -1,8 +1,10 @@
 //! Restarted local search by quadratic models: for isolated roots and minima of a smooth F.
 
+mod coordinate;
 mod eigen;
 mod search;
 
+use coordinate::{CoordinateSearch, Decisive, change};
 use search::{Memory, Proposal, QuadraticSearch};
 
 use crate::batch::{Batch, Outcome};
@@ -23,6 +25,9 @@ engine_settings! {
     ///   decide (least Frobenius norm updating, Powell 2004), so that it is of use from one point more than there are axes.
     /// - The trust region is an ellipsoid along the axes of the model: a narrow valley may be followed in long steps. It grows where the
     ///   model predicts well and shrinks where it does not.
+    /// - Where F stays the same along most axes, as the largest of several distances does, quadratics are of no use. Then a search goes along
+    ///   the one axis that changes F, to where F would be at the threshold, and looks for the next one. One look tells which it is: it moves
+    ///   along all axes, along each so far that F would change by another amount.
     /// - A search ends at a hit; where a model that has predicted well promises a known hit or no hit; where its steps become shorter than
     ///   `shortest`; and after 150 evaluations and ten for each axis.
     ///
@@ -65,6 +70,7 @@ impl QuadraticDescent {
             axes: Vec::new(),
             periodic: Vec::new(),
             restarts: 0,
+            decisive: Decisive::default(),
             descents: vec![QuadraticRun::default(); self.searches],
             given: Vec::new(),
             position: Vec::new(),
@@ -93,6 +99,11 @@ struct QuadraticRun<S> {
     /// The axes that it moves along; none before it has started.
     axes: Vec<usize>,
     search: QuadraticSearch,
+    /// How steep F was along the first axes, while the search begins with looks along all of them.
+    slopes: Option<Vec<f64>>,
+    /// The search along one axis at a time, where one axis decides F.
+    coordinate: CoordinateSearch,
+    goes_along_axes: bool,
 }
 
 /// The engine of [`QuadraticDescent`].
@@ -104,6 +115,8 @@ struct QuadraticSearches<S> {
     /// Which axes of the space are periodic.
     periodic: Vec<bool>,
     restarts: u64,
+    /// Whether one axis decides F.
+    decisive: Decisive,
     descents: Vec<QuadraticRun<S>>,
     /// Points of the user, the best last, where the next searches start.
     given: Vec<(f64, Vec<S>)>,
@@ -118,16 +131,66 @@ impl<S: Real> QuadraticRun<S> {
         self.axes.clear();
         self.draws = 0;
         self.value = f64::INFINITY;
+        self.slopes = None;
+        self.goes_along_axes = false;
+    }
+
+    /// Ends a search that went along the axes, or another one.
+    fn conclude(&mut self, is_hit: bool, decisive: &mut Decisive) {
+        if self.goes_along_axes {
+            decisive.count_end(self.axes.len(), is_hit);
+        }
+        self.end();
+    }
+
+    /// Goes on along one axis at a time, if one axis decides F.
+    fn turn_to_axes(&mut self, decisive: &Decisive) {
+        if !self.goes_along_axes && decisive.is_one_axis() {
+            let (point, value) = self.search.best();
+            self.coordinate.start(point, value);
+            self.goes_along_axes = true;
+        }
+    }
+
+    /// The next point of the search.
+    fn next(
+        &mut self,
+        (threshold, shortest): (f64, f64),
+        periodic: &[bool],
+        decisive: &Decisive,
+        memory: &mut Memory,
+    ) -> Proposal {
+        self.turn_to_axes(decisive);
+        if self.goes_along_axes {
+            self.coordinate.propose(shortest, &self.axes, periodic, decisive)
+        } else {
+            self.search.propose(threshold, shortest, periodic, memory)
+        }
+    }
+
+    /// Takes F at a point of the search.
+    fn learn_value(&mut self, value: f64, threshold: f64, decisive: &mut Decisive) {
+        if self.goes_along_axes {
+            return self.coordinate.learn(value, threshold, &self.axes, decisive);
+        }
+        if let Some(slopes) = &mut self.slopes {
+            slopes.push(change(self.search.best().1, value) / self.search.radius);
+            if slopes.len() == self.axes.len() {
+                decisive.count(&self.axes, slopes);
+                self.slopes = None;
+            }
+        }
+        self.search.learn(value);
     }
 
     /// Takes what became of the last proposal.
-    fn learn(&mut self, position: &[S], outcome: Outcome<S>) {
+    fn learn(&mut self, position: &[S], outcome: Outcome<S>, threshold: S, decisive: &mut Decisive) {
         match outcome {
             Outcome::NotEvaluated => {}
             Outcome::Miss(_) | Outcome::NonFinite => {
                 let value = outcome.fitness().f64();
                 if !self.is_drawn {
-                    self.search.learn(value);
+                    self.learn_value(value, threshold.f64(), decisive);
                 } else if value < self.value {
                     self.value = value;
                     self.start.clear();
@@ -135,14 +198,19 @@ impl<S: Real> QuadraticRun<S> {
                 }
             }
             // The hit of this basin is found, or was found before.
-            Outcome::Hit(_) | Outcome::Known(_) | Outcome::Deleted => self.end(),
+            Outcome::Hit(_) | Outcome::Known(_) | Outcome::Deleted => self.conclude(true, decisive),
         }
     }
 
     /// Writes the position that the search has proposed.
     fn place(&self, space: &Space<S>, position: &mut [S]) {
         position.copy_from_slice(&self.start);
-        for (&j, &share) in self.axes.iter().zip(&self.search.proposed) {
+        let proposed = if self.goes_along_axes {
+            &self.coordinate.proposed
+        } else {
+            &self.search.proposed
+        };
+        for (&j, &share) in self.axes.iter().zip(proposed) {
             let axis = &space.axes()[j];
             position[j] = axis.start() + axis.width() * S::of(share);
         }
@@ -165,10 +233,17 @@ impl<S: Real> QuadraticSearches<S> {
             let axis = &space.axes()[j];
             ((run.start[j] - axis.start()) / axis.width()).f64()
         };
+        let (looks_along_axes, mut drawn) = (self.decisive.is_open(), 0);
+        run.slopes = looks_along_axes.then(Vec::new);
+        let normal = || {
+            drawn += 1;
+            match looks_along_axes {
+                true => f64::from(u8::from((drawn - 1) % (count + 1) == 0)),
+                false => rng.normal(),
+            }
+        };
         run.search
-            .start(run.axes.iter().map(share), run.value, self.settings.step, || {
-                rng.normal()
-            });
+            .start(run.axes.iter().map(share), run.value, self.settings.step, normal);
     }
 
     /// Appends the next point of run `index`.
@@ -190,7 +265,12 @@ impl<S: Real> QuadraticSearches<S> {
                 } else {
                     run.end();
                     self.restarts += 1;
-                    run.draws = if self.restarts.is_multiple_of(2) { DRAWS } else { 1 };
+                    let is_short = self.decisive.is_one_axis();
+                    run.draws = if is_short || !self.restarts.is_multiple_of(2) {
+                        1
+                    } else {
+                        DRAWS
+                    };
                 }
             }
             let run = &mut self.descents[index];
@@ -201,17 +281,15 @@ impl<S: Real> QuadraticSearches<S> {
             }
             self.sides.clear();
             self.sides.extend(run.axes.iter().map(|&j| self.periodic[j]));
-            let threshold = context.threshold().f64();
-            let proposal =
-                run.search
-                    .propose(threshold, self.settings.shortest, &self.sides, &mut self.memory);
+            let limits = (context.threshold().f64(), self.settings.shortest);
+            let proposal = run.next(limits, &self.sides, &self.decisive, &mut self.memory);
             if proposal != Proposal::Ends {
                 run.place(space, &mut self.position);
                 if proposal != Proposal::Converges || !context.is_deleted(&self.position) {
                     return out.push(&self.position);
                 }
             }
-            run.end();
+            run.conclude(proposal != Proposal::Ends, &mut self.decisive);
         }
     }
 }
@@ -228,6 +306,7 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
             .collect();
         self.periodic = (0..space.dimension()).map(|j| space.is_periodic(j)).collect();
         self.given.clear();
+        self.decisive.begin(space.dimension());
         for run in &mut self.descents {
             run.end();
         }
@@ -240,12 +319,12 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
         Ask::More
     }
 
-    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         match origin {
             Origin::Engine => {
                 for ((run, position), &outcome) in self.descents.iter_mut().zip(batch.points()).zip(outcomes)
                 {
-                    run.learn(position, outcome);
+                    run.learn(position, outcome, context.threshold(), &mut self.decisive);
                 }
             }
             Origin::Start => {
@@ -273,10 +352,13 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
         let dimension = self.periodic.len();
         let are_axes = |axes: &[usize]| axes.iter().all(|&j| j < dimension);
         let fits = self.descents.len() == searches
+            && self.decisive.fits(dimension)
             && are_axes(&self.axes)
             && self.given.iter().all(|(_, start)| start.len() == dimension)
             && self.descents.iter().all(|run| {
-                let is_started = run.axes.is_empty() || run.search.fits(run.axes.len());
+                let is_started = run.axes.is_empty()
+                    || run.search.fits(run.axes.len())
+                        && (!run.goes_along_axes || run.coordinate.fits(run.axes.len()));
                 let has_start =
                     run.start.len() == dimension || run.axes.is_empty() && run.value.is_infinite();
                 is_started && has_start && are_axes(&run.axes)
@@ -287,5 +369,5 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
 }
 
 impl<S: Real> Part for QuadraticSearches<S> {
-    crate::saved_fields!(axes, periodic, restarts, descents, given);
+    crate::saved_fields!(axes, periodic, restarts, decisive, descents, given);
 }

@@ -58,7 +58,7 @@ pub(super) struct QuadraticSearch {
     curvatures: Vec<f64>,
     directions: Vec<f64>,
     lengths: Vec<f64>,
-    radius: f64,
+    pub(super) radius: f64,
     /// Limit of the lengths.
     stretch: f64,
     /// Directions that were tried before there is a model.
@@ -134,6 +134,11 @@ impl QuadraticSearch {
 
     fn point(&self, i: usize) -> &[f64] {
         &self.points[i * self.axes..(i + 1) * self.axes]
+    }
+
+    /// The best point and F there.
+    pub(super) fn best(&self) -> (&[f64], f64) {
+        (self.point(self.best), self.values[self.best])
     }
 
     /// Number of coefficients of a quadratic without its constant.
