@@ -28,16 +28,8 @@ impl Target {
     pub(super) fn new(delta: f64, values: &[f64]) -> Self {
         let excess = values.iter().map(|value| value - delta);
         let mut misses: Vec<f64> = excess.filter(|&e| e >= 0.0 && e.is_finite()).collect();
-        misses.sort_unstable_by(f64::total_cmp);
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "an index"
-        )]
-        let index = (misses.len() as f64 * UNCLIPPED) as usize;
+        let clip = at_share(&mut misses, UNCLIPPED).filter(|&clip| clip > 0.0);
         let last = misses.last().copied();
-        let clip = misses.get(index).copied().filter(|&clip| clip > 0.0);
         Self {
             delta,
             clip: clip.or(last.filter(|&last| last > 0.0)).unwrap_or(1.0),
@@ -50,15 +42,7 @@ impl Target {
         let unit = |k: usize| {
             let magnitudes = known.iter().map(|&i| record.components(i)[k].abs());
             let mut all: Vec<f64> = magnitudes.filter(|x| x.is_finite()).collect();
-            all.sort_unstable_by(f64::total_cmp);
-            #[expect(
-                clippy::cast_precision_loss,
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "an index"
-            )]
-            let index = (all.len() as f64 * IN_UNIT) as usize;
-            all.get(index).map_or(1.0, |&unit| unit.max(1.0))
+            at_share(&mut all, IN_UNIT).map_or(1.0, |unit| unit.max(1.0))
         };
         self.units = (0..record.component_count()).map(unit).collect();
         self
@@ -91,6 +75,19 @@ impl Target {
         }
         ((value - self.delta) / self.clip).clamp(-1.0, 1.0)
     }
+}
+
+/// Sorts values and returns the one that this share of them is below; `None` if there are none.
+fn at_share(values: &mut [f64], share: f64) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "an index"
+    )]
+    let index = (values.len() as f64 * share) as usize;
+    values.get(index).copied()
 }
 
 #[cfg(test)]
