@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use satisfice::engine::WarmStart;
@@ -53,6 +54,50 @@ fn what_was_found_is_reported() {
             let next = search.run(&problem, &budget).unwrap();
             assert_eq!(next.counts.verified, report.hit_count() as u64, "{case}");
             assert!(next.hit_count() >= report.hit_count(), "{case}");
+        }
+    }
+}
+
+/// A circle and a parabola, whose residuals are also the components of F; the call `fatal` of the components panics.
+fn mortal_components(
+    calls: Arc<AtomicU64>,
+    fatal: u64,
+) -> impl SatisficingProblem<Scalar = f64, Solution = Located<f64>> {
+    let residuals = |x: &[f64]| [x[0] * x[0] + x[1] * x[1] - 1.0, x[0] * x[0] - x[1] - 0.5];
+    from_fn(Space::cube(2, -2.0, 2.0).unwrap(), 0.2, move |x: &[f64]| {
+        residuals(x).map(f64::abs).into_iter().fold(0.0, f64::max)
+    })
+    .components(2, move |x, components| {
+        let call = calls.fetch_add(1, Ordering::Relaxed) + 1;
+        assert!(call != fatal, "call {call} is fatal");
+        components.copy_from_slice(&residuals(x).map(|residual| residual / 0.2));
+    })
+    .boxed()
+}
+
+#[test]
+fn a_panic_of_the_components_is_one_of_the_problem() {
+    for (islands, threads) in [(1, 1), (1, 3), (4, 1), (4, 3)] {
+        for name in ["surrogate", "portfolio"] {
+            let problem = mortal_components(Arc::new(AtomicU64::new(0)), 40);
+            let mut search = Search::named(name).unwrap().islands(islands).threads(threads);
+            let budget = Budget::evaluations(160);
+            let report = search
+                .run_with(&problem, &budget, RunOptions::new().catch_panics())
+                .unwrap();
+            let case = format!("{name}, {islands} lanes on {threads} threads: {report}");
+            assert_eq!(report.stop_reason, StopReason::Panicked, "{case}");
+            assert!(report.hit_count() > 0, "{case}");
+            for hit in report.hits() {
+                assert_eq!(hit.fitness, problem.fitness(hit.solution), "{case}");
+            }
+            let next = search.run(&problem, &budget).unwrap();
+            assert_eq!(next.stop_reason, StopReason::Evaluations, "{case}");
+            // Passed on, it leaves a search that works as well.
+            let problem = mortal_components(Arc::new(AtomicU64::new(0)), 40);
+            let run = catch_unwind(AssertUnwindSafe(|| search.run(&problem, &budget)));
+            assert!(run.is_err(), "{case}");
+            assert!(search.run(&problem, &budget).unwrap().hit_count() > 0, "{case}");
         }
     }
 }
