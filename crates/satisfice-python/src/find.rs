@@ -27,12 +27,12 @@ pub(crate) fn find<'py>(
     save: Option<Py<PyAny>>,
 ) -> PyResult<Report> {
     let mut spec = run.spec()?;
-    let problem = question.problem()?;
+    let (problem, told) = question.problem()?;
     question.enter(&mut spec)?;
-    let mut caller = Caller::new(function, vectorized, catch);
+    let mut caller = Caller::new(function, vectorized, catch, told.clone());
     let cancel = Cancel::new();
     let mut watcher = Watcher::new(callback, cancel.clone());
-    let mut keeper = save.map(|write| Keeper::new(write, &question, &spec));
+    let mut keeper = save.map(|write| Keeper::new(write, &question, &spec, &told));
     let mut search;
     let stepper = match saved {
         None => {
@@ -42,6 +42,7 @@ pub(crate) fn find<'py>(
         Some(bytes) => {
             let saved = Saved::read_for(bytes, &spec, false)?;
             caller.failed = saved.failed;
+            told.restore(saved.components);
             search = Search::resume(saved.checkpoint, engine(&spec)?).map_err(damaged)?;
             search.start_resumed_until(&problem, &cancel)
         }
@@ -87,11 +88,13 @@ pub(crate) fn drive<'py>(
     keeper: &mut Option<Keeper>,
 ) -> PyResult<()> {
     let mut asked = false;
+    let told = caller.told.clone();
     loop {
         let points = py
             .detach(|| {
                 if asked {
                     stepper.tell_with(values, watcher)?;
+                    told.clear();
                 }
                 values.clear();
                 let points = stepper.ask_with(watcher)?;

@@ -11,6 +11,7 @@ mod report;
 mod rounds;
 mod saved;
 mod search;
+mod told;
 mod watch;
 
 use pyo3::prelude::*;

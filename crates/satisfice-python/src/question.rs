@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use crate::arguments::engine;
 use crate::refused;
+use crate::told::ToldComponents;
 
 /// A function is called by Python, never by the search.
 pub(crate) type Function = FnProblem<f64, fn(&[f64]) -> f64>;
@@ -23,6 +24,9 @@ pub(crate) struct Question {
     axes: Vec<AxisEntry>,
     delta: f64,
     separation: Option<Vec<f64>>,
+    /// Number of components that the function tells beside its value.
+    #[serde(default)]
+    components: usize,
     /// Points to evaluate first.
     starts: Vec<Vec<f64>>,
     /// What a report says about the problem: its name, and its parameters as JSON.
@@ -35,13 +39,18 @@ impl Question {
         self.axes.iter().map(AxisEntry::len).sum()
     }
 
-    pub(crate) fn problem(&self) -> PyResult<Function> {
+    /// The problem, and where to tell the components of its values.
+    pub(crate) fn problem(&self) -> PyResult<(Function, ToldComponents)> {
         let space = axes::space(&self.axes).map_err(refused)?;
-        let problem = evaluated_elsewhere(space, self.delta);
-        match &self.separation {
-            None => Ok(problem.separation(0.0)),
-            Some(radii) => problem.separations(radii).map_err(refused),
-        }
+        let told = ToldComponents::new(self.components, self.delta);
+        let by_point = told.clone();
+        let problem = evaluated_elsewhere(space, self.delta)
+            .components(self.components, move |point, out| by_point.write(point, out));
+        let problem = match &self.separation {
+            None => problem.separation(0.0),
+            Some(radii) => problem.separations(radii).map_err(refused)?,
+        };
+        Ok((problem, told))
     }
 
     /// A search by the engine of a complete specification.

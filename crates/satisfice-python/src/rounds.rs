@@ -68,7 +68,7 @@ impl Rounds {
     #[new]
     fn new(py: Python<'_>, question: Question, run: Run, saved: Option<&[u8]>) -> PyResult<Self> {
         let mut spec = run.spec()?;
-        let problem = question.problem()?;
+        let (problem, _) = question.problem()?;
         question.enter(&mut spec)?;
         let (rounds, failed) = match saved {
             None => {
@@ -177,6 +177,7 @@ impl Rounds {
                 spec: self.plan.spec.clone(),
                 failed: inner.failed,
                 tickets: false,
+                components: Vec::new(), // those of a round are known where it runs
                 checkpoint: rounds.checkpoint(),
             };
             saved.to_bytes()
@@ -207,11 +208,11 @@ pub(crate) fn run_island<'py>(
 ) -> PyResult<(Bound<'py, PyBytes>, u64)> {
     let plan: Plan = serde_json::from_slice(plan).map_err(damaged)?;
     let round: IslandRound<satisfice::Located<f64>> = serde_json::from_slice(island).map_err(damaged)?;
-    let problem = plan.question.problem()?;
+    let (problem, told) = plan.question.problem()?;
     let mut search = round.search::<Function>(engine(&plan.spec)?).map_err(damaged)?;
     let cancel = Cancel::new();
     let mut stepper = search.start_resumed_until(&problem, &cancel).map_err(damaged)?;
-    let mut caller = Caller::new(function, vectorized, catch);
+    let mut caller = Caller::new(function, vectorized, catch, told);
     let (mut watcher, mut values) = (Watcher::new(None, cancel), Vec::new());
     let dimension = plan.question.dimension();
     drive(

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::question::{Function, Question};
 use crate::refused;
+use crate::told::{SavedPoint, ToldComponents};
 
 /// The second checkpoint is written so soon, so that a path that cannot be written is noticed.
 const FIRST: Duration = Duration::from_secs(1);
@@ -26,6 +27,9 @@ pub(crate) struct Saved {
     /// Whether its points were given out under tickets.
     #[serde(default)]
     pub(crate) tickets: bool,
+    /// Components of values that the engine has not been told yet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) components: Vec<SavedPoint>,
     pub(crate) checkpoint: Checkpoint<Located<f64>>,
 }
 
@@ -79,16 +83,18 @@ pub(crate) struct Keeper {
     write: Py<PyAny>,
     question: Question,
     spec: RunSpec,
+    told: ToldComponents,
     next: Instant,
     every: Duration,
 }
 
 impl Keeper {
-    pub(crate) fn new(write: Py<PyAny>, question: &Question, spec: &RunSpec) -> Self {
+    pub(crate) fn new(write: Py<PyAny>, question: &Question, spec: &RunSpec, told: &ToldComponents) -> Self {
         Self {
             write,
             question: question.clone(),
             spec: spec.clone(),
+            told: told.clone(),
             next: now(),
             every: FIRST,
         }
@@ -108,13 +114,14 @@ impl Keeper {
     ) -> PyResult<()> {
         let begun = now();
         stepper.note(values).map_err(refused)?;
-        let (question, spec) = (self.question.clone(), self.spec.clone());
+        let (question, spec, components) = (self.question.clone(), self.spec.clone(), self.told.saved());
         let bytes = py.detach(move || {
             let saved = Saved {
                 question,
                 spec,
                 failed,
                 tickets: false,
+                components,
                 checkpoint: stepper.checkpoint(),
             };
             saved.to_bytes()

@@ -14,6 +14,7 @@ use crate::question::{Function, Question};
 use crate::refused;
 use crate::report::Report;
 use crate::saved::{Saved, damaged};
+use crate::told::ToldComponents;
 
 /// What is asked and told, and what it takes to write a report.
 struct SearchState {
@@ -28,11 +29,50 @@ pub(crate) struct Search {
     inner: Mutex<SearchState>,
     question: Question,
     spec: RunSpec,
+    told: ToldComponents,
 }
 
 impl Search {
     fn lock(&self) -> MutexGuard<'_, SearchState> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The components of so many values, one row for each; empty where the function has none.
+    fn rows(&self, components: Option<PyReadonlyArray2<'_, f64>>, values: usize) -> PyResult<Vec<f64>> {
+        let count = self.told.count();
+        match components {
+            None if count == 0 => Ok(Vec::new()),
+            Some(components) if count > 0 && components.as_array().shape() == [values, count] => {
+                Ok(components.as_slice()?.to_vec())
+            }
+            None => Err(PyValueError::new_err(format!(
+                "the search has components={count}: tell them with the values, shape ({values}, {count})"
+            ))),
+            Some(_) if count == 0 => Err(PyValueError::new_err(
+                "the search has no components: give Search their number, components=",
+            )),
+            Some(components) => Err(PyValueError::new_err(format!(
+                "components have shape {:?}: for {values} values they must have shape ({values}, {count})",
+                components.as_array().shape()
+            ))),
+        }
+    }
+
+    /// Keeps the components of values at points, after a look at all of them; those without a point are dropped.
+    fn take<'a>(
+        &self,
+        points: impl Iterator<Item = Option<&'a [f64]>> + Clone,
+        values: &[f64],
+        components: &[f64],
+    ) -> PyResult<()> {
+        let rows = components.chunks_exact(self.told.count().max(1));
+        let known = points.zip(values).zip(rows);
+        let known = known.filter_map(|((point, &value), row)| Some((point?, value, row)));
+        known
+            .clone()
+            .try_for_each(|(point, value, row)| self.told.check(point, value, row))?;
+        known.for_each(|(point, _, row)| self.told.keep(point, row));
+        Ok(())
     }
 
     fn flat(&self, points: &[Vec<f64>], py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
@@ -50,7 +90,7 @@ impl Search {
     #[new]
     fn new(py: Python<'_>, question: Question, run: Run, ordered: bool) -> PyResult<Self> {
         let mut spec = run.spec()?;
-        let problem = question.problem()?;
+        let (problem, told) = question.problem()?;
         let search = question.search(&spec)?;
         question.enter(&mut spec)?;
         let order = if ordered { Order::Ordered } else { Order::Eager };
@@ -63,6 +103,7 @@ impl Search {
             inner,
             question,
             spec,
+            told,
         })
     }
 
@@ -81,6 +122,7 @@ impl Search {
         py: Python<'_>,
         tickets: PyReadonlyArray1<'_, u64>,
         values: PyReadonlyArray1<'_, f64>,
+        components: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<()> {
         let (tickets, values) = (tickets.as_slice()?.to_vec(), values.as_slice()?.to_vec());
         if tickets.len() != values.len() {
@@ -91,14 +133,21 @@ impl Search {
             );
             return Err(PyValueError::new_err(what));
         }
+        let components = self.rows(components, values.len())?;
         py.detach(|| {
             let mut inner = self.lock();
+            let known = |ticket: u64| inner.tickets.solution(Ticket::from(ticket));
+            // A ticket that is told already is told nothing.
+            let points = tickets
+                .iter()
+                .map(|&ticket| Some(&known(ticket)?.coordinates[..]));
+            self.take(points, &values, &components)?;
             tickets
                 .iter()
                 .zip(values)
                 .try_for_each(|(&ticket, value)| inner.tickets.tell(Ticket::from(ticket), value).map(drop))
+                .map_err(refused)
         })
-        .map_err(refused)
     }
 
     /// Tells that an evaluation gave no value.
@@ -127,6 +176,7 @@ impl Search {
         py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
         values: PyReadonlyArray1<'_, f64>,
+        components: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<()> {
         let dimension = self.question.dimension();
         let (points, values) = (points.as_slice()?.to_vec(), values.as_slice()?.to_vec());
@@ -137,15 +187,17 @@ impl Search {
                 values.len()
             )));
         }
+        let components = self.rows(components, values.len())?;
         py.detach(|| {
             let mut inner = self.lock();
-            for (point, &value) in points.chunks_exact(dimension).zip(&values) {
+            let points = points.chunks_exact(dimension);
+            self.take(points.clone().map(Some), &values, &components)?;
+            for (point, &value) in points.zip(&values) {
                 let solution = satisfice::SatisficingProblem::decode(inner.tickets.problem(), point);
-                inner.tickets.inform(&solution, value)?;
+                inner.tickets.inform(&solution, value).map_err(refused)?;
             }
             Ok(())
         })
-        .map_err(|error: satisfice::Error| refused(error))
     }
 
     fn open(&self, py: Python<'_>) -> usize {
@@ -218,6 +270,10 @@ impl Search {
         self.question.dimension()
     }
 
+    fn components(&self) -> usize {
+        self.told.count()
+    }
+
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| {
             let inner = self.lock();
@@ -226,6 +282,7 @@ impl Search {
                 spec: self.spec.clone(),
                 failed: inner.failed,
                 tickets: true,
+                components: self.told.saved(),
                 checkpoint: inner.tickets.checkpoint(),
             };
             saved.to_bytes()
@@ -246,7 +303,8 @@ impl Search {
 
 impl Search {
     fn resume(saved: Saved) -> PyResult<Self> {
-        let problem = saved.question.problem()?;
+        let (problem, told) = saved.question.problem()?;
+        told.restore(saved.components);
         let tickets = Tickets::resume(saved.checkpoint, engine(&saved.spec)?, problem).map_err(damaged)?;
         Ok(Self {
             inner: Mutex::new(SearchState {
@@ -255,6 +313,7 @@ impl Search {
             }),
             question: saved.question,
             spec: saved.spec,
+            told,
         })
     }
 }

@@ -60,3 +60,21 @@ def kills_process_once(x):
         else:
             os.kill(os.getpid(), signal.SIGKILL)
     return ring(x)
+
+
+def crossings(x):
+    """Three quantities that are 0 at the same points, three of them in the cube; the components are each divided by its limit."""
+    a, b, c = x
+    residuals = (a * b - 1.0, b + c * c - 2.0, a - b * c)
+    return max(abs(r) for r in residuals), [r / 1e-3 for r in residuals]
+
+
+def crossings_of_all(x):
+    found = [crossings(point) for point in x]
+    return [value for value, _ in found], [components for _, components in found]
+
+
+def diverging_crossings(x):
+    if x[0] > 1.9:
+        raise ArithmeticError("diverged")
+    return crossings(x)

@@ -54,6 +54,7 @@ def question(
     delta: float | None,
     separation: float | Sequence[float] | None,
     x0: Any,
+    components: int | None,
     **kinds: Any,
 ) -> dict[str, Any]:
     """What is searched, as the native part takes it; `kinds` as for `Axes`."""
@@ -80,10 +81,16 @@ def question(
     starts = _starts(x0, len(axes))
     if starts:
         parameters["x0"] = starts
+    if callable(components):
+        raise TypeError("components is how many there are: let f return (value, components)")
+    count = 0 if components is None else _whole("components", components)
+    if count:
+        parameters["components"] = count
     return {
         "axes": axes.entries(),
         "delta": float(delta),
         "separation": widths,
+        "components": count,
         "starts": starts,
         "name": "function",
         "parameters": json.dumps(parameters),

@@ -54,7 +54,7 @@ class Drive:
         self.size = 1
         #: So many more tasks are out if evaluations are so short that workers would wait for the next.
         self.prefetch = 0
-        self.f = Guarded(f, catch)
+        self.f = Guarded(f, catch, search._search.components())
         self.done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         #: Points, generation of the pool and start by future; and the number of these points.
         self.out: dict[Any, tuple[list[_Point], int, float]] = {}

@@ -55,6 +55,7 @@ def find(
     categories: Mapping[int, Sequence[Any]] | None = None,
     permutations: Sequence[Sequence[int]] | None = None,
     x0: Any = None,
+    components: int | None = None,
     vectorized: bool = False,
     workers: Any = 1,
     executor: Any = None,
@@ -70,9 +71,9 @@ def find(
     ----------
     f : callable or Problem
         The function, ``f(x) -> float`` with `x` of shape (d,), or with `vectorized` ``f(X) -> values`` with `X` of shape
-        (n, d) and values of shape (n,). It is called on the calling thread, with a fresh float64 array that it may change.
+        (n, d) and values of shape (n,); with `components` it returns these, too. It is called on the calling thread, with a fresh float64 array that it may change.
         A value that is NaN or infinite is never a hit, and is counted. Or a problem of the catalogue (see `problem`),
-        for which everything about the space (`bounds`, `separation`, `categories`, ...), `delta`, `x0`, `vectorized`,
+        for which everything about the space (`bounds`, `separation`, `categories`, ...), `delta`, `x0`, `components`, `vectorized`,
         `workers`, `executor` and `catch` do not apply.
     bounds : sequence of (lower, upper), or scipy.optimize.Bounds
         The range of each axis, both ends included. ``None`` for an axis in `categories` or `permutations`.
@@ -126,6 +127,13 @@ def find(
         five coordinates are a permutation of 0 to 4.
     x0 : array-like of shape (d,) or (m, d), optional
         Points to evaluate first, inside the bounds: good guesses, or hits of another run. Engines start from the best ones.
+    components : int, optional
+        How many numbers `f` tells beside its value, all of which are near 0 at a hit: residuals of equations, errors of a design, how far
+        a tool is from its goal along each axis. `f` then returns a tuple ``(value, components)``, of shape (components,), with `vectorized`
+        ``(values, components)`` of shape (n, components). Each is divided by its limit, so that at every hit all of them are from
+        -1 to 1: by `delta`, where the value is the largest magnitude or a norm; a hit with others is an error. NaN, where there is no such
+        number, counts as far from 0. An engine that models `f` models each of them instead, and finds several times as many hits; others
+        do not ask for them.
     vectorized : bool, default False
         Whether `f` takes all points of a batch at once.
     workers : int, map-like, or Executor, default 1
@@ -162,7 +170,7 @@ def find(
     ValueError
         For arguments that are not usable; the message says what is.
     TypeError
-        For a value of `f` that is no real number.
+        For a value of `f` that is no real number, or is missing its components.
     KeyboardInterrupt, or an exception of `f` or `callback`
         Ends the search. What was found until then is its attribute ``report``.
 
@@ -216,6 +224,7 @@ def find(
             "categories": categories is not None,
             "permutations": permutations is not None,
             "x0": x0 is not None,
+            "components": components is not None,
             "vectorized": vectorized,
             "catch": catch != (),
             "workers": not _is_one(workers),
@@ -237,6 +246,7 @@ def find(
         delta,
         separation,
         x0,
+        components,
         integrality=integrality,
         logarithmic=logarithmic,
         periodic=periodic,

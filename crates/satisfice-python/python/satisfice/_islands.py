@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from . import _satisfice
 from ._files import Keeper
-from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Own, check_pickle, is_killed, shaped
+from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Own, check_pickle, is_killed, pair, shaped
 
 #: After the deadline islands that end by themselves are waited for: so long, in seconds, or this share of the time.
 _GRACE, _GRACE_SHARE = 1.0, 0.1
@@ -47,7 +47,7 @@ def find_with_islands(
         return _run_island, f, plan, rounds.island(number), vectorized, catch
 
     def probes(part: NDArray[np.float64]) -> tuple[Any, ...]:
-        return _evaluate, f, part, vectorized, catch
+        return _evaluate, f, part, vectorized, catch, question["components"]
 
     def stops() -> bool:
         keeper.save_if_due()
@@ -99,18 +99,29 @@ def _run_island(
 
 
 def _evaluate(
-    f: Callable[[Any], Any], points: NDArray[np.float64], vectorized: bool, catch: tuple[type[BaseException], ...]
+    f: Callable[[Any], Any],
+    points: NDArray[np.float64],
+    vectorized: bool,
+    catch: tuple[type[BaseException], ...],
+    components: int,
 ) -> tuple[NDArray[np.float64], int]:
-    """Values at points, and how many were lost to exceptions that are caught."""
+    """Values at points, without components, and how many were lost to exceptions that are caught."""
     if vectorized:
         try:
-            return np.asarray(f(points.copy()), dtype=np.float64).reshape(len(points)), 0
+            found = f(points.copy())
         except catch:
             return np.full(len(points), np.nan), len(points)
-    guarded = Guarded(f, catch)
-    values = [guarded(x.copy()) for x in points]
-    known = [math.nan if value is None else value for value in values]
-    return np.array(known), values.count(None)
+        values = pair(found, components)[0] if components else found
+        return np.asarray(values, dtype=np.float64).reshape(len(points)), 0
+    guarded = Guarded(f, catch, components)
+    known, lost = np.full(len(points), math.nan), 0
+    for index, x in enumerate(points):
+        value = guarded(x.copy())
+        if value is None:
+            lost += 1
+        else:
+            known[index] = value[0] if isinstance(value, tuple) else value
+    return known, lost
 
 
 class _TimeIsUp(Exception):

@@ -47,7 +47,7 @@ class Search:
 
     Parameters
     ----------
-    bounds, delta, separation, evaluations, hits, patience, engine, options, seed, probes, islands, parallel, integrality, logarithmic, periodic, categories, permutations, x0
+    bounds, delta, separation, evaluations, hits, patience, engine, options, seed, probes, islands, parallel, integrality, logarithmic, periodic, categories, permutations, x0, components
         As for `find`.
     time : float, optional
         Wall time in seconds from now on.
@@ -89,6 +89,7 @@ class Search:
         categories: Any = None,
         permutations: Any = None,
         x0: Any = None,
+        components: int | None = None,
         ordered: bool = False,
         name: str = "function",
     ) -> None:
@@ -99,6 +100,7 @@ class Search:
                 delta,
                 separation,
                 x0,
+                components,
                 integrality=integrality,
                 logarithmic=logarithmic,
                 periodic=periodic,
@@ -137,8 +139,9 @@ class Search:
         tickets, x = self._search.ask(n)
         return Batch(x, tickets)
 
-    def tell(self, tickets: ArrayLike, values: ArrayLike) -> None:
-        """Tell values, shape (m,), of tickets, shape (m,): any part of those asked, in any order.
+    def tell(self, tickets: ArrayLike, values: ArrayLike, components: ArrayLike | None = None) -> None:
+        """Tell values, shape (m,), of tickets, shape (m,): any part of those asked, in any order. A search with `components` is told
+        those as well, shape (m, components).
 
         NaN and infinite values are counted and never hits. A second value for a ticket, and one for a forgotten ticket, are
         counted and dropped.
@@ -146,19 +149,19 @@ class Search:
         Raises
         ------
         ValueError
-            For a ticket that was never given out.
+            For a ticket that was never given out; for components that are missing, too many, or not those of a hit.
         """
-        self._search.tell(_tickets(tickets), np.ascontiguousarray(np.atleast_1d(values), dtype=np.float64))
+        self._search.tell(_tickets(tickets), _numbers(values), _rows(components))
 
     def forget(self, tickets: ArrayLike) -> None:
         """Give up points whose evaluations were lost. They use up no budget."""
         self._search.forget(_tickets(tickets))
 
-    def inform(self, x: ArrayLike, values: ArrayLike) -> None:
-        """Enter values, shape (m,), at points, shape (m, d), that are known from elsewhere. They use up no budget."""
+    def inform(self, x: ArrayLike, values: ArrayLike, components: ArrayLike | None = None) -> None:
+        """Enter values, shape (m,), at points, shape (m, d), that are known from elsewhere, with their components if the search has some.
+        They use up no budget."""
         self._search.inform(
-            np.ascontiguousarray(np.atleast_2d(x), dtype=np.float64),
-            np.ascontiguousarray(np.atleast_1d(values), dtype=np.float64),
+            np.ascontiguousarray(np.atleast_2d(x), dtype=np.float64), _numbers(values), _rows(components)
         )
 
     @property
@@ -300,7 +303,7 @@ class Search:
         keeper: Keeper,
     ) -> None:
         """Evaluate one batch after the other."""
-        guarded = Guarded(f, catch)
+        guarded = Guarded(f, catch, self._search.components())
         batch = self.pending
         while True:
             if len(batch) == 0:
@@ -319,8 +322,18 @@ class Search:
         """Tell a value of `Guarded`."""
         if value is None:
             self._search.fail(ticket)
+        elif isinstance(value, tuple):
+            self.tell([ticket], [value[0]], [value[1]])
         else:
             self.tell([ticket], [value])
+
+
+def _numbers(values: ArrayLike) -> NDArray[np.float64]:
+    return np.ascontiguousarray(np.atleast_1d(values), dtype=np.float64)
+
+
+def _rows(components: ArrayLike | None) -> NDArray[np.float64] | None:
+    return None if components is None else np.ascontiguousarray(np.atleast_2d(components), dtype=np.float64)
 
 
 def _tickets(value: ArrayLike) -> NDArray[np.uint64]:

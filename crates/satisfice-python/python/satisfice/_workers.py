@@ -25,28 +25,57 @@ class ExecutorLike(Protocol):
         """Start a call; the future returned has ``result`` and ``add_done_callback``."""
 
 
+#: A value of the user's function, with its components where it tells some.
+Value = float | tuple[float, NDArray[np.float64]]
+
+
 class Guarded:
-    """The user's function where it is called: a caught exception becomes None."""
+    """The user's function where it is called: a caught exception becomes None, a value with components a tuple of both."""
 
-    def __init__(self, f: Callable[[Any], Any], catch: tuple[type[BaseException], ...]) -> None:
-        self.f, self.catch = f, catch
+    def __init__(self, f: Callable[[Any], Any], catch: tuple[type[BaseException], ...], components: int = 0) -> None:
+        self.f, self.catch, self.components = f, catch, components
 
-    def __call__(self, x: NDArray[np.float64]) -> float | None:
+    def __call__(self, x: NDArray[np.float64]) -> Value | None:
         try:
             value = self.f(x)
         except self.catch:
             return None
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            kind = type(value).__name__
-            raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
+        if self.components == 0:
+            return _number(value, x)
+        value, components = pair(value, self.components)
+        number, components = _number(value, x), np.asarray(components)
+        if components.shape != (self.components,):
+            raise ValueError(
+                f"f returned components of shape {components.shape} at x = {x}: "
+                f"with components={self.components} they must have shape ({self.components},)"
+            )
+        if components.dtype.kind not in "biuf":
+            raise TypeError(f"f returned components of {components.dtype} at x = {x}: they must be real numbers")
+        return number, components.astype(np.float64)
 
-    def all(self, points: list[NDArray[np.float64]]) -> tuple[list[float | None], float]:
+    def all(self, points: list[NDArray[np.float64]]) -> tuple[list[Value | None], float]:
         """The values at some points, one after the other, and the seconds that they took."""
         begun = clock.monotonic()
         values = [self(x) for x in points]
         return values, clock.monotonic() - begun
+
+
+def pair(value: Any, components: int) -> tuple[Any, Any]:
+    """What a function with components returned."""
+    if not isinstance(value, tuple) or len(value) != 2:
+        kind = type(value).__name__
+        raise TypeError(
+            f"f returned {value!r} of type {kind}: with components={components} it must return a tuple (value, components)"
+        )
+    return value
+
+
+def _number(value: Any, x: NDArray[np.float64]) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        kind = type(value).__name__
+        raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
 
 
 def check_pickle(f: Callable[[Any], Any]) -> None:
