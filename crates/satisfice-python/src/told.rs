@@ -1,6 +1,6 @@
 //! Components of F that come with its values, kept until the engine asks for them.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyValueError;
@@ -24,7 +24,7 @@ pub(crate) struct ToldComponents {
 
 #[derive(Default)]
 struct Points {
-    components: HashMap<Vec<u64>, Vec<f64>>,
+    components: BTreeMap<Vec<u64>, Vec<f64>>,
     /// The oldest first.
     order: VecDeque<Vec<u64>>,
 }
