@@ -217,7 +217,8 @@ impl CoordinateSearch {
                     self.step(axis, change / by, threshold);
                 }
             }
-            Out::Step { axis, .. } if change < 0.0 => {
+            // Where two axes decide, F stays the same until the second one is moved, too.
+            Out::Step { axis, .. } if change <= 0.0 => {
                 core::mem::swap(&mut self.point, &mut self.proposed);
                 self.value = value;
                 self.order.retain(|other| *other != axis);
