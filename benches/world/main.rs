@@ -71,7 +71,7 @@ fn main() {
 
 const INTRODUCTION: &str = "Spheres of 80 triangles and radius 0.4 that share one mesh; pairs of triangles within 0.01; one thread, \
     release build. Every moving body has a step of up to 0.005 along each axis; directions turn every eight frames. All methods \
-    follow the same motion in one run, one after the other in every frame; times are medians over the frames, in milliseconds of processor time.
+    follow the same motion in one run, one after the other in every frame; times are medians over the frames, in milliseconds of processor time, less what two readings of the clock take.
 
 - *bodies ms*: placing what moves and finding the pairs of bodies whose boxes meet (`World::place`, or `World::translate` where nothing turns, and a query of an empty region).
 - *worst*: the slowest of these frames, divided by *new*, the time of a world made anew (adding all bodies and finding the pairs).
