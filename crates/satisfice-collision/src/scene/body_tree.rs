@@ -110,7 +110,7 @@ impl TreeFrame {
 /// What the tree knows of a body, on half a line of memory.
 #[derive(Clone, Copy)]
 #[repr(C, align(32))]
-struct Leaf {
+struct BodyLeaf {
     /// Its box; the empty one if it is not in the tree.
     bounds: Box32,
     /// Its place in its node, or [`NONE`].
@@ -119,7 +119,7 @@ struct Leaf {
     number: u32,
 }
 
-impl Leaf {
+impl BodyLeaf {
     const NONE: Self = Self {
         bounds: Box32::EMPTY,
         place: NONE,
@@ -134,7 +134,7 @@ pub(super) struct BodyTree {
     free: Vec<u32>,
     root: Option<u32>,
     /// By slot.
-    leaves: Vec<Leaf>,
+    leaves: Vec<BodyLeaf>,
     frame: TreeFrame,
     bodies: usize,
     /// Bodies put elsewhere since the tree was built.
@@ -172,7 +172,7 @@ impl BodyTree {
     pub(super) fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>()
             + (self.free.capacity() + self.changed.capacity()) * 4
-            + self.leaves.capacity() * size_of::<Leaf>()
+            + self.leaves.capacity() * size_of::<BodyLeaf>()
             + self.search.bytes()
     }
 
@@ -188,7 +188,7 @@ impl BodyTree {
     fn arrange(&mut self, boxes: &[(u32, Box32)]) {
         self.nodes.clear();
         self.free.clear();
-        self.leaves.fill(Leaf::NONE);
+        self.leaves.fill(BodyLeaf::NONE);
         self.changed.clear();
         (self.root, self.bodies, self.moves) = (None, boxes.len(), 0);
         if let Some(last) = boxes.iter().map(|&(body, _)| body).max() {
@@ -317,7 +317,7 @@ impl BodyTree {
 
     fn make_room_for(&mut self, body: u32) {
         if self.leaves.len() <= body as usize {
-            self.leaves.resize(body as usize + 1, Leaf::NONE);
+            self.leaves.resize(body as usize + 1, BodyLeaf::NONE);
         }
     }
 
@@ -415,7 +415,7 @@ impl BodyTree {
         let Some(mut place) = self.place_of(body) else {
             return;
         };
-        self.leaves[body as usize] = Leaf::NONE;
+        self.leaves[body as usize] = BodyLeaf::NONE;
         self.bodies -= 1;
         loop {
             let id = node_of(place);

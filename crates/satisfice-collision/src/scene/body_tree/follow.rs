@@ -1,6 +1,6 @@
 //! Changed boxes: many at once, from the bottom up.
 
-use super::{BodyTree, Leaf, NONE, Node, lane_in, node_of};
+use super::{BodyLeaf, BodyTree, NONE, Node, lane_in, node_of};
 use crate::broad::Box32;
 
 /// The tree is rebuilt if more than this share of the bodies change their leaf in a frame.
@@ -47,7 +47,7 @@ impl BodyTree {
         let mut count = 0;
         for (number, change) in (0..).zip(changes.iter_mut()) {
             let leaf = self.leaves.get(change.body as usize).copied();
-            let Leaf { bounds, place, .. } = leaf.unwrap_or(Leaf::NONE);
+            let BodyLeaf { bounds, place, .. } = leaf.unwrap_or(BodyLeaf::NONE);
             change.before = bounds;
             if place != NONE && self.stays(place, &change.to) {
                 self.leaves[change.body as usize].bounds = change.to;

@@ -76,9 +76,9 @@ impl Decisive {
     }
 }
 
-/// What is out.
+/// What is awaited.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-enum Out {
+enum Awaited {
     #[default]
     Nothing,
     /// A look along the next axis, so far.
@@ -102,7 +102,7 @@ pub(super) struct CoordinateSearch {
     /// Whether a look along several axes told nothing here.
     is_unclear: bool,
     evaluations: usize,
-    out: Out,
+    awaited: Awaited,
     /// The step to take next.
     next: Option<(usize, f64, u32)>,
     pub(super) proposed: Vec<f64>,
@@ -117,7 +117,7 @@ impl CoordinateSearch {
         self.order.extend(0..point.len());
         (self.flat, self.evaluations) = (0, 0);
         self.is_unclear = false;
-        (self.out, self.next) = (Out::Nothing, None);
+        (self.awaited, self.next) = (Awaited::Nothing, None);
     }
 
     pub(super) fn fits(&self, axes: usize) -> bool {
@@ -128,7 +128,7 @@ impl CoordinateSearch {
             && self.order.iter().all(is_axis)
             && self.group.iter().all(|(axis, _)| is_axis(axis))
             && self.next.is_none_or(|(axis, ..)| is_axis(&axis))
-            && !matches!(self.out, Out::Step { axis, .. } if axis >= axes)
+            && !matches!(self.awaited, Awaited::Step { axis, .. } if axis >= axes)
             && [0, axes].contains(&self.proposed.len())
     }
 
@@ -156,7 +156,7 @@ impl CoordinateSearch {
             if (self.proposed[axis] - self.point[axis]).abs() < shortest {
                 return Proposal::Ends;
             }
-            self.out = Out::Step { axis, length, halves };
+            self.awaited = Awaited::Step { axis, length, halves };
             return Proposal::Converges;
         }
         let left = &self.order[self.flat..];
@@ -176,7 +176,7 @@ impl CoordinateSearch {
                     *by = inside(*axis, (k + 1) as f64 * unit / *by);
                     self.proposed[*axis] += *by;
                 }
-                self.out = Out::Group(unit);
+                self.awaited = Awaited::Group(unit);
                 return Proposal::Looks;
             }
         }
@@ -185,24 +185,24 @@ impl CoordinateSearch {
         };
         let by = inside(axis, LOOK);
         self.proposed[axis] += by;
-        self.out = Out::Look(by);
+        self.awaited = Awaited::Look(by);
         Proposal::Looks
     }
 
     /// Takes F at the point that was proposed.
     pub(super) fn learn(&mut self, value: f64, threshold: f64, axes: &[usize], decisive: &mut Decisive) {
         let change = change(self.value, value);
-        match core::mem::take(&mut self.out) {
-            Out::Nothing => {}
-            Out::Look(_) | Out::Group(_) if change.is_nan() || change.is_infinite() => self.flat += 1,
-            Out::Look(_) if change == 0.0 => self.flat += 1,
-            Out::Look(by) => {
+        match core::mem::take(&mut self.awaited) {
+            Awaited::Nothing => {}
+            Awaited::Look(_) | Awaited::Group(_) if change.is_nan() || change.is_infinite() => self.flat += 1,
+            Awaited::Look(_) if change == 0.0 => self.flat += 1,
+            Awaited::Look(by) => {
                 let axis = self.order[self.flat];
                 decisive.slopes[axes[axis]] = (change / by).abs();
                 self.step(axis, change / by, threshold);
             }
-            Out::Group(_) if change == 0.0 => self.flat = self.order.len(),
-            Out::Group(unit) => {
+            Awaited::Group(_) if change == 0.0 => self.flat = self.order.len(),
+            Awaited::Group(unit) => {
                 let units = (change / unit).abs();
                 let k = units.round();
                 let is_clear = (units - k).abs() < EXACT && k >= 1.0 && k <= self.group.len() as f64;
@@ -218,7 +218,7 @@ impl CoordinateSearch {
                 }
             }
             // Where two axes decide, F stays the same until the second one is moved, too.
-            Out::Step { axis, .. } if change <= 0.0 => {
+            Awaited::Step { axis, .. } if change <= 0.0 => {
                 core::mem::swap(&mut self.point, &mut self.proposed);
                 self.value = value;
                 self.order.retain(|other| *other != axis);
@@ -226,10 +226,10 @@ impl CoordinateSearch {
                 self.flat = 0;
                 self.is_unclear = false;
             }
-            Out::Step { axis, length, halves } if halves < HALVES => {
+            Awaited::Step { axis, length, halves } if halves < HALVES => {
                 self.next = Some((axis, 0.5 * length, halves + 1));
             }
-            Out::Step { axis, .. } => {
+            Awaited::Step { axis, .. } => {
                 // It counts as flat here.
                 self.order.retain(|other| *other != axis);
                 self.order.insert(0, axis);

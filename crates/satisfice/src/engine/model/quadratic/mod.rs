@@ -2,6 +2,7 @@
 
 mod coordinate;
 mod eigen;
+mod minimum;
 mod search;
 
 use coordinate::{CoordinateSearch, Decisive, change};
