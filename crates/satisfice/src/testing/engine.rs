@@ -55,9 +55,16 @@ pub enum EngineLaw {
     Covered,
 }
 
-/// Evaluations of an ordinary run, too many for a model of F, and of one by an engine whose proposals are expensive.
-const RUN: u64 = 1_200;
-const EXPENSIVE_RUN: u64 = 150;
+/// Evaluations of an ordinary run, and how many are planned: too many for a model of F.
+const RUN: RunLength = RunLength {
+    evaluations: 1_200,
+    planned: 10_000,
+};
+/// Those of a run by an engine whose proposals are expensive.
+const EXPENSIVE_RUN: RunLength = RunLength {
+    evaluations: 150,
+    planned: 150,
+};
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;
 
@@ -103,12 +110,16 @@ pub fn check<S: Real>(engine: &ConfiguredEngine<S>) -> Result<Vec<Violation<Engi
     check_in(engine, RUN)
 }
 
-/// The suite, with ordinary runs of so many evaluations.
-fn check_in<S: Real>(engine: &ConfiguredEngine<S>, run: u64) -> Result<Vec<Violation<EngineLaw>>, Error> {
+/// The suite, with such ordinary runs.
+fn check_in<S: Real>(
+    engine: &ConfiguredEngine<S>,
+    run: RunLength,
+) -> Result<Vec<Violation<EngineLaw>>, Error> {
     engine.check()?;
     let mut suite = EngineSuite {
         engine,
-        run,
+        run: run.evaluations,
+        planned: run.planned,
         violations: Vec::new(),
     };
     for case in spaces()? {
@@ -127,10 +138,19 @@ fn check_in<S: Real>(engine: &ConfiguredEngine<S>, run: u64) -> Result<Vec<Viola
     Ok(suite.violations)
 }
 
+/// How long a run is.
+#[derive(Debug, Clone, Copy)]
+struct RunLength {
+    evaluations: u64,
+    planned: u64,
+}
+
 struct EngineSuite<'a, S> {
     engine: &'a ConfiguredEngine<S>,
     /// Evaluations of an ordinary run.
     run: u64,
+    /// Evaluations that it is planned for.
+    planned: u64,
     violations: Vec<Violation<EngineLaw>>,
 }
 
@@ -147,6 +167,11 @@ impl<S: Real> EngineSuite<'_, S> {
         if let Some(what) = what {
             self.say(law, case, what);
         }
+    }
+
+    /// The budget of an ordinary run.
+    fn ordinary_budget(&self) -> Budget {
+        Budget::evaluations(self.run).with_horizon(self.planned)
     }
 
     fn search(&mut self) -> Result<Search<Case<S>>, Error> {

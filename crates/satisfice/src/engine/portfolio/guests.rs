@@ -3,12 +3,13 @@
 mod flood_alone;
 mod member;
 mod sizes;
+mod weights;
 
 use core::ops::Range;
 
 use flood_alone::FloodAlone;
 use member::Member;
-use sizes::Sizes;
+use sizes::{MOST_PROPOSALS, Sizes};
 
 use super::credit::{Credit, Trial};
 use super::pace::Pace;
@@ -26,24 +27,16 @@ use crate::seed::SearchRng;
 use crate::space::AxisKind;
 use crate::state::{Part, Reader, State};
 
-/// A model of F is at work where at most `MODELLED` evaluations are planned, or where an evaluation takes more than `EXPENSIVE` seconds and at
-/// most `MODELLED` have been made; on spaces of at most `MODEL_AXES` axes.
-const MODELLED: u64 = 1_000;
+/// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited, or where one takes more than
+/// `EXPENSIVE` seconds and at most `MODELLED` have been made. It leads for so many evaluations; from then on it competes by its yield.
+const MODELLED: u64 = MOST_PROPOSALS;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
 /// about half as long.
 const QUADRATIC: f64 = 2e-5;
-/// Weight of the model until it turns out to predict too little. From then on it has the bound of a source without a hit, even before any
-/// source has found one: its proposals take a hundred times as long as those of others.
-const MODEL_WEIGHT: f64 = 40.0;
-/// Weight of the model after the search for a first hit, in which descents take part and which ends after this share of the planned
-/// evaluations. Where hits are many, the model is as good as descents; of isolated hits it knows only what descents tell it.
-const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
+/// Share of the planned evaluations in which the model and descents look for the first hit.
 const FIRST_SHARE: f64 = 0.5;
-/// Weights of the model and of descents by quadratic models where F is a step function.
-const MODEL_WEIGHT_ON_STEPS: f64 = 4.0;
-const QUADRATIC_WEIGHT_ON_STEPS: f64 = 0.5;
 /// With at most this many axes, a matrix takes no more memory and time than a few steps.
 const CMA_AXES: usize = 200;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
@@ -195,9 +188,11 @@ impl<S: Real> Guests<S> {
                 GuestKind::Flood => continuous,
                 GuestKind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
                 GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
-                GuestKind::Model => context
-                    .evaluations_planned()
-                    .is_some_and(|planned| planned <= MODELLED && space.dimension() <= MODEL_AXES),
+                GuestKind::Model => {
+                    context.evaluations_planned().is_some()
+                        && self.sizes.proposals > 0
+                        && space.dimension() <= MODEL_AXES
+                }
             };
             if is_of_use {
                 self.open(kind, context);
@@ -264,10 +259,20 @@ impl<S: Real> Guests<S> {
         })
     }
 
+    /// Whether a model of F decides who proposes: while the search as a whole, `all`, is young.
+    pub(super) fn model_leads(&self, all: &Credit) -> bool {
+        all.evaluations() < MODELLED && self.has_model()
+    }
+
+    /// Whether a model of F is or was at work.
+    pub(super) fn modelled(&self) -> bool {
+        self.guests.iter().any(|guest| guest.kind == GuestKind::Model)
+    }
+
     /// The engines that look for the first hit while a model is at work: the model itself and the descents by quadratic models. `None`
     /// where an axis is not continuous, after the first hit, and after their share of the evaluations.
     pub(super) fn seekers(&self, all: &Credit, planned: Option<u64>) -> Option<[usize; 2]> {
-        let most = FIRST_SHARE * planned.unwrap_or(MODELLED) as f64;
+        let most = FIRST_SHARE * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
         if !self.continuous || !all.is_barren() || all.evaluations() as f64 >= most {
             return None;
         }
@@ -325,22 +330,7 @@ impl<S: Real> Guests<S> {
             if !guest.open || !guest.own.is_empty() {
                 return None;
             }
-            let is_worth_trying = guest.arm.is_worth_trying(all, trial);
-            let weight = match (guest.kind, &guest.engine) {
-                (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
-                (GuestKind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
-                (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
-                (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
-                (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
-                (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
-                    None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
-                    None | Some(true) if steps => Some(MODEL_WEIGHT_ON_STEPS),
-                    None | Some(true) => Some(MODEL_WEIGHT),
-                    Some(false) => guest.arm.is_within(all, trial).then_some(1.0),
-                },
-                // Niching is not drawn by its yield.
-                (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,
-            };
+            let weight = guest.weight(all, trial, descends_first, steps);
             weight.map(|weight| (index, &guest.arm, weight))
         })
     }
@@ -370,6 +360,9 @@ impl<S: Real> Guests<S> {
             Ask::Covered => return GuestAnswer::Covered,
             Ask::Exhausted => guest.open = false,
             Ask::More => {}
+        }
+        if guest.kind == GuestKind::Model && guest.arm.evaluations() >= self.sizes.proposals {
+            guest.open = false;
         }
         if guest.own.is_empty() && calls == 0 {
             guest.arm.count(false, idle_cost);

@@ -69,8 +69,9 @@ engine_settings! {
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or F takes more than
     ///   20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
-    /// - a Gaussian process where F is expensive: where at most 1,000 evaluations are planned, or where F takes more than 5 ms
-    ///   and only time is limited;
+    /// - a Gaussian process on at most 20 axes, where evaluations are limited, or where F takes more than 5 ms and only time is limited: up to
+    ///   1,000 proposals, of half a millisecond. Beyond 2,000 planned evaluations they become fewer, so that thinking does not: 250 of
+    ///   4,000, none from 6,400 on. Where F takes less than that, and the time matters more than the number of evaluations, limit the time;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most
     ///   4,096 points is enumerated at once, a larger one once it is half visited or the budget asks for it;
@@ -84,8 +85,8 @@ engine_settings! {
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
     /// share until something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together
     /// 18 %, except for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit.
-    /// Where time alone is limited, shares and yields are of time, the sources' own thinking included. The model has that bound, too, once it is
-    /// known to predict less than a quarter of the variance of F; until then the others together take at most 6 % of the evaluations
+    /// Where time alone is limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000
+    /// evaluations and then competes as the others do. It has that bound, too, once it is known to predict less than a quarter of the variance of F; until then the others together take at most 6 % of the evaluations
     /// that do not hit beside it. Where the problem tells the [components](crate::Components) of F, the model comes first. Elsewhere on continuous
     /// axes the model and descents, by quadratic models and without, look for the first hit together with up to half of the evaluations: the
     /// more a source has lowered the least F, the more it is asked; not so where most values of F repeat others: of a step function uniform points and swarms know as much as descents.

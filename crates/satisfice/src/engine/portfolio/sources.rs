@@ -267,7 +267,9 @@ impl<S: Real> Engine<S> for Sources<S> {
                 self.chosen = Some((tag, left - made));
                 break;
             }
-            self.chosen = (has_more && made > 0).then_some((tag, left - made));
+            // Around hits of the model most points are known: steps go on to where they are not.
+            let goes_on = made > 0 || tag.0 == Source::Step && self.guests.modelled();
+            self.chosen = (has_more && goes_on).then_some((tag, left - made));
             // A source with nothing left ends the batch, so that worse sources do not fill it, unless workers would wait.
             if out.len() == before {
                 if !out.is_empty() && out.len() >= wanted {

@@ -16,7 +16,7 @@ use crate::testing::{difference, difference_in_hits};
 impl<S: Real> EngineSuite<'_, S> {
     /// A run twice, and once with its proposals examined.
     pub(super) fn ordinary(&mut self, case: &Case<S>) -> Result<(), Error> {
-        let budget = Budget::evaluations(self.run);
+        let budget = self.ordinary_budget();
         let report = self.run(case, &budget)?;
         let again = self.search()?.run(case, &budget)?;
         self.say_if(EngineLaw::SameSeed, &case.name, difference(&report, &again));
@@ -47,7 +47,7 @@ impl<S: Real> EngineSuite<'_, S> {
             let budget = |evaluations| {
                 let budget = Budget::evaluations(evaluations);
                 if self.engine.is_scheduled() {
-                    budget.with_horizon(4 * self.run)
+                    budget.with_horizon(self.planned.max(4 * self.run))
                 } else {
                     budget
                 }
@@ -80,8 +80,7 @@ impl<S: Real> EngineSuite<'_, S> {
         for mut case in spaces()? {
             // Slow enough to be worth several threads.
             case.work = 1000;
-            // As far as an engine plans for its budget, this one is no small one.
-            let budget = Budget::evaluations(self.run / 2).with_horizon(self.run);
+            let budget = Budget::evaluations(self.run / 2).with_horizon(self.planned);
             let one = self.run(&case, &budget)?;
             for threads in [2, 3, 8] {
                 let many = self.search()?.threads(threads).run(&case, &budget)?;
@@ -99,12 +98,12 @@ impl<S: Real> EngineSuite<'_, S> {
             for index in 0..spaces::<S>()?.len() {
                 let mut reports = Vec::new();
                 let healthy = spaces()?.swap_remove(index);
-                let healthy = self.run(&healthy, &Budget::evaluations(self.run))?;
+                let healthy = self.run(&healthy, &self.ordinary_budget())?;
                 for value in values {
                     let case = spaces()?.swap_remove(index).poisoned(poison(value));
                     let (probe, findings) = Probe::around(self.engine);
                     let mut search = Search::with(probe).seed(42);
-                    let report = self.run_by(&mut search, &case, &Budget::evaluations(self.run))?;
+                    let report = self.run_by(&mut search, &case, &self.ordinary_budget())?;
                     self.say_if(EngineLaw::Proposals, &case.name, findings.first());
                     // An engine that covers the space, which the audit checks, has not given up.
                     let covered = report.stop_reason == StopReason::Covered;
@@ -146,7 +145,7 @@ impl<S: Real> EngineSuite<'_, S> {
 
     pub(super) fn restoring(&mut self) -> Result<(), Error> {
         for case in spaces()? {
-            let budget = Budget::evaluations(self.run);
+            let budget = self.ordinary_budget();
             let straight = self.search()?.run(&case, &budget)?;
             for every in [1, 7] {
                 let (restored, findings) = Restored::around(self.engine, every);
@@ -182,7 +181,7 @@ impl<S: Real> EngineSuite<'_, S> {
                 };
                 let (first, moved, again) = (pick()?, pick()?.moved(0.02), pick()?.moved(0.02));
                 let mut twins = [self.search()?.warm_start(rule), self.search()?.warm_start(rule)];
-                let budget = Budget::evaluations(self.run);
+                let budget = self.ordinary_budget();
                 let before = self.run_by(&mut twins[0], &first, &budget)?;
                 let after = self.run_by(&mut twins[0], &moved, &budget)?;
                 twins[1].run(&first, &budget)?;

@@ -3,6 +3,11 @@
 /// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
 const CANDIDATES: (usize, usize) = (256, 1024);
 const POINTS_OF_LEAST: u64 = 300;
+/// Proposals of the model, at most; fewer where more than `PLANNED` evaluations are planned, so that thinking stays short beside them, and none
+/// where there would be less than `FEWEST_PROPOSALS`.
+pub(super) const MOST_PROPOSALS: u64 = 1_000;
+const PLANNED: u64 = 2_000;
+const FEWEST_PROPOSALS: u64 = 100;
 /// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
 const MOST_SEARCHES: usize = 64;
 /// Regions that are split at once: one for so many evaluations planned, and so many at most.
@@ -16,6 +21,8 @@ pub(super) struct Sizes {
     pub(super) searches: usize,
     /// Candidates of the model.
     pub(super) candidates: usize,
+    /// Proposals of the model, at most.
+    pub(super) proposals: u64,
     /// Regions that are split at once.
     pub(super) regions: usize,
 }
@@ -33,6 +40,7 @@ impl Sizes {
         Self {
             searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
             candidates,
+            proposals: planned.map_or(MOST_PROPOSALS, proposals),
             regions: planned.map_or(MOST_REGIONS, |planned| {
                 usize::try_from(planned / EVALUATIONS_OF_A_REGION)
                     .unwrap_or(MOST_REGIONS)
@@ -44,8 +52,16 @@ impl Sizes {
     pub(super) fn are_possible(&self) -> bool {
         (1..=MOST_SEARCHES).contains(&self.searches)
             && (CANDIDATES.0..=CANDIDATES.1).contains(&self.candidates)
+            && self.proposals <= MOST_PROPOSALS
             && (1..=MOST_REGIONS).contains(&self.regions)
     }
+}
+
+/// How many proposals the model may make where so many evaluations are planned: in inverse proportion to their square, beyond `PLANNED`.
+fn proposals(planned: u64) -> u64 {
+    let planned = planned.max(PLANNED);
+    let most = MOST_PROPOSALS * PLANNED / planned * PLANNED / planned;
+    if most < FEWEST_PROPOSALS { 0 } else { most }
 }
 
 #[cfg(test)]
@@ -69,5 +85,16 @@ mod tests {
         assert_eq!(sizes(1, Some(0)), [1, 1024, 1]);
         assert_eq!(sizes(32, Some(u64::MAX)), [8, 256, 8]);
         assert_eq!(sizes(usize::MAX, None), [64, 256, 8]);
+    }
+
+    #[test]
+    fn the_model_proposes_less_in_long_searches() {
+        let proposals = |planned| Sizes::new(1, planned).proposals;
+        assert_eq!(proposals(None), 1_000);
+        assert_eq!([0, 1, 2_000].map(|planned| proposals(Some(planned))), [1_000; 3]);
+        assert_eq!(
+            [4_000, 6_000, 7_000, u64::MAX].map(|planned| proposals(Some(planned))),
+            [250, 111, 0, 0]
+        );
     }
 }

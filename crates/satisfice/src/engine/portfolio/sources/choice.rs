@@ -41,7 +41,7 @@ impl<S: Real> Sources<S> {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
         // The model proposes one point; the other workers are for the other sources.
-        let modelled = self.batch == 1 && self.guests.has_model();
+        let modelled = self.batch == 1 && self.guests.model_leads(&self.whole);
         let steps = self.progress.levels.are_few();
         let blind = |weight| if steps { BLIND } else { weight };
         let seekers = self.guests.seekers(&self.whole, self.planned);

@@ -1,0 +1,45 @@
+//! What an engine weighs in the draw of the next source.
+
+use super::{Guest, GuestKind, MODELLED, Member};
+use crate::engine::portfolio::credit::{Credit, Trial};
+use crate::scalar::Real;
+
+/// Weight of the model until it turns out to predict too little. From then on it has the bound of a source without a hit, even before any
+/// source has found one: its proposals take a hundred times as long as those of others.
+const MODEL_WEIGHT: f64 = 40.0;
+/// Weight of the model after the search for a first hit, in which descents take part. Where hits are many, the model is as good as
+/// descents; of isolated hits it knows only what descents tell it.
+const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
+/// Weights of the model and of descents by quadratic models where F is a step function.
+const MODEL_WEIGHT_ON_STEPS: f64 = 4.0;
+const QUADRATIC_WEIGHT_ON_STEPS: f64 = 0.5;
+
+impl<S: Real> Guest<S> {
+    /// Its weight, unless it is not worth trying. `descends_first`: whether descents take part in the search for a first hit.
+    /// `steps`: whether F is a step function.
+    pub(super) fn weight(
+        &self,
+        all: &Credit,
+        trial: Trial,
+        descends_first: bool,
+        steps: bool,
+    ) -> Option<f64> {
+        let is_worth_trying = self.arm.is_worth_trying(all, trial);
+        match (self.kind, &self.engine) {
+            (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
+            (GuestKind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
+            (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
+            (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
+            (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
+            (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
+                None | Some(true) if all.evaluations() >= MODELLED => is_worth_trying.then_some(1.0),
+                None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
+                None | Some(true) if steps => Some(MODEL_WEIGHT_ON_STEPS),
+                None | Some(true) => Some(MODEL_WEIGHT),
+                Some(false) => self.arm.is_within(all, trial).then_some(1.0),
+            },
+            // Niching is not drawn by its yield.
+            (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,
+        }
+    }
+}
