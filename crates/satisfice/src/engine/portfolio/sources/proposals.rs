@@ -14,6 +14,8 @@ use crate::seed::SearchRng;
 pub(super) const SCANNED: usize = 256;
 /// A descent is asked so many times for a point that is not known.
 const DESCENT_TRIES: usize = 64;
+/// Pairs of hits that are recombined for a point that is not known. Of a product of sets most recombinations become known.
+const CROSS_TRIES: usize = 4;
 
 impl<S: Real> Sources<S> {
     /// Whether a position is inside and worth an evaluation: on a lattice not proposed before, elsewhere not a known hit.
@@ -108,7 +110,9 @@ impl<S: Real> Sources<S> {
                 Some(self.trials.len() / self.position.len() - 1)
             }
             Source::Cross => {
-                if !recombine(&self.hits, rng, &mut self.position) || !self.is_fresh(context) {
+                let is_new = (0..CROSS_TRIES)
+                    .any(|_| recombine(&self.hits, rng, &mut self.position) && self.is_fresh(context));
+                if !is_new {
                     self.rejected(CROSS);
                     return true;
                 }
