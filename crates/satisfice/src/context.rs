@@ -86,6 +86,11 @@ pub trait Context<S: Real> {
         false
     }
 
+    /// Seconds that the slice may take, if its budget limits them: what the user has set, not what the clock says.
+    fn seconds_planned(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether the time of the slice has run out: nothing proposed from now on is evaluated, so that an engine need not go on with
     /// costly work. `false` where no time limits the slice, which does then not depend on the clock.
     fn is_out_of_time(&self) -> bool {

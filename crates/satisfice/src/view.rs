@@ -313,6 +313,9 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn is_timed(&self) -> bool {
         self.evaluations_planned().is_none() && self.ledger.budget.time.is_some()
     }
+    fn seconds_planned(&self) -> Option<f64> {
+        self.ledger.budget.time.map(|time| time.as_secs_f64())
+    }
     fn is_out_of_time(&self) -> bool {
         self.ledger.is_out_of_time()
     }

@@ -152,6 +152,20 @@ fn a_model_that_predicts_nothing_is_not_asked_for_long() {
     assert!(asked(2.5, bowl) > 120, "{}", asked(2.5, bowl));
 }
 
+/// 2,000 evaluations of a cheap F take a millisecond, 1,000 proposals of the model half a second.
+#[test]
+fn a_limit_of_time_that_is_short_for_the_model_keeps_it_out() {
+    let proposed = |budget: &Budget| {
+        let problem = from_fn(Space::lattice(6, 10).unwrap(), 0.5, |x: &[f64]| x.iter().sum()).boxed();
+        let report = Search::new().seed(1).run(&problem, budget).unwrap();
+        let mut names = report.sources.names.iter();
+        let model = names.position(|name| name == "model").unwrap();
+        report.sources.rows.last().unwrap().proposed[model]
+    };
+    assert_eq!(proposed(&Budget::millis(400).and_evaluations(2_000)), 0);
+    assert!(proposed(&Budget::millis(600_000).and_evaluations(100)) > 50);
+}
+
 /// In two dimensions a drought begins after 2,800 evaluations; from then on half of the choices are niching's.
 #[test]
 fn niching_searches_once_no_source_finds_anything() {

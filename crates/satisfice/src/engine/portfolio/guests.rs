@@ -27,11 +27,13 @@ use crate::seed::SearchRng;
 use crate::space::AxisKind;
 use crate::state::{Part, Reader, State};
 
-/// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited, or where one takes more than
-/// `EXPENSIVE` seconds and at most `MODELLED` have been made. It leads for so many evaluations; from then on it competes by its yield.
+/// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited and time leaves room for it, or where an
+/// evaluation takes more than `EXPENSIVE` seconds and at most `MODELLED` have been made. It leads for so many evaluations; from then on it competes by its yield.
 const MODELLED: u64 = MOST_PROPOSALS;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;
+/// Seconds of a proposal of the model.
+const PROPOSAL: f64 = 5e-4;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
 /// about half as long.
 const QUADRATIC: f64 = 2e-5;
@@ -188,16 +190,23 @@ impl<S: Real> Guests<S> {
                 GuestKind::Flood => continuous,
                 GuestKind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
                 GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
-                GuestKind::Model => {
-                    context.evaluations_planned().is_some()
-                        && self.sizes.proposals > 0
-                        && space.dimension() <= MODEL_AXES
-                }
+                GuestKind::Model => self.has_room_for_model(context),
             };
             if is_of_use {
                 self.open(kind, context);
             }
         }
+    }
+
+    /// Whether evaluations are limited, the model may propose, and a limit of time, if there is one, leaves time for that.
+    fn has_room_for_model(&self, context: &dyn Context<S>) -> bool {
+        let proposals = context
+            .evaluations_planned()
+            .map_or(0, |planned| planned.min(self.sizes.proposals));
+        let seconds = proposals as f64 * PROPOSAL;
+        proposals > 0
+            && context.space().dimension() <= MODEL_AXES
+            && context.seconds_planned().is_none_or(|limit| seconds <= limit)
     }
 
     fn open(&mut self, kind: GuestKind, context: &dyn Context<S>) {
