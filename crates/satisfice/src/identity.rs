@@ -94,6 +94,9 @@ const HASHED: usize = 3;
 /// At most this many in an archive where many points are in one cell.
 const FINELY_HASHED: usize = 6;
 
+/// Two points are not the same where one coordinate alone differs by so many radii: by more than rounding could hide.
+const FAR: f64 = 1.01;
+
 impl<S: Real> Located<S> {
     /// A solution at these coordinates; a number is a separation radius, >= 0.
     #[must_use]
@@ -145,11 +148,19 @@ impl<S: Real> Located<S> {
         let mut pairs = self.coordinates.iter().zip(other);
         let square = match &self.separation {
             Separation::Radius(radius) if *radius == S::zero() => return pairs.all(|(&a, b)| a == b),
-            // Divided before it is squared: the square of a small or of a large radius is no number of use.
-            Separation::Radius(radius) => pairs.fold(S::zero(), |sum, (&a, b)| {
-                let d = (a - b) / *radius;
-                sum + d * d
-            }),
+            Separation::Radius(radius) => {
+                let (far, mut sum) = (S::of(FAR) * *radius, S::zero());
+                for (&a, b) in pairs {
+                    let d = a - b;
+                    if d.abs() > far {
+                        return false;
+                    }
+                    // Divided before it is squared: the square of a small or of a large radius is no number of use.
+                    let d = d / *radius;
+                    sum = sum + d * d;
+                }
+                sum
+            }
             Separation::Axes(axes) => squares(pairs, axes),
         };
         square <= S::one()

@@ -204,7 +204,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         self.best.offer(&listed, its_fitness, evaluation);
         match self
             .archive
-            .enter(listed, its_fitness, evaluation, seconds, rules.probing)
+            .enter_unseen(listed, its_fitness, evaluation, seconds, rules.probing)
         {
             Insertion::New => self.notify_hit(observer),
             // New to the engine only.
