@@ -1,4 +1,4 @@
-//! Against an ordered set, and what probes do.
+//! Against an ordered set and all pairs; what probes do; memory at rest.
 
 use std::collections::BTreeSet;
 
