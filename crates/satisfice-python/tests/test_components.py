@@ -30,7 +30,7 @@ def test_a_model_of_the_components_finds_what_one_of_the_value_misses():
     by_default = alone(engine="portfolio", evaluations=100)
     assert by_default.hits == 3
     # Engines without a model do not ask for them.
-    changes = {"engine": "quadratic-descent", "evaluations": 300}
+    changes = {"engine": "quadratic-descent", "evaluations": 1000}
     one, two = alone(**changes), alone(value, components=None, **changes)
     assert one.hits > 0 and np.array_equal(one.x, two.x)
 
