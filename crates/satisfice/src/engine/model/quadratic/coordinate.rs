@@ -19,7 +19,7 @@ const PATIENCE: usize = 6;
 /// Whether one axis decides F, and how steep F is along each: known to all searches of a run.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Decisive {
-    /// Looks along single axes from points where one at least changes F, and those that left F as it was, to the bit. What became of
+    /// Looks along single axes from points where one at least changes F, and those that left F as it was, but for rounding. What became of
     /// searches along the axes counts as so many looks.
     looks: f64,
     flat: f64,
