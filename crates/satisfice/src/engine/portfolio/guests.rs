@@ -28,7 +28,8 @@ use crate::space::AxisKind;
 use crate::state::{Part, Reader, State};
 
 /// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited and time leaves room for it, or where an
-/// evaluation takes more than `EXPENSIVE` seconds and at most `MODELLED` have been made. It leads for so many evaluations; from then on it competes by its yield.
+/// evaluation takes more than `EXPENSIVE` seconds and at most `MODELLED` have been made. It leads for so many evaluations; from then on it
+/// competes by its yield.
 const MODELLED: u64 = MOST_PROPOSALS;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 20;

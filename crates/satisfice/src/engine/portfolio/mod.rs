@@ -83,16 +83,17 @@ engine_settings! {
     /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
     ///   hits.
     ///
-    /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger
-    /// share until something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together
-    /// 18 %, except for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit.
-    /// Where time alone is limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000
-    /// evaluations and then competes as the others do. It has that bound, too, once it is known to predict less than a quarter of the variance of F; until then the others together take at most 6 % of the evaluations
-    /// that do not hit beside it. Where the problem tells the [components](crate::Components) of F, the model comes first. Elsewhere on continuous
-    /// axes the model and descents, by quadratic models and without, look for the first hit together with up to half of the evaluations: the
-    /// more a source has lowered the least F, the more it is asked; not so where most values of F repeat others: of a step function uniform points and swarms know as much as descents.
-    /// On continuous axes, when no source has found a hit for 400 evaluations an axis and 2,000 more, and for 200 a hit, every other choice
-    /// is niching's until one does. All sources learn the hits of the others. No parameter depends on the problem.
+    /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger share until
+    /// something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together 18 %, except
+    /// for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit. Where time alone is
+    /// limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000 evaluations and then competes as the
+    /// others do. It has the bound of a source without a hit once it is known to predict less than a quarter of the variance of F; until then the
+    /// others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the [components](crate::Components)
+    /// of F, the model comes first. Elsewhere on continuous axes the model and descents, by quadratic models and without, look for the first hit
+    /// together with up to half of the evaluations: the more a source has lowered the least F, the more it is asked; not so where most values of F
+    /// repeat others: of a step function uniform points and swarms know as much as descents. On continuous axes, when no source has found a hit for
+    /// 400 evaluations an axis and 2,000 more, and for 200 a hit, every other choice is niching's until one does. All sources learn the hits of the
+    /// others. No parameter depends on the problem.
     ///
     /// ```
     /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};
