@@ -30,15 +30,16 @@ pub(super) fn within_limit<T: Send + 'static>(
         })?;
     loop {
         match receiver.recv_timeout(LOOK_EVERY) {
-            Ok(built) => return Ok(Some(built)),
-            Err(RecvTimeoutError::Timeout) if is_reached() => {
+            Err(RecvTimeoutError::Disconnected) => bail!("the trees of the meshes could not be built"),
+            // On a busy machine this thread wakes up when they are built, long after the limit.
+            Ok(_) | Err(RecvTimeoutError::Timeout) if is_reached() => {
                 message::say(format_args!(
                     "no pair was compared: the trees of the meshes were still being built"
                 ));
                 return Ok(None);
             }
+            Ok(built) => return Ok(Some(built)),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => bail!("the trees of the meshes could not be built"),
         }
     }
 }
