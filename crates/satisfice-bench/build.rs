@@ -19,8 +19,10 @@ fn main() -> io::Result<()> {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        let path = path.display().to_string();
-        writeln!(table, "    ({name:?}, include_str!({path:?})),").map_err(io::Error::other)?;
+        // Relative to the package, so that a checkout can be moved together with what it has built.
+        let within = format!("/suites/{name}.toml");
+        let path = format!("concat!(env!(\"CARGO_MANIFEST_DIR\"), {within:?})");
+        writeln!(table, "    ({name:?}, include_str!({path})),").map_err(io::Error::other)?;
     }
     table.push_str("]\n");
     let out = env::var("OUT_DIR").map_err(io::Error::other)?;
