@@ -213,28 +213,14 @@ impl<T: Identity> Archive<T> {
     ///
     /// At 2^32 - 1 hits, the archive is full and takes no more.
     pub fn insert(&mut self, solution: T, fitness: f64, evaluation: u64, seconds: f64) -> bool {
-        self.enter(solution, fitness, evaluation, seconds, false) == Insertion::New
+        !self.contains(&solution)
+            && self.enter(solution, fitness, evaluation, seconds, false) == Insertion::New
     }
 
-    /// [`Archive::insert`] for a hit of the engine or of a probe. That of a probe is listed, but not seen by
-    /// [`contains`](Archive::contains) until the engine finds it, too, or the archive comes to rest.
+    /// Adds a hit of the engine or of a probe that [`Archive::contains`] has just denied: looking again among many close hits would take as
+    /// long as all the rest. That of a probe is listed, but not seen by [`contains`](Archive::contains) until the engine finds it, too, or
+    /// the archive comes to rest.
     pub(crate) fn enter(
-        &mut self,
-        solution: T,
-        fitness: f64,
-        evaluation: u64,
-        seconds: f64,
-        probe: bool,
-    ) -> Insertion {
-        if self.contains(&solution) {
-            return Insertion::Known;
-        }
-        self.enter_unseen(solution, fitness, evaluation, seconds, probe)
-    }
-
-    /// [`Archive::enter`] for a solution that [`Archive::contains`] has just denied: looking again among many close hits would take as long
-    /// as all the rest.
-    pub(crate) fn enter_unseen(
         &mut self,
         solution: T,
         fitness: f64,

@@ -204,7 +204,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         self.best.offer(&listed, its_fitness, evaluation);
         match self
             .archive
-            .enter_unseen(listed, its_fitness, evaluation, seconds, rules.probing)
+            .enter(listed, its_fitness, evaluation, seconds, rules.probing)
         {
             Insertion::New => self.notify_hit(observer),
             // New to the engine only.
@@ -257,19 +257,16 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// Inserts a hit of a lane, as of now; returns whether it was new.
     pub(crate) fn insert_from_lane(&mut self, hit: &Hit<'_, T>, observer: &mut dyn Observer<T>) -> bool {
         let seconds = self.clock.elapsed().as_secs_f64();
-        let entered = self.archive.enter(
-            hit.solution.clone(),
-            hit.fitness,
-            self.counts.evaluations,
-            seconds,
-            false,
-        );
-        if entered == Insertion::New {
+        let evaluation = self.counts.evaluations;
+        let is_new = self
+            .archive
+            .insert(hit.solution.clone(), hit.fitness, evaluation, seconds);
+        if is_new {
             self.notify_hit(observer);
         } else {
             self.counts.duplicates += 1;
         }
-        entered == Insertion::New
+        is_new
     }
 
     /// Takes the best of a lane, as of now.
