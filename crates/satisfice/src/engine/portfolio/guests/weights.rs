@@ -10,9 +10,6 @@ const MODEL_WEIGHT: f64 = 40.0;
 /// Weight of the model after the search for a first hit, in which descents take part. Where hits are many, the model is as good as
 /// descents; of isolated hits it knows only what descents tell it.
 const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
-/// Weights of the model and of descents by quadratic models where F is a step function.
-const MODEL_WEIGHT_ON_STEPS: f64 = 4.0;
-const QUADRATIC_WEIGHT_ON_STEPS: f64 = 0.5;
 
 impl<S: Real> Guest<S> {
     /// Its weight, unless it is not worth trying. `descends_first`: whether descents take part in the search for a first hit.
@@ -27,16 +24,14 @@ impl<S: Real> Guest<S> {
         let is_worth_trying = self.arm.is_worth_trying(all, trial);
         match (self.kind, &self.engine) {
             (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
-            (GuestKind::Quadratic, _) if steps => is_worth_trying.then_some(QUADRATIC_WEIGHT_ON_STEPS),
             (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
             (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
             (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
             (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
                 None | Some(true) if all.evaluations() >= MODELLED => is_worth_trying.then_some(1.0),
                 None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
-                None | Some(true) if steps => Some(MODEL_WEIGHT_ON_STEPS),
-                None | Some(true) => Some(MODEL_WEIGHT),
-                Some(false) => self.arm.is_within(all, trial).then_some(1.0),
+                None | Some(true) if !steps => Some(MODEL_WEIGHT),
+                _ => self.arm.is_within(all, trial).then_some(1.0),
             },
             // Niching is not drawn by its yield.
             (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,

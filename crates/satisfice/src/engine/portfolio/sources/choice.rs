@@ -12,8 +12,9 @@ use crate::seed::SearchRng;
 const TURN: u64 = 128;
 const LONGEST_TURN: u64 = 8;
 const LONGEST_TURN_WHERE_QUICK: u64 = 32;
-/// Weight of uniform points and swarms where F is a step function, which has no slope to descend.
+/// Weights of uniform points and of swarms where F is a step function, which has no slope to descend.
 const BLIND: f64 = 4.0;
+const BLIND_SWARMS: f64 = 20.0;
 /// Share of the choices that is niching's while no source finds anything.
 const NICHING: f64 = 0.5;
 
@@ -43,7 +44,7 @@ impl<S: Real> Sources<S> {
         // The model proposes one point; the other workers are for the other sources.
         let modelled = self.batch == 1 && self.guests.model_leads(&self.whole);
         let steps = self.progress.levels.are_few();
-        let blind = |weight| if steps { BLIND } else { weight };
+        let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
         let seekers = self.guests.seekers(&self.whole, self.planned);
         if modelled
             && !steps
@@ -75,13 +76,13 @@ impl<S: Real> Sources<S> {
         };
         let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
         if steps || is_worth(0) {
-            offer(self.arms[0].draw(price, blind(0.3), rng), (Source::Uniform, 0));
+            offer(self.arms[0].draw(price, uniform, rng), (Source::Uniform, 0));
         }
         if (self.visited.is_some() && !modelled) || is_worth(DESCENT) {
             offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
         }
         if uses(Omitted::Swarms) && (steps || is_worth(1)) {
-            offer(self.arms[1].draw(price, blind(0.5), rng), (Source::Swarm, 0));
+            offer(self.arms[1].draw(price, swarm, rng), (Source::Swarm, 0));
         }
         if uses(Omitted::Climbers) && is_worth(2) {
             offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
