@@ -43,7 +43,7 @@ const PROBLEMS: [(&str, &[(&str, &str)]); 19] = [
 /// The geometric mean is over the ten problems before the teapots.
 const MEAN_OVER: usize = 10;
 /// Engines with their settings.
-const ENGINES: [(&str, &str); 18] = [
+const ENGINES: [(&str, &str); 17] = [
     ("latest-hit-qpso", ""),
     ("latest-hit-qpso", "exhaust=yes"),
     ("random", ""),
@@ -55,7 +55,6 @@ const ENGINES: [(&str, &str); 18] = [
     ("portfolio", ""),
     ("portfolio", "without=swarms"),
     ("portfolio", "without=climbers"),
-    ("portfolio", "without=populations"),
     ("portfolio", "without=steps"),
     ("portfolio", "without=learning"),
     ("portfolio", "without=recombination"),
@@ -79,7 +78,7 @@ const WARM: [(&str, &[(&str, &str)]); 5] = [
 const COMPOSED: std::ops::RangeInclusive<u64> = 11..=20;
 const ON_COMPOSED: [(&str, &str); 3] = [
     ("portfolio", ""),
-    ("portfolio", "without=populations"),
+    ("portfolio", "without=recombination"),
     ("descent-flood", ""),
 ];
 /// Moving teapots: frames, sizes moved in a frame, evaluations in a frame.

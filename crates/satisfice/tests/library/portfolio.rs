@@ -48,10 +48,10 @@ fn recombination_finds_a_product_of_places() {
     assert!(with > 4 * without, "{with} {without}");
 }
 
-/// A cusp of fractal walls, as steep as |x|^0.63 on every scale. With the other local searches left out, nothing but the
-/// populations gets to its bottom: 1 in 10^9 of the space is below delta.
+/// A cusp of fractal walls, as steep as |x|^0.63 on every scale: 1 in 10^9 of the space is below delta. The sources that adapt their
+/// covariance get to its bottom without the other local searches.
 #[test]
-fn populations_find_the_bottom_of_a_rugged_cusp() {
+fn the_bottom_of_a_rugged_cusp_is_found() {
     let cusp = |x: &[f64]| {
         let place = [0.21, 0.77, 0.4, 0.5];
         let wall = |x: f64| -> f64 {

@@ -9,7 +9,6 @@ mod moves;
 mod near_misses;
 mod neighbourhoods;
 mod pace;
-mod populations;
 mod progress;
 mod scan;
 mod source;
@@ -47,8 +46,6 @@ engine_choice! {
         Swarms = "swarms",
         /// Restarted local searches.
         Climbers = "climbers",
-        /// Populations that adapt their covariance.
-        Populations = "populations",
         /// Known steps from hit to hit.
         Steps = "steps",
         /// New steps, learned from differences of hits.
@@ -78,8 +75,8 @@ engine_settings! {
     ///   4,096 points is enumerated at once, a larger one once it is half visited or the budget asks for it;
     /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
     ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness;
-    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012; local searches by adaptive moves; populations
-    ///   that adapt their covariance; uniform points, on a lattice without repetition;
+    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012; local searches by adaptive moves;
+    ///   uniform points, on a lattice without repetition;
     /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
     ///   hits.
     ///

@@ -16,8 +16,6 @@ pub(super) enum Source {
     Trial,
     /// Some coordinates of a hit, the others of another.
     Cross,
-    /// A member of a population that adapts its covariance.
-    Member,
     /// A neighbour of a hit, named by the problem.
     Neighbour,
     /// A near miss of the slice before.
@@ -43,7 +41,7 @@ impl Source {
     /// The role of a source that is not a [whole engine](Source::Guest).
     pub(super) fn role(self) -> Role {
         match self {
-            Self::Uniform | Self::Swarm | Self::Climber | Self::Member | Self::Descent => Role::Explores,
+            Self::Uniform | Self::Swarm | Self::Climber | Self::Descent => Role::Explores,
             Self::Step | Self::Trial | Self::Cross | Self::Neighbour => Role::Exploits,
             Self::NearMiss | Self::Guest => Role::Apart,
         }
@@ -51,7 +49,7 @@ impl Source {
 }
 
 /// Number of all sources, whole engines included.
-pub(super) const PLACES: usize = 16;
+pub(super) const PLACES: usize = 15;
 
 /// The names of all sources in the order of [`Source`], then those of the whole engines in the order of their kinds.
 const NAMES: [&str; PLACES] = [
@@ -61,7 +59,6 @@ const NAMES: [&str; PLACES] = [
     "steps",
     "trial steps",
     "recombination",
-    "populations",
     "neighbours",
     "near misses",
     "descents",
@@ -97,13 +94,12 @@ impl Tally {
 pub(super) type Tag = (Source, usize);
 
 /// Number of sources that are arms of the bandit, and the indices of some.
-pub(super) const ARMS: usize = 9;
+pub(super) const ARMS: usize = 8;
 pub(super) const TRIAL: usize = 3;
 pub(super) const CROSS: usize = 4;
-pub(super) const MEMBER: usize = 5;
-pub(super) const DESCENT: usize = 6;
-pub(super) const STEP: usize = 7;
-pub(super) const NEIGHBOUR: usize = 8;
+pub(super) const DESCENT: usize = 5;
+pub(super) const STEP: usize = 6;
+pub(super) const NEIGHBOUR: usize = 7;
 
 /// The arm of a source. Near misses and whole engines count for themselves.
 pub(super) fn arm_of(source: Source) -> Option<usize> {
@@ -113,7 +109,6 @@ pub(super) fn arm_of(source: Source) -> Option<usize> {
         Source::Climber => Some(2),
         Source::Trial => Some(TRIAL),
         Source::Cross => Some(CROSS),
-        Source::Member => Some(MEMBER),
         Source::Descent => Some(DESCENT),
         Source::Step => Some(STEP),
         Source::Neighbour => Some(NEIGHBOUR),

@@ -12,7 +12,6 @@ use super::guests::{GuestAnswer, Guests};
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::pace::Pace;
-use super::populations::Populations;
 use super::progress::Progress;
 use super::scan::Scan;
 use super::source::{ARMS, PLACES, Source, Tag, Tally, arm_of};
@@ -79,7 +78,6 @@ pub(super) struct Sources<S> {
     scan: Scan,
     swarms: Swarms<S>,
     climbers: Climbers<S>,
-    populations: Populations<S>,
     steps: Option<Translations<S>>,
     neighbourhoods: Neighbourhoods<S>,
     near_misses: NearMisses<S>,
@@ -120,7 +118,6 @@ impl<S: Real> Sources<S> {
                 settings.restart,
             ),
             climbers: Climbers::new(),
-            populations: Populations::new(),
             steps: None,
             neighbourhoods: Neighbourhoods::default(),
             timing: settings.neighbours,
@@ -178,7 +175,6 @@ impl<S: Real> Engine<S> for Sources<S> {
             NeighbourTiming::Auto => context.evaluations_planned().is_none(),
             timing => timing == NeighbourTiming::Late,
         };
-        self.populations.begin(context);
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
             Some(steps) => steps.begin(),
@@ -349,7 +345,6 @@ impl<S: Real> Engine<S> for Sources<S> {
             match source {
                 Source::Swarm => self.swarms.tell(index, position, outcome),
                 Source::Climber => self.climbers.tell(index, position, outcome),
-                Source::Member => self.populations.tell(index, context, outcome),
                 Source::Step => {
                     if let Some(steps) = &mut self.steps {
                         steps.count(index, outcome.is_hit());
@@ -404,7 +399,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.scan.save(state);
         self.swarms.save(state);
         self.climbers.save(state);
-        self.populations.save(state);
         self.steps.save(state);
         self.neighbourhoods.save(state);
         self.near_misses.save(state);
@@ -427,7 +421,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.scan = from.read()?;
         self.swarms.restore(from)?;
         self.climbers.restore(from)?;
-        self.populations.restore(from)?;
         self.steps = from.read()?;
         self.neighbourhoods.restore(from)?;
         self.near_misses = from.read()?;

@@ -4,7 +4,7 @@ use super::Sources;
 use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::{Trial, draw};
 use crate::engine::portfolio::progress::Seeker;
-use crate::engine::portfolio::source::{CROSS, DESCENT, MEMBER, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
+use crate::engine::portfolio::source::{CROSS, DESCENT, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
@@ -86,9 +86,6 @@ impl<S: Real> Sources<S> {
         }
         if uses(Omitted::Climbers) && is_worth(2) {
             offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
-        }
-        if uses(Omitted::Populations) && self.populations.are_usable() && is_worth(MEMBER) {
-            offer(self.arms[MEMBER].draw(price, 1.5, rng), (Source::Member, 0));
         }
         let hits = self.hit_count();
         if uses(Omitted::Learning) && hits >= 3 && is_worth(TRIAL) {

@@ -50,7 +50,6 @@ impl<S: Real> Sources<S> {
                 .swarms
                 .propose(context.space(), self.visited.as_ref(), rng, out),
             Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
-            Source::Member => self.populations.propose(context, rng, out),
             Source::Descent => {
                 if self.descended == self.block {
                     return false;
