@@ -18,7 +18,8 @@ const DESCENT_TRIES: usize = 64;
 const CROSS_TRIES: usize = 4;
 
 impl<S: Real> Sources<S> {
-    /// Whether a position is inside and worth an evaluation: on a lattice not proposed before, elsewhere not a known hit.
+    /// Whether a position is inside and worth an evaluation: on a lattice not proposed before, elsewhere not a known hit. An evaluation of a
+    /// quick F costs less than the look-up among many close hits.
     pub(super) fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
         let space = context.space();
         let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
@@ -32,7 +33,7 @@ impl<S: Real> Sources<S> {
         inside
             && match &mut self.visited {
                 Some(visited) => visited.insert(space, &self.position),
-                None => !context.is_deleted(&self.position),
+                None => self.is_quick || !context.is_deleted(&self.position),
             }
     }
 
