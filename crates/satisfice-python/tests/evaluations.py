@@ -35,8 +35,8 @@ def kills_once(x):
 
 
 def kills(x):
-    """A region that no process survives."""
-    if x[0] > 1.9:
+    """Half of the square is a region that no process survives."""
+    if x[0] > 0.0:
         os.kill(os.getpid(), signal.SIGKILL)
     return ring(x)
 
