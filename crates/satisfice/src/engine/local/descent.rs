@@ -3,6 +3,7 @@
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
+use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
@@ -12,7 +13,8 @@ use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// From a uniform point to the first neighbour that is better, as long as there is one; then from a new uniform point.
+    /// From a start to the first neighbour that is better, as long as there is one; then from a new start. Starts are uniform on integer axes,
+    /// and cover the continuous ones evenly.
     ///
     /// Neighbours are the problem's own, or else the next lattice points, and on continuous axes the points a step away in both
     /// directions of each axis (compass search, Kolda, Lewis, Torczon 2003, doi 10.1137/S003614450242889). They are tried in turn,
@@ -74,6 +76,8 @@ pub(in crate::engine) struct RestartedDescent<S> {
     only_compass: bool,
     /// Whether one of them was left out because it is in C.
     touches: bool,
+    /// The points where descents start, but for those.
+    even: EvenPoints,
     /// Points given by the user, the best last, where the next descents start; with their fitness.
     starts: Vec<(S, Vec<S>)>,
 }
@@ -96,6 +100,7 @@ impl<S: Real> RestartedDescent<S> {
             tried: 0,
             only_compass: false,
             touches: false,
+            even: EvenPoints::default(),
             starts: Vec::new(),
         }
     }
@@ -103,6 +108,7 @@ impl<S: Real> RestartedDescent<S> {
     /// Begins a slice.
     pub(super) fn begin(&mut self) {
         self.restart();
+        self.even = EvenPoints::default();
         self.starts.clear();
     }
 
@@ -201,7 +207,8 @@ impl<S: Real> RestartedDescent<S> {
                 break;
             }
         }
-        out.push_with(|position| rng.position(context.space(), position));
+        let even = &mut self.even;
+        out.push_with(|position| even.draw(context.space(), rng, position));
     }
 
     /// The number of indices of neighbours around the point, asked for once.
@@ -279,6 +286,7 @@ impl<S: Real> Part for RestartedDescent<S> {
         first,
         only_compass,
         touches,
+        even,
         starts
     );
 }

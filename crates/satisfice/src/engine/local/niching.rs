@@ -9,6 +9,7 @@ use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_between_looks};
 use crate::engine::compiled::both_scalars;
+use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
@@ -20,7 +21,7 @@ use crate::state::{Part, Reader, State};
 engine_settings! {
     /// Local searches by an evolution strategy (Beyer, Sendhoff 2017) of three kinds, and recombinations of all pairs of hits:
     ///
-    /// - from uniform points;
+    /// - from points that cover the space evenly;
     /// - from near misses of recombinations;
     /// - from beside the ends of searches that were no hits. A length is drawn log-uniformly, then one of the ends that have no better
     ///   one within it: good ends more often. A search that will not come below its origin ends early.
@@ -126,6 +127,8 @@ struct NichingSearch<S> {
     /// What searches and recombinations have yielded.
     arms: [Arm; 2],
     restarts: u64,
+    /// Where searches start that do not start beside a known end.
+    even: EvenPoints,
     /// Evaluations of searches from known ends, and of the others.
     spent: [u64; 2],
     start: Vec<f64>,
@@ -168,6 +171,7 @@ impl<S: Real> NichingSearch<S> {
             misses: MissList::default(),
             arms: [Arm::default(); 2],
             restarts: 0,
+            even: EvenPoints::default(),
             spent: [0; 2],
             start: Vec::new(),
             run: StrategyRun::default(),
@@ -199,7 +203,7 @@ impl<S: Real> NichingSearch<S> {
     }
 
     /// Starts the next search: from the best near miss every other time, else beside a known end or from a uniform point.
-    fn begin_run(&mut self, rng: &mut SearchRng) {
+    fn begin_run(&mut self, space: &Space<S>, rng: &mut SearchRng) {
         let dimension = self.start.len();
         self.restarts += 1;
         self.run = StrategyRun {
@@ -220,7 +224,8 @@ impl<S: Real> NichingSearch<S> {
             return;
         }
         let step = self.hop(rng).unwrap_or_else(|| {
-            self.start.fill_with(|| rng.uniform());
+            self.even.draw(space, rng, &mut self.position);
+            to_place(space, &self.position, &mut self.start);
             log_uniform(rng, (self.settings.smallest_step, self.settings.step))
         });
         while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
@@ -349,7 +354,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
                 }
             }
             if !self.run.running {
-                self.begin_run(rng);
+                self.begin_run(space, rng);
             } else if let Some(index) = self.approached() {
                 self.run.looked = self.distribution.spread();
                 for probe in 1..=PROBES.min(points_between_looks(dimension)) {
@@ -443,6 +448,7 @@ impl<S: Real> Part for NichingSearch<S> {
         misses,
         arms,
         restarts,
+        even,
         spent,
         start,
         run,

@@ -7,6 +7,7 @@ use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
+use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
@@ -18,7 +19,7 @@ use crate::state::{Part, Reader, State};
 engine_settings! {
     /// Two sources of candidates, drawn by their yield:
     ///
-    /// - local searches by (1+1)-CMA-ES (Igel, Suttorp, Hansen 2006) from uniform points, with a first step drawn log-uniformly. They
+    /// - local searches by (1+1)-CMA-ES (Igel, Suttorp, Hansen 2006) from starts that cover the space evenly, with a first step drawn log-uniformly. They
     ///   end at a hit, at a known hit, or when they stall; how long a stall may last follows the universal restart sequence (Luby,
     ///   Sinclair, Zuckerman 1993);
     /// - recombinations of all pairs of hits; the next searches start at those that just miss.
@@ -95,6 +96,8 @@ struct Searches<S> {
     patience: u64,
     climbs: Vec<Climb<S>>,
     restarts: u64,
+    /// Where searches start.
+    even: EvenPoints,
     hits: Vec<S>,
     pairs: Pairs,
     /// Near misses, the first `kept` of them; what stands behind is memory.
@@ -123,6 +126,7 @@ impl<S: Real> Searches<S> {
             patience,
             climbs: vec![climb; searches],
             restarts: 0,
+            even: EvenPoints::default(),
             hits: Vec::new(),
             pairs: Pairs::default(),
             misses: Vec::new(),
@@ -171,7 +175,7 @@ impl<S: Real> Searches<S> {
             return;
         }
         climb.position.resize(dimension, S::zero());
-        rng.position(space, &mut climb.position);
+        self.even.draw(space, rng, &mut climb.position);
         climb.fitness = S::infinity();
         let (smallest, largest) = self.step;
         climb
@@ -252,6 +256,7 @@ impl<S: Real> Engine<S> for Searches<S> {
         self.hits.clear();
         self.pairs = Pairs::default();
         self.kept = 0;
+        self.even = EvenPoints::default();
         self.arms = [Arm::default(); 2];
         self.position = vec![S::zero(); context.space().dimension()];
         for climb in &mut self.climbs {
@@ -350,7 +355,7 @@ impl<S: Real> Engine<S> for Searches<S> {
 
 impl<S: Real> Part for Searches<S> {
     crate::saved_fields!(
-        climbs, restarts, hits, pairs, misses, kept, arms, stepped, position
+        climbs, restarts, even, hits, pairs, misses, kept, arms, stepped, position
     );
 }
 

@@ -12,7 +12,8 @@ use super::units::Units;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
-use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin, low_discrepancy};
+use crate::engine::low_discrepancy::EvenPoints;
+use crate::engine::{Answers, Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
@@ -85,8 +86,8 @@ pub(in crate::engine) struct ModelledSearch<S> {
     settings: Surrogate,
     units: Units,
     record: Record,
-    /// Of the first points.
-    shift: Vec<f64>,
+    /// The first points.
+    design: EvenPoints,
     /// First points that were looked at.
     started: usize,
     /// Points that are proposed and not told yet.
@@ -104,7 +105,7 @@ impl<S: Real> ModelledSearch<S> {
             settings,
             units: Units::default(),
             record: Record::default(),
-            shift: Vec::new(),
+            design: EvenPoints::default(),
             started: 0,
             pending: Vec::new(),
             model: None,
@@ -122,15 +123,12 @@ impl<S: Real> ModelledSearch<S> {
     /// The next point of the design that is new. Misses of others count for its points.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let axes = self.units.len();
-        if self.shift.is_empty() {
-            self.shift.extend((0..axes).map(|_| rng.uniform()));
-        }
         let mut x = Vec::new();
         let hits = self.record.hits.len() + self.record.duplicates.len();
         let misses = self.record.len().saturating_sub(hits);
         while self.started.max(misses) < (2 * axes + 2).min(4 * axes) {
             x.clear();
-            x.extend(low_discrepancy::point(self.started as u64, &self.shift));
+            x.extend(self.design.next_point(axes, rng));
             self.started += 1;
             self.units.round(&mut x);
             if self.is_new(context, &x) {
@@ -230,7 +228,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
         self.units = Units::of(context.space());
         self.record.clear(self.units.len());
-        self.shift.clear();
+        self.design = EvenPoints::default();
         self.started = 0;
         self.pending.clear();
         self.model = None;
@@ -289,7 +287,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
 
     fn save(&self, state: &mut State) {
         self.record.save(state);
-        Part::save(&self.shift, state);
+        Part::save(&self.design, state);
         Part::save(&self.started, state);
         Part::save(&self.pending, state);
         Part::save(&self.enumerated, state);
@@ -304,7 +302,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         self.record.restore(from)?;
-        self.shift = from.read()?;
+        self.design = from.read()?;
         self.started = from.read()?;
         self.pending = from.read()?;
         self.enumerated = from.read()?;

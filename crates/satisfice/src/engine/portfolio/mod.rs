@@ -76,7 +76,7 @@ engine_settings! {
     /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
     ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness;
     /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012; local searches by adaptive moves;
-    ///   uniform points, on a lattice without repetition;
+    ///   uniform points, on a lattice without repetition, on continuous axes evenly and somewhat denser in the middle;
     /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
     ///   hits.
     ///

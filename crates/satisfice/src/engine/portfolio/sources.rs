@@ -22,6 +22,7 @@ use super::{NeighbourTiming, Omitted, Portfolio};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::local::descent::RestartedDescent;
+use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, Origin};
 use crate::error::Error;
 use crate::report::SourceCount;
@@ -67,6 +68,8 @@ pub(super) struct Sources<S> {
     descended: usize,
     patches: Patches,
     drought: Drought,
+    /// Uniform points, and where swarms start.
+    even: EvenPoints,
     /// Who brings the search closer to a first hit.
     progress: Progress,
     /// Evaluations that were planned when the slice began, if that was known.
@@ -105,6 +108,7 @@ impl<S: Real> Sources<S> {
             descended: 0,
             patches: Patches::default(),
             drought: Drought::default(),
+            even: EvenPoints::default(),
             progress: Progress::default(),
             planned: None,
             guests: Guests::new(),
@@ -164,6 +168,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.pace = Pace::new(context.is_timed());
         self.patches = Patches::default();
         self.drought = Drought::default();
+        self.even = EvenPoints::default();
         self.progress = Progress::default();
         self.chosen = None;
         // The tags of the last batch name sources of the slice before.
@@ -406,6 +411,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position.save(state);
         (self.whole, self.patches, self.progress.clone()).save(state);
         self.drought.save(state);
+        self.even.save(state);
         (self.chosen, self.planned, self.pace.is_timed()).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.descents.len().save(state);
@@ -428,6 +434,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position = from.read()?;
         (self.whole, self.patches, self.progress) = from.read()?;
         self.drought = from.read()?;
+        self.even = from.read()?;
         let timed;
         (self.chosen, self.planned, timed) = from.read()?;
         self.pace = Pace::new(timed);

@@ -2,6 +2,7 @@
 
 use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
+use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::swarm::potential_well::{draw, mean_best};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -98,6 +99,7 @@ impl<S: Real> Swarms<S> {
         &mut self,
         space: &Space<S>,
         visited: Option<&Visited>,
+        even: &mut EvenPoints,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
     ) -> Option<usize> {
@@ -107,7 +109,7 @@ impl<S: Real> Swarms<S> {
         self.proposed += 1;
         let index = self.next;
         self.next = (index + 1) % self.swarms.len();
-        self.swarms[index].propose(self.particles, self.alpha, space, visited, rng, out);
+        self.swarms[index].propose(self.particles, self.alpha, space, visited, even, rng, out);
         Some(index)
     }
 
@@ -135,6 +137,7 @@ impl<S: Real> SubSwarm<S> {
         alpha: S,
         space: &Space<S>,
         visited: Option<&Visited>,
+        even: &mut EvenPoints,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
     ) {
@@ -142,7 +145,7 @@ impl<S: Real> SubSwarm<S> {
         if self.positions.is_empty() {
             self.positions.resize(particles * dimension, S::zero());
             for position in self.positions.chunks_exact_mut(dimension) {
-                rng.position(space, position);
+                even.draw_inwards(space, rng, position);
             }
             self.bests.clear();
             self.bests.extend_from_slice(&self.positions);

@@ -11,6 +11,7 @@ use search::{Memory, Proposal, QuadraticSearch};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
+use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
 use crate::error::Error;
@@ -20,7 +21,7 @@ use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// Local searches, each from a uniform point or the best of eight, that go to the minimum of a quadratic model in a trust region.
+    /// Local searches, each from a start or the best of eight, which cover the space evenly, that go to the minimum of a quadratic model in a trust region.
     ///
     /// - The model interpolates F at the points evaluated near the best one. Of its second derivatives those are kept that the points do not
     ///   decide (least Frobenius norm updating, Powell 2004), so that it is of use from one point more than there are axes.
@@ -71,6 +72,7 @@ impl QuadraticDescent {
             axes: Vec::new(),
             periodic: Vec::new(),
             restarts: 0,
+            even: EvenPoints::default(),
             decisive: Decisive::default(),
             descents: vec![QuadraticRun::default(); self.searches],
             given: Vec::new(),
@@ -116,6 +118,8 @@ struct QuadraticSearches<S> {
     /// Which axes of the space are periodic.
     periodic: Vec<bool>,
     restarts: u64,
+    /// Where searches start.
+    even: EvenPoints,
     /// Whether one axis decides F.
     decisive: Decisive,
     descents: Vec<QuadraticRun<S>>,
@@ -278,7 +282,8 @@ impl<S: Real> QuadraticSearches<S> {
             if run.draws > 0 {
                 run.draws -= 1;
                 run.is_drawn = true;
-                return out.push_with(|position| rng.position(space, position));
+                let even = &mut self.even;
+                return out.push_with(|position| even.draw(space, rng, position));
             }
             self.sides.clear();
             self.sides.extend(run.axes.iter().map(|&j| self.periodic[j]));
@@ -306,6 +311,7 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
             .map(|(j, _)| j)
             .collect();
         self.periodic = (0..space.dimension()).map(|j| space.is_periodic(j)).collect();
+        self.even = EvenPoints::default();
         self.given.clear();
         self.decisive.begin(space.dimension());
         for run in &mut self.descents {
@@ -370,5 +376,5 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
 }
 
 impl<S: Real> Part for QuadraticSearches<S> {
-    crate::saved_fields!(axes, periodic, restarts, decisive, descents, given);
+    crate::saved_fields!(axes, periodic, restarts, even, decisive, descents, given);
 }

@@ -47,9 +47,10 @@ impl<S: Real> Sources<S> {
     ) -> bool {
         let (source, index) = tag;
         let proposed = match source {
-            Source::Swarm => self
-                .swarms
-                .propose(context.space(), self.visited.as_ref(), rng, out),
+            Source::Swarm => {
+                self.swarms
+                    .propose(context.space(), self.visited.as_ref(), &mut self.even, rng, out)
+            }
             Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
             Source::Descent => {
                 if self.descended == self.block {
@@ -77,7 +78,7 @@ impl<S: Real> Sources<S> {
                         return false;
                     }
                 } else {
-                    rng.position(context.space(), &mut self.position);
+                    self.even.draw_inwards(context.space(), rng, &mut self.position);
                     if !self.is_fresh(context) {
                         return true; // this draw was rejected, the next may be accepted
                     }
