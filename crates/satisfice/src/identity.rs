@@ -12,7 +12,7 @@ use foldhash::fast::FixedState;
 use crate::scalar::{Real, copy_row};
 use crate::space::Region;
 
-use cells::{EDGE, FINE_EDGE, cells_near, next_cell, own_cell, part_of_key};
+use cells::{EDGE, FINE_EDGE, FineCells, cells_near, next_cell, own_cell, part_of_key};
 pub use separation::{AxisSeparation, Separation};
 
 /// The seed of every key; fixed, so that a run is the same on every machine.
@@ -320,34 +320,18 @@ impl<S: Real> Identity for Located<S> {
     }
 
     fn visit_fine_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
-        let near = self.cells_near::<FINELY_HASHED>(FINE_EDGE);
-        let (mut parts, mut counts) = ([[0; 3]; FINELY_HASHED], [0; FINELY_HASHED]);
-        for (axis, [_, first, last]) in near.into_iter().enumerate() {
-            let mut cell = first;
-            loop {
-                parts[axis][counts[axis]] = part_of_key(axis, cell);
-                counts[axis] += 1;
-                if cell >= last || counts[axis] == 3 {
-                    break;
-                }
-                cell = next_cell(cell).min(last);
+        let mut cells = FineCells::new();
+        match &self.separation {
+            Separation::Radius(radius) => {
+                let first = self.coordinates.iter().take(FINELY_HASHED);
+                first.for_each(|&x| cells.add(x, *radius));
+            }
+            Separation::Axes(axes) => {
+                let blurred = self.coordinates.iter().zip(axes.iter());
+                let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
+                blurred.for_each(|(&x, axis)| cells.add(axis.measured(x), axis.radius()));
             }
         }
-        visit_combinations(self.exact_key(), &parts, &counts, visit)
+        cells.visit(self.exact_key(), visit)
     }
-}
-
-/// Visits the exclusive or of `key` and one part of each axis, for all combinations, until `visit` returns `true`.
-fn visit_combinations(
-    key: u64,
-    parts: &[[u64; 3]],
-    counts: &[usize],
-    visit: &mut impl FnMut(u64) -> bool,
-) -> bool {
-    let ([parts, more @ ..], [count, counts @ ..]) = (parts, counts) else {
-        return visit(key);
-    };
-    parts[..*count]
-        .iter()
-        .any(|part| visit_combinations(key ^ part, more, counts, visit))
 }

@@ -6,7 +6,7 @@ fn same_is_found<S: Real>() {
     let mut rng = crate::SearchRng::new(7);
     let mut same = 0;
     for trial in 0..60_000 {
-        let dimension = 1 + trial % 5;
+        let dimension = 1 + trial % 7;
         let separation = S::of([0.0, 1e-3, 0.5, 0.02, 1e-30, 1e300, f64::INFINITY][trial % 7]);
         let size = S::of([1.0, 100.0, 1e6, 1e-3, 1e38][trial % 11 % 5]);
         // Round numbers, where cells begin, and others.

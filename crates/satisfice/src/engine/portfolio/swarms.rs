@@ -109,7 +109,9 @@ impl<S: Real> Swarms<S> {
         self.proposed += 1;
         let index = self.next;
         self.next = (index + 1) % self.swarms.len();
-        self.swarms[index].propose(self.particles, self.alpha, space, visited, even, rng, out);
+        let swarm = &mut self.swarms[index];
+        swarm.populate(self.particles, space, even, rng);
+        swarm.propose(self.particles, self.alpha, space, visited, rng, out);
         Some(index)
     }
 
@@ -131,28 +133,33 @@ impl<S: Real> SubSwarm<S> {
         self.stalled = 0;
     }
 
+    /// Draws as many particles, if it has none.
+    fn populate(&mut self, particles: usize, space: &Space<S>, even: &mut EvenPoints, rng: &mut SearchRng) {
+        if !self.positions.is_empty() {
+            return;
+        }
+        let dimension = self.mean.len();
+        self.positions.resize(particles * dimension, S::zero());
+        for position in self.positions.chunks_exact_mut(dimension) {
+            even.draw_inwards(space, rng, position);
+        }
+        self.bests.clear();
+        self.bests.extend_from_slice(&self.positions);
+        self.best_fitness.clear();
+        self.best_fitness.resize(particles, S::infinity());
+        self.unborn = particles;
+    }
+
     fn propose(
         &mut self,
         particles: usize,
         alpha: S,
         space: &Space<S>,
         visited: Option<&Visited>,
-        even: &mut EvenPoints,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
     ) {
         let dimension = self.mean.len();
-        if self.positions.is_empty() {
-            self.positions.resize(particles * dimension, S::zero());
-            for position in self.positions.chunks_exact_mut(dimension) {
-                even.draw_inwards(space, rng, position);
-            }
-            self.bests.clear();
-            self.bests.extend_from_slice(&self.positions);
-            self.best_fitness.clear();
-            self.best_fitness.resize(particles, S::infinity());
-            self.unborn = particles;
-        }
         let row = self.turn * dimension..(self.turn + 1) * dimension;
         if self.unborn == 0 {
             if self.turn == 0 {
