@@ -124,6 +124,11 @@ impl Credit {
         (self.evaluations + 10.0) / (self.hits + PRIOR_HITS)
     }
 
+    /// What all candidates have cost.
+    pub(super) fn cost(&self) -> f64 {
+        self.total_cost
+    }
+
     /// What a candidate has cost on average.
     pub(super) fn mean_cost(&self) -> f64 {
         self.total_cost.max(1.0) / self.total_evaluations.max(1) as f64

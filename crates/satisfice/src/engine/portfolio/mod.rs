@@ -72,7 +72,8 @@ engine_settings! {
     ///   too: a limit that the proposals would exceed leaves the model out;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most
-    ///   4,096 points is enumerated at once, a larger one once it is half visited or the budget asks for it;
+    ///   4,096 points is enumerated at once, a larger one once it is half visited, or the search finds no more than that would, or under a limit
+    ///   of evaluations once it would no longer fit later;
     /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
     ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness;
     /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012; local searches by adaptive moves;

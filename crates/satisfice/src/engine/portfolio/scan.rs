@@ -1,6 +1,8 @@
 //! The enumeration of a lattice that the budget has room for.
 
+use super::credit::Credit;
 use super::visited::Visited;
+use crate::batch::Outcome;
 use crate::context::Context;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -9,8 +11,10 @@ use crate::space::Space;
 /// Lattices of at most this many points are enumerated from the start.
 const SMALL: u64 = 4096;
 
-/// The pace of fewer evaluations says little: the first ones may take a hundred times as long.
-const PACED: u64 = 256;
+/// Where time alone is limited, this share of what the search costs goes into samples of the enumeration, to know what it finds.
+const SAMPLED: f64 = 0.1;
+/// The enumeration is better than the search if it is with so many standard deviations fewer hits than were found.
+const CERTAIN: f64 = 2.0;
 
 /// A search is stale when it has gone without a new hit for as long as an enumeration takes to meet this many, by the hits known:
 /// a search that still finds has such pauses, too.
@@ -31,6 +35,10 @@ pub(super) struct Scan {
     latest: u64,
     /// Whether nothing but this enumeration goes on.
     alone: bool,
+    /// Whether the batch that is out is a sample; points of all samples, and new hits among them.
+    samples: bool,
+    sampled: u64,
+    found: u64,
 }
 
 impl Scan {
@@ -53,18 +61,20 @@ impl Scan {
         self.points > 0 && self.passed == self.points
     }
 
-    /// Whether the rest of the lattice is to be enumerated now, with nothing beside. It has to fit into what the budget has left, of
-    /// which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace so far, less what the sources' thinking
-    /// took: an evaluation with it has cost as much as `mean_cost` without. And it has to be due:
-    /// the lattice is small, or mostly visited, or soon it would no longer fit, or the search finds no more than it would.
-    pub(super) fn goes_alone<S: Real>(
+    /// Whether points of the lattice are to be enumerated now: all of the rest, with nothing beside from now on, or a sample. The rest has to
+    /// fit into what the budget has left, of which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace
+    /// so far, less what the thinking of the sources took, by what they all have cost. And it has to be due: the lattice is small, or
+    /// mostly visited, or the search finds no more than the enumeration would. Under a limit of evaluations it is also due as soon as it
+    /// would no longer fit later. Where time is limited that is not known well enough to leave a search that finds more.
+    pub(super) fn goes_on<S: Real>(
         &mut self,
         context: &dyn Context<S>,
         visited: &Visited,
         reserve: f64,
         batch: usize,
-        mean_cost: f64,
+        all: &Credit,
     ) -> bool {
+        self.samples = false;
         if self.alone || self.points == 0 {
             return self.alone;
         }
@@ -79,12 +89,28 @@ impl Scan {
             let room = planned as f64 * (1.0 - reserve) - 1.0;
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
-            let (takes, left) = (rest * used / mean_cost, (1.0 - used) * made as f64);
-            takes <= left && (due || (made >= PACED && takes > left / 2.0))
+            let (takes, left) = (rest * used / all.mean_cost(), (1.0 - used) * made as f64);
+            takes <= left && (due || self.is_better_by_samples(all))
         } else {
             self.points <= SMALL
         };
-        self.alone
+        self.samples &= !self.alone;
+        self.alone || self.samples
+    }
+
+    /// Whether the samples have surely found more hits for their cost than the search lately; if not, it may be time for the next sample.
+    fn is_better_by_samples(&mut self, all: &Credit) -> bool {
+        self.samples = self.sampled as f64 <= SAMPLED * all.cost();
+        let found = self.found as f64;
+        (found - CERTAIN * found.sqrt()) * all.price() > self.sampled as f64
+    }
+
+    /// Learns what became of a batch, if it is a sample.
+    pub(super) fn learn<S: Real>(&mut self, outcomes: &[Outcome<S>]) {
+        if self.samples {
+            self.sampled += outcomes.len() as u64;
+            self.found += outcomes.iter().filter(|outcome| outcome.is_hit()).count() as u64;
+        }
     }
 
     /// Whether an enumeration promises as much as the search now does: by what it last found, or because half of the points are
@@ -143,6 +169,35 @@ mod tests {
                 passed += 1;
             }
             assert!(scan.is_over() && visited.is_all() && passed == left);
+        }
+    }
+
+    #[test]
+    fn samples_tell_whether_an_enumeration_finds_more_than_the_search() {
+        let space = Space::<f64>::lattice(2, 1000).unwrap();
+        let outcome = |hit: bool| {
+            if hit {
+                Outcome::Hit(0.0)
+            } else {
+                Outcome::Miss(1.0)
+            }
+        };
+        // The search hits every `price` evaluations, the enumeration every 100.
+        for (price, expected) in [(10, false), (1000, true)] {
+            let (mut scan, mut all) = (Scan::new(&space), Credit::default());
+            let mut alone = false;
+            for n in 0..100_000 {
+                all.count(n % price == 0, 1.0);
+                alone |= scan.is_better_by_samples(&all);
+                if scan.samples && !alone {
+                    let sample: Vec<_> = (0..100).map(|i| outcome(i == 50)).collect();
+                    sample.iter().for_each(|outcome| all.count(outcome.is_hit(), 1.0));
+                    scan.learn(&sample);
+                }
+            }
+            assert_eq!(alone, expected, "{scan:?}");
+            let most = SAMPLED * all.cost() + 100.0;
+            assert!((1.0..most).contains(&(scan.sampled as f64)), "{scan:?}");
         }
     }
 

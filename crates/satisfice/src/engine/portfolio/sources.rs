@@ -215,9 +215,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         }
         self.guests.look_at_price(context);
         if let Some(visited) = &self.visited
-            && self
-                .scan
-                .goes_alone(context, visited, PROBES, SCANNED, self.whole.mean_cost())
+            && self.scan.goes_on(context, visited, PROBES, SCANNED, &self.whole)
         {
             return self.enumerate(context, rng, out);
         }
@@ -339,6 +337,7 @@ impl<S: Real> Engine<S> for Sources<S> {
             }
         }
         if origin == Origin::Engine {
+            self.scan.learn(outcomes);
             self.pace.receives(batch.len());
         }
         self.guests.tell(context, batch, outcomes, origin, &mut self.pace);
