@@ -64,6 +64,9 @@ pub fn count(text: &str) -> Result<u64, String> {
         (number.fract() == 0.0 && (0.0..=9e15).contains(&number)).then_some(number as u64)
     });
     match number {
+        None if plain.parse::<f64>().is_ok_and(|number| number > 9e15) => {
+            Err("must be at most 9e15".to_owned())
+        }
         Some(0) => Err("must be at least 1".to_owned()),
         Some(number) => Ok(number),
         None => Err("must be a whole number of at least 1, such as 5000 or 1e6".to_owned()),

@@ -77,7 +77,7 @@ Examples:
   satisfice run falsification --islands 8 --threads 0 --time 5s
       Run eight engines that share their hits, on all cores.
   satisfice run arm --time 1h --checkpoint arm.json
-  satisfice run arm --resume arm.json --checkpoint arm.json
+  satisfice run --resume arm.json --checkpoint arm.json
       Run for an hour without losing hits to Ctrl-C or a power cut: a resumed run finds what an uninterrupted one finds.
   satisfice run --program './simulate {x}' --space space.toml --threshold 0.1 --evaluations 500 --workers 4
       Start ./simulate with the coordinates as arguments, four at a time; the last line that it writes is the value.
@@ -90,7 +90,7 @@ Examples:
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
     /// Name of the problem; `satisfice list` shows them all.
-    #[arg(value_name = "PROBLEM", required_unless_present_any = ["program", "worker"], conflicts_with_all = ["program", "worker"])]
+    #[arg(value_name = "PROBLEM", required_unless_present_any = ["program", "worker", "resume"], conflicts_with_all = ["program", "worker"])]
     pub(crate) problem: Option<String>,
 
     #[command(flatten)]
@@ -141,39 +141,44 @@ pub(crate) struct RunArguments {
 pub(crate) struct ProgramArguments {
     /// Start this program for each point: {x} stands for all coordinates, {NAME} for one. It writes the value as its last line. No
     /// shell is involved.
-    #[arg(long, value_name = "COMMAND", conflicts_with = "worker")]
+    #[arg(long, value_name = "COMMAND", group = "evaluator")]
     pub(crate) program: Option<String>,
 
     /// Start this program once for each worker: it reads and writes lines of JSON.
-    #[arg(long, value_name = "COMMAND")]
+    #[arg(long, value_name = "COMMAND", group = "evaluator")]
     pub(crate) worker: Option<String>,
 
     /// The space of a program, as a TOML file.
-    #[arg(long, value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE.toml", value_hint = ValueHint::FilePath, requires = "evaluator")]
     pub(crate) space: Option<PathBuf>,
 
     /// delta of a program: a hit is a point whose value is below it.
-    #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DELTA",
+        allow_hyphen_values = true,
+        requires = "evaluator"
+    )]
     pub(crate) threshold: Option<f64>,
 
     /// Processes at a time.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024), requires = "evaluator")]
     pub(crate) workers: u16,
 
     /// Give up an evaluation after this time, and end its process.
-    #[arg(long, value_name = "TIME", value_parser = satisfice_catalogue::quantity::time)]
+    #[arg(long, value_name = "TIME", value_parser = satisfice_catalogue::quantity::time, requires = "evaluator")]
     pub(crate) timeout: Option<Duration>,
 
     /// Retry a failed evaluation up to this many times. If it still fails, its value counts as NaN.
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", requires = "evaluator")]
     pub(crate) retries: u32,
 
     /// Let /bin/sh run the program.
-    #[arg(long)]
+    #[arg(long, requires = "evaluator")]
     pub(crate) shell: bool,
 
     /// Enter values in the order of the points: the same report for any number of workers. Workers may have to wait; --parallel gives them more.
-    #[arg(long)]
+    #[arg(long, requires = "evaluator")]
     pub(crate) ordered: bool,
 }
 

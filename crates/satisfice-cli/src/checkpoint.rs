@@ -8,14 +8,16 @@ use satisfice_catalogue::{RunSpec, checkpoint, input};
 use crate::message;
 use crate::output::Output;
 
-/// Reads a checkpoint and the specification of its run, which must be of `problem`.
-pub(crate) fn read(path: &Path, problem: &str) -> anyhow::Result<(Vec<u8>, RunSpec)> {
+/// Reads a checkpoint and the specification of its run, which must be of `problem`, if that is given.
+pub(crate) fn read(path: &Path, problem: Option<&str>) -> anyhow::Result<(Vec<u8>, RunSpec)> {
     let shown = path.display();
     let bytes = input::read(path)
         .with_context(|| format!("cannot read {shown}: name a file that `run --checkpoint` wrote"))?;
     let spec = checkpoint::spec(&bytes)
         .with_context(|| format!("{shown} is not a checkpoint that `run --checkpoint` wrote"))?;
-    if spec.problem != problem {
+    if let Some(problem) = problem
+        && spec.problem != problem
+    {
         bail!(
             "the checkpoint is of {}, not of {problem}: name that problem",
             spec.problem

@@ -15,13 +15,9 @@ use crate::progress::Bar;
 use crate::{interrupt, message, page, program, reference, summary};
 
 pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
-    let Some(name) = arguments
-        .problem
-        .as_deref()
-        .filter(|_| !arguments.program.is_given())
-    else {
+    if arguments.program.is_given() {
         return program::run(arguments);
-    };
+    }
     output::check_distinct(
         &[],
         &[
@@ -32,9 +28,15 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
         ],
     )?;
     page::check(arguments.page.as_deref())?;
-    let known = catalogue.find(name)?;
+    let named = arguments.problem.as_deref();
+    let known = named.map(|name| catalogue.find(name)).transpose()?;
     let resume = arguments.resume.as_deref();
-    let resumed = resume.map(|path| checkpoint::read(path, name)).transpose()?;
+    let resumed = resume.map(|path| checkpoint::read(path, named)).transpose()?;
+    let known = match (known, &resumed) {
+        (Some(known), _) => known,
+        (None, Some((_, saved))) => catalogue.find(&saved.problem)?,
+        (None, None) => anyhow::bail!("a problem is missing: `satisfice list` shows them all"),
+    };
     let set = match &resumed {
         Some((_, saved)) if arguments.set.is_empty() => saved.problem_parameters.texts(),
         _ => arguments.set.clone(),

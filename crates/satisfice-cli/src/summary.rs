@@ -5,9 +5,7 @@ use std::process::ExitCode;
 
 use satisfice::Completeness;
 use satisfice_catalogue::RunReport;
-use satisfice_catalogue::report::FoundSolution;
-
-use crate::output;
+use serde_json::Value;
 
 /// The number of hits shown; all of them are in the JSON report.
 const SHOWN: usize = 5;
@@ -16,12 +14,12 @@ const LONGEST: usize = 300;
 
 /// The summary of a report.
 pub(crate) fn summary(report: &RunReport) -> String {
-    summary_with(report, |solution| shortened(&solution.solution.to_string()))
+    summary_with(report, |solution| shortened(&solution.to_string()))
 }
 
 /// The summary while all hits are still being counted.
 pub(crate) fn before_the_count(report: &RunReport) -> String {
-    let show = |solution: &FoundSolution| shortened(&solution.solution.to_string());
+    let show = |solution: &Value| shortened(&solution.to_string());
     text(report, " (all hits are being counted)", show)
 }
 
@@ -33,14 +31,6 @@ pub(crate) fn count(report: &RunReport) -> String {
         (None, _) => "not known".to_owned(),
     };
     format!("  {:<13} {counted}\n", "all hits")
-}
-
-/// The summary, unless stdout has the report itself.
-pub(crate) fn show(report: &RunReport, to_stdout: bool) -> anyhow::Result<ExitCode> {
-    if !to_stdout {
-        output::print(summary(report).as_bytes())?;
-    }
-    Ok(exit_code(report))
 }
 
 /// A solution on one line of a terminal: the first values of a long one.
@@ -57,12 +47,12 @@ fn shortened(solution: &str) -> String {
 }
 
 /// The summary of a report, with a function that formats its solutions.
-pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&FoundSolution) -> String) -> String {
+pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&Value) -> String) -> String {
     text(report, " (the number of all hits is not known)", show)
 }
 
 /// The summary, with what is said of the number of all hits where it is not known.
-fn text(report: &RunReport, unknown: &str, show: impl Fn(&FoundSolution) -> String) -> String {
+fn text(report: &RunReport, unknown: &str, show: impl Fn(&Value) -> String) -> String {
     let mut text = format!(
         "{} by {}, seed {}\n",
         report.spec.problem, report.spec.engine, report.spec.seed
@@ -121,7 +111,7 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&FoundSolution) -> Stri
                 "F = {} at evaluation {}, where a hit is below {threshold}: {}",
                 digits(best.fitness),
                 best.evaluation,
-                shortened(&best.solution.to_string())
+                show(&best.solution)
             ),
         );
     }
@@ -130,7 +120,7 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&FoundSolution) -> Stri
             &format!("hit {}", index + 1),
             format!(
                 "{} with F = {} at evaluation {}, {}",
-                show(found),
+                show(&found.solution),
                 digits(found.fitness),
                 found.evaluation,
                 time(found.seconds)

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use satisfice_catalogue::{Catalogue, Mismatch, RunReport, input};
 
 use crate::arguments::VerifyArguments;
-use crate::{collide, output};
+use crate::{collide, output, program};
 
 /// The number of mismatches shown.
 const SHOWN: usize = 20;
@@ -61,6 +61,11 @@ struct Kind {
 }
 
 fn mismatches(report: &RunReport, catalogue: &Catalogue) -> anyhow::Result<Vec<Mismatch>> {
+    if report.spec.problem == program::PROBLEM {
+        bail!(
+            "the report is of a program, which computed its values: only another run of the program can check them"
+        );
+    }
     let texts = report.spec.problem_parameters.texts();
     let settings = texts.iter().map(|(name, value)| (name.as_str(), value.as_str()));
     let problem = catalogue

@@ -74,11 +74,8 @@ fn interrupted_and_resumed(more: &str) {
     assert!(whole["hits"].as_u64().unwrap() > 100);
     assert_eq!(without_times(rest), without_times(whole.clone()));
     assert_eq!(satisfice_in(folder.path(), "verify rest.json").code, 0);
-    // The checkpoint of the end gives the same report once more.
-    let again = satisfice_in(
-        folder.path(),
-        "run falsification --resume end.json --json again.json",
-    );
+    // The checkpoint of the end gives the same report once more. It knows the problem.
+    let again = satisfice_in(folder.path(), "run --resume end.json --json again.json");
     assert_eq!(again.code, 0);
     assert_eq!(
         without_times(read(&folder.path().join("again.json"))),

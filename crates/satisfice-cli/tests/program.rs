@@ -226,3 +226,34 @@ fn mistakes_are_errors() {
     );
     assert!(error.contains("nowhere.toml"), "{error}");
 }
+
+/// A problem of the catalogue has its own space and delta: nothing that is given is ignored.
+#[test]
+fn options_of_programs_are_refused_without_one() {
+    let place = folder("");
+    for option in [
+        "--threshold 3",
+        "--space space.toml",
+        "--workers 2",
+        "--timeout 1s",
+        "--retries 2",
+        "--shell",
+        "--ordered",
+    ] {
+        let error = common::error_in(place.path(), &format!("run queens --evaluations 20 {option}"));
+        assert!(
+            error.contains("--program <COMMAND>|--worker <COMMAND>"),
+            "{option}: {error}"
+        );
+    }
+}
+
+#[test]
+fn a_report_of_a_program_says_that_it_cannot_be_verified() {
+    let place = folder("");
+    let done = run(place.path(), &["--worker", "sh worker"]);
+    assert_eq!(hits(&report(&done)), FIVE);
+    fs::write(place.path().join("report.json"), &done.stdout).unwrap();
+    let error = common::error_in(place.path(), "verify report.json");
+    assert!(error.contains("another run of the program"), "{error}");
+}

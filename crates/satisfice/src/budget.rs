@@ -188,7 +188,9 @@ impl Budget {
             .parallel
             .is_some_and(|parallel| !(1..=MOST_PARALLEL).contains(&parallel))
         {
-            return Err(Error::Budget("evaluations at once are from 1 to 65536"));
+            return Err(Error::Budget(
+                "evaluations at once (`parallel`) are from 1 to 65536",
+            ));
         }
         Ok(())
     }

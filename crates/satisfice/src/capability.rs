@@ -94,6 +94,45 @@ pub trait Neighbourhood<T> {
 }
 
 /// Lower bounds of the fitness, by which engines exclude regions and prove that no hit is missing.
+///
+/// ```
+/// use satisfice::{Bounds, Budget, Completeness, Located, Region, SatisficingProblem, Search, Space};
+///
+/// /// Where |x - 2| + |y - 1| is below 0.01.
+/// struct Near(Space<f64>);
+///
+/// impl SatisficingProblem for Near {
+///     type Scalar = f64;
+///     type Solution = Located<f64>;
+///     fn space(&self) -> &Space<f64> {
+///         &self.0
+///     }
+///     fn decode(&self, values: &[f64]) -> Located<f64> {
+///         Located::new(values, 0.02)
+///     }
+///     fn fitness(&self, at: &Located<f64>) -> f64 {
+///         (at.coordinates[0] - 2.0).abs() + (at.coordinates[1] - 1.0).abs()
+///     }
+///     fn threshold(&self) -> f64 {
+///         0.01
+///     }
+///     fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+///         Some(self)
+///     }
+/// }
+///
+/// impl Bounds<f64> for Near {
+///     fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+///         // The distance of the region from the centre, axis by axis; halved, so that no rounding makes it too high.
+///         let apart = |axis: usize, centre: f64| (region.lower[axis] - centre).max(centre - region.upper[axis]).max(0.0);
+///         Some((apart(0, 2.0) + apart(1, 1.0)) / 2.0)
+///     }
+/// }
+///
+/// let report = Search::new().run(&Near(Space::cube(2, -5.0, 5.0)?), &Budget::evaluations(5_000))?;
+/// assert!(report.hit_count() >= 1);
+/// # Ok::<(), satisfice::Error>(())
+/// ```
 pub trait Bounds<S> {
     /// A value that F equals or exceeds at every point of `region`; `None` if no bound is known there. It must be sound: a
     /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation.

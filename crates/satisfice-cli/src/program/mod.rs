@@ -19,11 +19,11 @@ use anyhow::{Context, anyhow, bail};
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
 use satisfice::{Cancel, Located, RunReport, Search, Ticket, Tickets};
 use satisfice_catalogue::{RunSpec, json};
+use serde_json::Value;
 
 use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
 use crate::output::{self, Steps};
-use crate::summary::show;
-use crate::{interrupt, message};
+use crate::{interrupt, message, summary};
 
 use evaluator::{Evaluator, Failure, Task, Way};
 use space::SpaceFile;
@@ -35,6 +35,9 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 const TOLD: u64 = 3;
 /// If so many evaluations fail and none succeeds, the program is at fault, not the points.
 const HOPELESS: u64 = 8;
+
+/// What a report names instead of a problem.
+pub(crate) const PROBLEM: &str = "program";
 
 /// A problem whose values come from elsewhere.
 type Problem = FnProblem<f64, fn(&[f64]) -> f64>;
@@ -96,9 +99,12 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
                 .and_then(|json| file.write(&json)),
         );
     }
-    let shown = show(&report, arguments.json.as_deref() == Some(Path::new("-")));
+    if arguments.json.as_deref() != Some(Path::new("-")) {
+        let show = |solution: &Value| task.space.described(solution);
+        steps.step(output::print(summary::summary_with(&report, show).as_bytes()));
+    }
     steps.outcome()?;
-    shown
+    Ok(summary::exit_code(&report))
 }
 
 /// Refuses options that belong to problems of the catalogue.
@@ -120,7 +126,7 @@ fn check(arguments: &RunArguments) -> anyhow::Result<()> {
 }
 
 fn problem(space: &SpaceFile, threshold: f64) -> anyhow::Result<Problem> {
-    let problem = evaluated_elsewhere(space.space()?, threshold).named("program");
+    let problem = evaluated_elsewhere(space.space()?, threshold).named(PROBLEM);
     Ok(match space.radii()? {
         None => problem.separation(0.0),
         Some(radii) => problem.separations(&radii)?,
@@ -145,7 +151,7 @@ fn enter(spec: &mut RunSpec, given: &ProgramArguments, space: &SpaceFile) -> any
     if spec.budget.slices != 1 {
         bail!("--slices does not apply to a program: leave it out");
     }
-    "program".clone_into(&mut spec.problem);
+    PROBLEM.clone_into(&mut spec.problem);
     let (way, name, text) = match (&given.program, &given.worker) {
         (Some(text), _) => (
             Way::Program(Template::new(text, given.shell, space)?),

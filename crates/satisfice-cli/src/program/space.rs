@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow, bail};
 use satisfice::Space;
 use satisfice_catalogue::axes::{self, AxisEntry};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// A space and when two of its points are one answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -87,6 +88,21 @@ impl SpaceFile {
         ))
     }
 
+    /// A solution of a report by the names of the axes, for a person: `r = 33.5, metal = brass`.
+    pub(crate) fn described(&self, solution: &Value) -> String {
+        let coordinates = solution.get("coordinates").and_then(Value::as_array);
+        let point = coordinates.map(|all| all.iter().filter_map(Value::as_f64).collect::<Vec<_>>());
+        let Some(point) = point.filter(|point| self.places().all(|(_, range)| range.end <= point.len()))
+        else {
+            return solution.to_string();
+        };
+        let texts = self.texts(&point);
+        let named = self
+            .places()
+            .map(|(name, range)| format!("{name} = {}", texts[range].join(" ")));
+        named.collect::<Vec<_>>().join(", ")
+    }
+
     /// The coordinates of a point as a program is given them: numbers, or the words of categories.
     pub(crate) fn texts(&self, point: &[f64]) -> Vec<String> {
         #[expect(
@@ -121,6 +137,11 @@ mod tests {
         assert_eq!(
             file.texts(&[0.5, 3.0, 1.0, 1.0, 0.0]),
             ["0.5", "3", "brass", "1", "0"]
+        );
+        let solution = serde_json::json!({"coordinates": [0.5, 3.0, 1.0, 1.0, 0.0], "separation": 0.1});
+        assert_eq!(
+            file.described(&solution),
+            "angle = 0.5, x1 = 3, metal = brass, order = 1 0"
         );
         assert_eq!(file.separation, Some(Widths::Same(0.1)));
         assert_eq!(file.radii().unwrap().unwrap(), [0.1; 5]);

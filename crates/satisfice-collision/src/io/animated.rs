@@ -117,7 +117,7 @@ impl AnimatedScene {
     }
 
     /// The bodies `seconds` after the start, in the same order and with the same names at every time. Before its first key and
-    /// behind its last one a property keeps their values, as glTF wants it.
+    /// after its last one a property keeps their values, as glTF wants it.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a time that is not finite and, in an [`Error::InBody`], for a body that an animation flattens.

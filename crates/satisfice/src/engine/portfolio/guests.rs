@@ -40,6 +40,8 @@ const PROPOSAL: f64 = 5e-4;
 const QUADRATIC: f64 = 2e-5;
 /// Share of the planned evaluations in which the model and descents look for the first hit.
 const FIRST_SHARE: f64 = 0.5;
+/// With fewer evaluations left none are spent on bounds: a split asks for several before there is anything to evaluate.
+const LAST_BOUNDS: u64 = 8;
 /// With at most this many axes, a matrix takes no more memory and time than a few steps.
 const CMA_AXES: usize = 200;
 /// Shortest distance between a hit and the next point of the flood fill, as a share of each continuous axis.
@@ -356,6 +358,9 @@ impl<S: Real> Guests<S> {
     ) -> GuestAnswer {
         let guest = &mut self.guests[index];
         let before = context.evaluations_left();
+        if guest.kind == GuestKind::Regions && before < LAST_BOUNDS {
+            return GuestAnswer::Nothing;
+        }
         self.part.clear();
         let answer = guest.engine.ask(context, rng, &mut self.part);
         let calls = before - context.evaluations_left();

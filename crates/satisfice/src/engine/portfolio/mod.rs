@@ -102,7 +102,7 @@ engine_settings! {
     /// # Ok::<(), satisfice::Error>(())
     /// ```
     pub struct Portfolio {
-        /// Candidates proposed at once. By default as many as go on at once by the word of the budget, 4 in the
+        /// Candidates proposed at once. By default as many as [the budget](crate::Budget::with_parallel) says can go on at once, 4 in the
         /// first batch (one where a model of F is at work), and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
         /// Under a limit of time alone, one more each 256 evaluations of an F below 2 microseconds.
         pub batch: Option<usize> = None, 1..=65_536;
