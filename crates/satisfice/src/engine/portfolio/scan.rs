@@ -90,7 +90,7 @@ impl Scan {
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
             let (takes, left) = (rest * used / all.mean_cost(), (1.0 - used) * made as f64);
-            takes <= left && (due || self.is_better_by_samples(all))
+            takes <= left && (due || self.is_better_by_samples(batch, all))
         } else {
             self.points <= SMALL
         };
@@ -98,9 +98,10 @@ impl Scan {
         self.alone || self.samples
     }
 
-    /// Whether the samples have surely found more hits for their cost than the search lately; if not, it may be time for the next sample.
-    fn is_better_by_samples(&mut self, all: &Credit) -> bool {
-        self.samples = self.sampled as f64 <= SAMPLED * all.cost();
+    /// Whether the samples have surely found more hits for their cost than the search lately; if not, it may be time for the next sample. The
+    /// first one waits until the search has had its share, too: where hits are easy to go on from, it only needs a few.
+    fn is_better_by_samples(&mut self, batch: usize, all: &Credit) -> bool {
+        self.samples = (self.sampled + batch as u64) as f64 <= SAMPLED * all.cost();
         let found = self.found as f64;
         (found - CERTAIN * found.sqrt()) * all.price() > self.sampled as f64
     }
@@ -188,7 +189,7 @@ mod tests {
             let mut alone = false;
             for n in 0..100_000 {
                 all.count(n % price == 0, 1.0);
-                alone |= scan.is_better_by_samples(&all);
+                alone |= scan.is_better_by_samples(100, &all);
                 if scan.samples && !alone {
                     let sample: Vec<_> = (0..100).map(|i| outcome(i == 50)).collect();
                     sample.iter().for_each(|outcome| all.count(outcome.is_hit(), 1.0));
