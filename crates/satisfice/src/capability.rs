@@ -96,7 +96,7 @@ pub trait Neighbourhood<T> {
 /// Lower bounds of the fitness, by which engines exclude regions and prove that no hit is missing.
 ///
 /// ```
-/// use satisfice::{Bounds, Budget, Completeness, Located, Region, SatisficingProblem, Search, Space};
+/// use satisfice::{Bounds, Budget, Located, Region, SatisficingProblem, Search, Space};
 ///
 /// /// Where |x - 2| + |y - 1| is below 0.01.
 /// struct Near(Space<f64>);

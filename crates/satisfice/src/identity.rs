@@ -196,44 +196,28 @@ impl<S: Real> Located<S> {
         hasher.finish()
     }
 
-    /// The cells of the first coordinates with a radius: for each its own, and the first and the last one that a solution
-    /// within the radius may be in.
+    /// Visits the first coordinates with a radius, at most so many: index, coordinate and radius.
     #[inline]
-    fn cells_near<const AXES: usize>(&self, edge: f64) -> [[S; 3]; AXES] {
-        let mut cells = [[S::zero(); 3]; AXES];
+    fn visit_blurred(&self, most: usize, mut visit: impl FnMut(usize, S, S)) {
         match &self.separation {
             Separation::Radius(radius) => {
-                for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
-                    *cell = cells_near(x, *radius, edge);
-                }
+                let first = self.coordinates.iter().take(most).enumerate();
+                first.for_each(|(j, &x)| visit(j, x, *radius));
             }
             Separation::Axes(axes) => {
-                let blurred = self.coordinates.iter().zip(axes.iter());
-                let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
-                for (cell, (&x, axis)) in cells.iter_mut().zip(blurred) {
-                    *cell = cells_near(axis.measured(x), axis.radius(), edge);
-                }
+                let all = self.coordinates.iter().zip(axes.iter());
+                let blurred = all.filter(|(_, axis)| axis.is_hashed_by_cells());
+                let first = blurred.take(most).enumerate();
+                first.for_each(|(j, (&x, axis))| visit(j, axis.measured(x), axis.radius()));
             }
         }
-        cells
     }
 
+    /// Their cells.
+    #[inline]
     fn own_cells<const AXES: usize>(&self, edge: f64) -> [S; AXES] {
         let mut cells = [S::zero(); AXES];
-        match &self.separation {
-            Separation::Radius(radius) => {
-                for (cell, &x) in cells.iter_mut().zip(&self.coordinates) {
-                    *cell = own_cell(x, *radius, edge);
-                }
-            }
-            Separation::Axes(axes) => {
-                let blurred = self.coordinates.iter().zip(axes.iter());
-                let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
-                for (cell, (&x, axis)) in cells.iter_mut().zip(blurred) {
-                    *cell = own_cell(axis.measured(x), axis.radius(), edge);
-                }
-            }
-        }
+        self.visit_blurred(AXES, |j, x, radius| cells[j] = own_cell(x, radius, edge));
         cells
     }
 }
@@ -280,7 +264,9 @@ impl<S: Real> Identity for Located<S> {
         if self.is_exact() {
             return visit(exact);
         }
-        let near = self.cells_near::<HASHED>(EDGE);
+        // For each coordinate its own cell, and the first and the last one that a solution within the radius may be in.
+        let mut near = [[S::zero(); 3]; HASHED];
+        self.visit_blurred(HASHED, |j, x, radius| near[j] = cells_near(x, radius, EDGE));
         let own = near.map(|[own, _, _]| own);
         let ends = near.map(|[_, first, last]| [first, last]);
         let mut cells = ends.map(|[first, _]| first);
@@ -321,17 +307,7 @@ impl<S: Real> Identity for Located<S> {
 
     fn visit_fine_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
         let mut cells = FineCells::new();
-        match &self.separation {
-            Separation::Radius(radius) => {
-                let first = self.coordinates.iter().take(FINELY_HASHED);
-                first.for_each(|&x| cells.add(x, *radius));
-            }
-            Separation::Axes(axes) => {
-                let blurred = self.coordinates.iter().zip(axes.iter());
-                let blurred = blurred.filter(|(_, axis)| axis.is_hashed_by_cells());
-                blurred.for_each(|(&x, axis)| cells.add(axis.measured(x), axis.radius()));
-            }
-        }
+        self.visit_blurred(FINELY_HASHED, |_, x, radius| cells.add(x, radius));
         cells.visit(self.exact_key(), visit)
     }
 }

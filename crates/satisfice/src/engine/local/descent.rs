@@ -43,7 +43,7 @@ engine_settings! {
 
 impl EngineConfig for Descent {
     const NAME: &'static str = "descent";
-    const SUMMARY: &'static str = "greedy descent over neighbours, restarted at uniform points";
+    const SUMMARY: &'static str = "greedy descent over neighbours, restarted at points that cover the space";
     const CITATION: &'static str =
         "after Guy, Debunne 2004, INRIA RR-5136, and Kimmerle, Nesme, Faure 2004, VMV";
 
@@ -76,7 +76,7 @@ pub(in crate::engine) struct RestartedDescent<S> {
     only_compass: bool,
     /// Whether one of them was left out because it is in C.
     touches: bool,
-    /// The points where descents start, but for those.
+    /// Where descents start that start at no point of the user.
     even: EvenPoints,
     /// Points given by the user, the best last, where the next descents start; with their fitness.
     starts: Vec<(S, Vec<S>)>,
@@ -112,7 +112,7 @@ impl<S: Real> RestartedDescent<S> {
         self.starts.clear();
     }
 
-    /// Ends the descent; the next one starts at a uniform point.
+    /// Ends the descent; the next one starts elsewhere.
     pub(in crate::engine) fn restart(&mut self) {
         self.point.clear();
         self.neighbours = None;
@@ -145,7 +145,7 @@ impl<S: Real> RestartedDescent<S> {
         true
     }
 
-    /// Proposes the next neighbour, or a uniform point.
+    /// Proposes the next neighbour, or a start.
     pub(in crate::engine) fn propose(
         &mut self,
         context: &dyn Context<S>,

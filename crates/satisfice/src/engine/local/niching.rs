@@ -202,7 +202,7 @@ impl<S: Real> NichingSearch<S> {
         }
     }
 
-    /// Starts the next search: from the best near miss every other time, else beside a known end or from a uniform point.
+    /// Starts the next search: from the best near miss every other time, else beside a known end or anywhere.
     fn begin_run(&mut self, space: &Space<S>, rng: &mut SearchRng) {
         let dimension = self.start.len();
         self.restarts += 1;

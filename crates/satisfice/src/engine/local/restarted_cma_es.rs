@@ -19,8 +19,8 @@ use crate::state::{Part, Reader, State};
 engine_settings! {
     /// Two sources of candidates, drawn by their yield:
     ///
-    /// - local searches by (1+1)-CMA-ES (Igel, Suttorp, Hansen 2006) from starts that cover the space evenly, with a first step drawn log-uniformly. They
-    ///   end at a hit, at a known hit, or when they stall; how long a stall may last follows the universal restart sequence (Luby,
+    /// - local searches by (1+1)-CMA-ES (Igel, Suttorp, Hansen 2006) from starts that cover the space evenly, with a first step drawn
+    ///   log-uniformly. They end at a hit, at a known hit, or when they stall; how long a stall may last follows the universal restart sequence (Luby,
     ///   Sinclair, Zuckerman 1993);
     /// - recombinations of all pairs of hits; the next searches start at those that just miss.
     ///
@@ -156,7 +156,7 @@ impl<S: Real> Searches<S> {
         }
     }
 
-    /// Starts search `index` again: from the best near miss every other time, else from a uniform point.
+    /// Starts search `index` again: from the best near miss every other time, else anywhere.
     fn start(&mut self, index: usize, space: &Space<S>, rng: &mut SearchRng) {
         self.restarts += 1;
         let climb = &mut self.climbs[index];

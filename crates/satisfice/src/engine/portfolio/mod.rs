@@ -69,7 +69,7 @@ engine_settings! {
     /// - a Gaussian process on at most 20 axes, where evaluations are limited, or where F takes more than 5 ms and only time is limited: up to
     ///   1,000 proposals, of half a millisecond. Beyond 2,000 planned evaluations they become fewer, so that thinking does not: 250 of
     ///   4,000, none from 6,400 on. Where F takes less than that, and the time matters more than the number of evaluations, limit the time,
-    ///   too: a limit that the proposals would exceed leaves the model out;
+    ///   too: if the proposals would take longer than the limit, the model is not used;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most
     ///   4,096 points is enumerated at once, a larger one once it is half visited, or the search finds no more than that would, or under a limit

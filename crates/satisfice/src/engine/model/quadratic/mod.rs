@@ -21,7 +21,8 @@ use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// Local searches, each from a start or the best of eight, which cover the space evenly, that go to the minimum of a quadratic model in a trust region.
+    /// Local searches, each from one point or the best of eight, that go to the minimum of a quadratic model in a trust
+    /// region. The points cover the space evenly.
     ///
     /// - The model interpolates F at the points evaluated near the best one. Of its second derivatives those are kept that the points do not
     ///   decide (least Frobenius norm updating, Powell 2004), so that it is of use from one point more than there are axes.
@@ -85,7 +86,7 @@ impl QuadraticDescent {
 
 /// Axes of one search, at most.
 const MOST_AXES: usize = 30;
-/// Every other search starts at the best of so many uniform points.
+/// Every other search starts at the best of so many points.
 const DRAWS: usize = 8;
 /// At most so many points of the user are kept, the best ones.
 const GIVEN: usize = 1024;
@@ -93,7 +94,7 @@ const GIVEN: usize = 1024;
 /// One search, or the draws before it.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 struct QuadraticRun<S> {
-    /// Uniform points still to be drawn, and whether one of them is out.
+    /// Points still to be drawn for the start, and whether one of them is out.
     draws: usize,
     is_drawn: bool,
     /// The best of them, where the search starts; on axes that it does not move along it stays there.
