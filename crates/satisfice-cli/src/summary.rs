@@ -9,6 +9,8 @@ use serde_json::Value;
 
 /// The number of hits shown; all of them are in the JSON report.
 const SHOWN: usize = 5;
+/// The number of slices shown, the first ones.
+const SHOWN_SLICES: usize = 20;
 /// Bytes of a solution that are shown.
 const LONGEST: usize = 300;
 
@@ -91,7 +93,7 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&Value) -> String) -> S
             report.stop_reason
         ),
     );
-    for (index, slice) in report.slices.iter().enumerate() {
+    for (index, slice) in report.slices.iter().take(SHOWN_SLICES).enumerate() {
         line(
             &format!("slice {}", index + 1),
             format!(
@@ -100,6 +102,15 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&Value) -> String) -> S
                 slice.new_hits,
                 slice.counts.evaluations,
                 time(slice.elapsed_seconds)
+            ),
+        );
+    }
+    if report.slices.len() > SHOWN_SLICES {
+        line(
+            "",
+            format!(
+                "and {} more slices; --json FILE lists them all",
+                report.slices.len() - SHOWN_SLICES
             ),
         );
     }

@@ -217,7 +217,7 @@ fn a_time_limit_covers_the_trees() {
 }
 
 #[test]
-fn witnesses_are_written_to_json_and_csv() {
+fn witnesses_are_written_to_json_and_csv_and_shown() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("a.obj"),
@@ -253,6 +253,11 @@ fn witnesses_are_written_to_json_and_csv() {
         done.stdout,
         "a_body,a_feature,b_body,b_feature,distance,ax,ay,az,bx,by,bz,nx,ny,nz,a_part,b_part\n\
          0,0,1,0,0.25,0.5,0.5,0,0.5,0.5,0.25,0,0,1,face,vertex 0\n"
+    );
+    let shown = satisfice_in(folder.path(), scene).stdout;
+    assert!(
+        shown.contains("0.25 apart, from (0.5 0.5 0) to (0.5 0.5 0.25)"),
+        "{shown}"
     );
     // Where the triangles cross there is no normal.
     let crossing = json_of(folder.path(), &scene.replace("b.obj", "c.obj"));

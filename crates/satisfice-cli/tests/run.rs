@@ -190,6 +190,16 @@ fn parallel_changes_the_result_and_threads_do_not() {
 }
 
 #[test]
+fn a_summary_shows_the_first_slices_and_counts_the_others() {
+    let shown = satisfice("run teapots --evaluations 10 --slices 25").stdout;
+    assert!(shown.contains("slice 20 ") && !shown.contains("slice 21 "), "{shown}");
+    assert!(
+        shown.contains("and 5 more slices; --json FILE lists them all"),
+        "{shown}"
+    );
+}
+
+#[test]
 fn a_report_has_the_keys_of_the_contract() {
     let report = report("run arm --evaluations 20000 --seed 1 --json - --slices 2");
     let keys: Vec<&String> = report.as_object().unwrap().keys().collect();

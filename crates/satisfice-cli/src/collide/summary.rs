@@ -217,8 +217,12 @@ fn pair(report: &Report<'_>, index: usize) -> String {
         || "not measured".to_owned(),
         |distance| format!("{} apart", digits(distance)),
     );
+    let places = line.witness.map_or_else(String::new, |near| {
+        let [a, b] = [near.point_a, near.point_b].map(|point| point.map(digits).join(" "));
+        format!(", from ({a}) to ({b})")
+    });
     format!(
-        "{} and {}, {apart}",
+        "{} and {}, {apart}{places}",
         side(report, kind_a, &line.a),
         side(report, kind_b, &line.b)
     )

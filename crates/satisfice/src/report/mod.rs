@@ -165,10 +165,17 @@ impl<T> core::fmt::Display for Report<T> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(
             f,
-            "{} hits in {} evaluations ({} duplicates) and {:.3} s by {} on {}, seed {}; {}; completeness {:?}",
+            "{} hits in {} evaluations ({} duplicates)",
             self.archive.len(),
             self.counts.evaluations,
             self.counts.duplicates,
+        )?;
+        if self.counts.bound_calls > 0 {
+            write!(f, ", {} bounds", self.counts.bound_calls)?;
+        }
+        write!(
+            f,
+            " and {:.3} s by {} on {}, seed {}; {}; completeness {:?}",
             self.elapsed.as_secs_f64(),
             self.engine.name,
             self.problem.name,
