@@ -192,7 +192,10 @@ fn parallel_changes_the_result_and_threads_do_not() {
 #[test]
 fn a_summary_shows_the_first_slices_and_counts_the_others() {
     let shown = satisfice("run teapots --evaluations 10 --slices 25").stdout;
-    assert!(shown.contains("slice 20 ") && !shown.contains("slice 21 "), "{shown}");
+    assert!(
+        shown.contains("slice 20 ") && !shown.contains("slice 21 "),
+        "{shown}"
+    );
     assert!(
         shown.contains("and 5 more slices; --json FILE lists them all"),
         "{shown}"

@@ -401,6 +401,7 @@ impl<S: Real> Guests<S> {
             outcomes: told,
             ..
         } = self;
+        let hits = outcomes.iter().any(|outcome| outcome.is_hit());
         for guest in guests {
             let place = guest.place();
             let own = match origin {
@@ -415,11 +416,11 @@ impl<S: Real> Guests<S> {
             if !guest.open {
                 continue;
             }
-            let mut tell = |is_told: &dyn Fn(usize) -> bool, origin| {
+            let mut tell = |points: &mut dyn Iterator<Item = usize>, origin| {
                 part.clear();
                 told.clear();
-                for (i, position) in batch.points().enumerate().filter(|&(i, _)| is_told(i)) {
-                    part.push(position);
+                for i in points {
+                    part.push(batch.point(i));
                     told.push(outcomes[i]);
                 }
                 if !told.is_empty() {
@@ -428,7 +429,7 @@ impl<S: Real> Guests<S> {
             };
             if !own.is_empty() {
                 let watch = pace.learns(place);
-                tell(&|i| own.contains(&i), Origin::Engine);
+                tell(&mut own.clone(), Origin::Engine);
                 pace.learned(place, watch, own.len());
             }
             // An engine takes start points for what they are, and hits of others as if exhaustion had found them.
@@ -437,10 +438,11 @@ impl<S: Real> Guests<S> {
                 _ => Origin::Exhaustion,
             };
             let learns_from_all = guest.kind == GuestKind::Model || origin == Origin::Start;
-            tell(
-                &|i| !own.contains(&i) && (learns_from_all || outcomes[i].is_hit()),
-                origin,
-            );
+            if learns_from_all || hits {
+                let others = (0..batch.len()).filter(|i| !own.contains(i));
+                let told = |i: &usize| learns_from_all || outcomes[*i].is_hit();
+                tell(&mut others.filter(told), origin);
+            }
         }
     }
 

@@ -5,8 +5,9 @@ use crate::scalar::Real;
 
 /// Values that are remembered, the first ones.
 const LEVELS: usize = 32;
-/// So many misses tell.
+/// So many misses tell, and so many for good.
 const ENOUGH: u64 = 16;
+const CERTAIN: u64 = 4096;
 
 /// Values of F, and how many came more than once.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -21,6 +22,9 @@ impl Levels {
         let Outcome::Miss(fitness) = outcome else {
             return;
         };
+        if self.misses >= CERTAIN {
+            return;
+        }
         let value = fitness.f64().to_bits();
         self.misses += 1;
         if self.seen.contains(&value) {

@@ -24,15 +24,24 @@ impl<S: Real> Misses<S> {
         &self.positions[index * dimension..(index + 1) * dimension]
     }
 
-    /// The best `count`, best first; of equal ones the earlier.
-    fn best(&self, count: usize, dimension: usize) -> Self {
+    /// The indices of the best `count`, in no order; of equal ones the earlier.
+    fn best_indices(&self, count: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.fitness.len()).collect();
-        let rank = |&a: &usize, &b: &usize| self.fitness[a].total_cmp(&self.fitness[b]).then(a.cmp(&b));
         if count < order.len() {
-            order.select_nth_unstable_by(count, rank);
+            order.select_nth_unstable_by(count, |&a, &b| self.rank(a, b));
             order.truncate(count);
         }
-        order.sort_unstable_by(rank);
+        order
+    }
+
+    fn rank(&self, a: usize, b: usize) -> core::cmp::Ordering {
+        self.fitness[a].total_cmp(&self.fitness[b]).then(a.cmp(&b))
+    }
+
+    /// The best `count`, best first.
+    fn best(&self, count: usize, dimension: usize) -> Self {
+        let mut order = self.best_indices(count);
+        order.sort_unstable_by(|&a, &b| self.rank(a, b));
         let mut best = Self {
             fitness: Vec::with_capacity(order.len()),
             positions: Vec::with_capacity(order.len() * dimension),
@@ -41,6 +50,22 @@ impl<S: Real> Misses<S> {
             best.push(self.fitness[index], self.row(index, dimension));
         }
         best
+    }
+
+    /// Forgets all but the best `count`, which stay in their order, and returns the fitness of the worst of them.
+    fn keep_best(&mut self, count: usize, dimension: usize) -> f64 {
+        let mut order = self.best_indices(count);
+        order.sort_unstable();
+        let mut worst = f64::NEG_INFINITY;
+        for (to, &from) in order.iter().enumerate() {
+            worst = worst.max(self.fitness[from]);
+            self.fitness[to] = self.fitness[from];
+            let row = from * dimension..(from + 1) * dimension;
+            self.positions.copy_within(row, to * dimension);
+        }
+        self.fitness.truncate(order.len());
+        self.positions.truncate(order.len() * dimension);
+        worst
     }
 }
 
@@ -125,8 +150,7 @@ impl<S: Real> NearMisses<S> {
         if fitness < self.bound {
             self.now.push(fitness, position);
             if self.now.fitness.len() >= 2 * MOST {
-                self.now = self.now.best(MOST, position.len());
-                self.bound = self.now.fitness[MOST - 1];
+                self.bound = self.now.keep_best(MOST, position.len());
             }
         }
     }
