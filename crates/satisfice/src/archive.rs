@@ -34,6 +34,17 @@ pub struct Archive<T> {
     fine: bool,
 }
 
+/// At most so many hits that were entered since a look-up are compared one by one.
+const LATEST: usize = 32;
+
+/// What an archive held at some time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Mark {
+    hits: usize,
+    /// Those that [`Archive::contains`] saw.
+    seen: usize,
+}
+
 /// The outcome of [`Archive::enter`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Insertion {
@@ -169,8 +180,26 @@ impl<T: Identity> Archive<T> {
         self.solutions.get(recent).is_some_and(|hit| hit.same(solution)) && !self.is_probe_only(recent)
     }
 
-    /// [`Archive::contains`]; if it does, the index of the hit is written to `recent`.
-    pub(crate) fn contains_again(&self, solution: &T, recent: &mut usize) -> bool {
+    /// What it holds now.
+    #[inline]
+    pub(crate) fn mark(&self) -> Mark {
+        Mark {
+            hits: self.solutions.len(),
+            seen: self.table.len(),
+        }
+    }
+
+    /// [`Archive::contains`]; if it does, the index of the hit is written to `recent`. `absent`: when it did not hold the solution, if that
+    /// was looked up.
+    pub(crate) fn contains_again(&self, solution: &T, absent: Option<Mark>, recent: &mut usize) -> bool {
+        if let Some(latest) = absent.and_then(|mark| self.entered_since(mark)) {
+            let first = self.solutions.len() - latest.len();
+            let found = latest.iter().position(|hit| hit.same(solution));
+            if let Some(index) = found {
+                *recent = first + index;
+            }
+            return found.is_some();
+        }
         let mut found = None;
         self.visit_keys(solution, &mut |key| {
             if self.may_hold(key) {
@@ -182,6 +211,13 @@ impl<T: Identity> Archive<T> {
             *recent = index as usize;
         }
         found.is_some()
+    }
+
+    /// The hits entered since then, if they are few and all that [`Archive::contains`] sees beside those of then.
+    fn entered_since(&self, mark: Mark) -> Option<&[T]> {
+        let latest = self.solutions.get(mark.hits..)?;
+        let are_seen = self.table.len().checked_sub(mark.seen) == Some(latest.len());
+        (are_seen && latest.len() <= LATEST).then_some(latest)
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! The candidates of one batch between proposal and outcome.
 
-use crate::archive::Archive;
+use crate::archive::{Archive, Mark};
 use crate::batch::{Batch, Outcome};
 use crate::error::Error;
 use crate::problem::SatisficingProblem;
@@ -30,6 +30,8 @@ pub(crate) struct Candidates<S, T> {
     values: Vec<S>,
     /// Whether found solutions are deleted from the space, as far as the engine is concerned.
     pub(crate) deletes: bool,
+    /// When the live ones were not in the archive, if they were looked up.
+    pub(crate) absent: Option<Mark>,
 }
 
 impl<S: Real, T> Default for Candidates<S, T> {
@@ -45,6 +47,7 @@ impl<S: Real, T> Default for Candidates<S, T> {
             probing: false,
             values: Vec::new(),
             deletes: true,
+            absent: None,
         }
     }
 }
@@ -62,7 +65,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
         deletes: bool,
         is_interrupted: impl Fn() -> bool,
     ) {
-        self.reset(deletes);
+        self.reset(deletes, archive);
         let points = batch.len().min(limit);
         let stride = (COORDINATES / batch.dimension()).max(1);
         for first in (0..points).step_by(stride) {
@@ -110,7 +113,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     ) where
         T: 'a,
     {
-        self.reset(true);
+        self.reset(true, archive);
         let points = solutions.len();
         for solution in solutions.take(limit) {
             match self.solutions.get_mut(self.live) {
@@ -123,8 +126,9 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     }
 
     #[inline]
-    fn reset(&mut self, deletes: bool) {
+    fn reset(&mut self, deletes: bool, archive: &Archive<T>) {
         self.deletes = deletes;
+        self.absent = deletes.then(|| archive.mark());
         self.live = 0;
         self.ready = 0;
         self.has_gaps = false;

@@ -3,7 +3,7 @@
 use num_traits::Float;
 
 use super::{Ledger, stale_at};
-use crate::archive::{Hit, Insertion};
+use crate::archive::{Hit, Insertion, Mark};
 use crate::batch::Outcome;
 use crate::best::Best;
 use crate::budget::StopReason;
@@ -21,6 +21,8 @@ struct Rules {
     deletes: bool,
     /// Whether the batch holds uniform probes, whose hits the engine does not see.
     probing: bool,
+    /// When the solutions were not in the archive, if they were looked up.
+    absent: Option<Mark>,
 }
 
 impl<T: Identity + Clone + Send + Sync> Ledger<T> {
@@ -35,6 +37,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let rules = Rules {
             deletes: candidates.deletes,
             probing: candidates.probing,
+            absent: candidates.absent,
         };
         let mut next = 0; // of the live ones
         for i in 0..candidates.outcomes.len() {
@@ -75,6 +78,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let rules = Rules {
             deletes,
             probing: false,
+            absent: deletes.then(|| self.archive.mark()),
         };
         let outcome = candidates.with_one(problem, point, |solution| {
             if deletes && self.archive.contains(solution) {
@@ -102,7 +106,11 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         deletes: bool,
         probing: bool,
     ) -> Outcome<P::Scalar> {
-        let rules = Rules { deletes, probing };
+        let rules = Rules {
+            deletes,
+            probing,
+            absent: None,
+        };
         self.evaluated_elsewhere(1);
         self.counts.evaluations += 1;
         let outcome = self.judge(problem, solution, fitness, problem.threshold(), rules, &mut ());
@@ -137,6 +145,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             let rules = Rules {
                 deletes: true,
                 probing: false,
+                absent: None,
             };
             self.insert_hit(problem, solution, fitness, rules, &mut ())
         } else {
@@ -190,7 +199,10 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         rules: Rules,
         observer: &mut dyn Observer<T>,
     ) -> Outcome<P::Scalar> {
-        if self.archive.contains_again(solution, &mut self.recent) {
+        if self
+            .archive
+            .contains_again(solution, rules.absent, &mut self.recent)
+        {
             return self.known(fitness, rules);
         }
         let evaluation = self.counts.evaluations;

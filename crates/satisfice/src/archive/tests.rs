@@ -60,6 +60,32 @@ fn crowded_solutions_agree_with_all_pairs() {
     assert!(archive.iter().all(|hit| archive.contains(hit.solution)));
 }
 
+/// Batches whose solutions are looked up together and entered one by one, probes among them, of which some are promoted.
+#[test]
+fn a_look_up_after_another_says_what_the_archive_says() {
+    let mut rng = crate::SearchRng::new(6);
+    let mut archive = Archive::default();
+    let (mut cheap, mut promoted) = (0, 0);
+    for n in 0..2000 {
+        let (probing, size) = (n % 5 == 0, if n % 50 == 1 { 3 * LATEST } else { 8 });
+        let mut draw = || (120.0 * rng.uniform()) as u8;
+        let mut batch: Vec<[u8; 2]> = (0..size).map(|_| [draw(), draw()]).collect();
+        batch.retain(|solution| !archive.contains(solution));
+        let mark = archive.mark();
+        for solution in batch {
+            let (known, mut recent) = (archive.contains(&solution), usize::MAX);
+            cheap += usize::from(archive.entered_since(mark).is_some());
+            assert_eq!(archive.contains_again(&solution, Some(mark), &mut recent), known);
+            assert_eq!(archive.solutions().get(recent) == Some(&solution), known);
+            if !known {
+                let entered = archive.enter(solution, -1.0, 1, 0.0, probing);
+                promoted += usize::from(entered == Insertion::Promoted);
+            }
+        }
+    }
+    assert!(cheap > 1000 && promoted > 100, "{cheap} {promoted}");
+}
+
 #[test]
 fn at_rest_it_stays_under_32_bytes_a_hit() {
     for hits in [1_000_u32, 60_000, 200_000, 458_753] {
