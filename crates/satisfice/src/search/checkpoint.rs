@@ -25,7 +25,8 @@ use crate::state::{Saved, State};
 ///
 /// It is taken between slices ([`Search::checkpoint`]), while a batch is out ([`Stepper::checkpoint`](super::Stepper)), or
 /// while a slice runs ([`RunOptions::checkpoints`](super::RunOptions::checkpoints)). It can be written and
-/// read with serde; numbers are kept bit by bit, and a checksum over all of it detects damage.
+/// read with serde; numbers are kept bit by bit, and a checksum over all of it detects damage. With `serde_json` enable the
+/// feature `float_roundtrip`: without it, some numbers are read back one bit off, and the checkpoint counts as damaged.
 #[derive(Debug, Clone)]
 pub struct Checkpoint<T> {
     /// What was saved.
