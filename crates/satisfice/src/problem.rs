@@ -113,7 +113,7 @@ pub struct FnProblem<S, F> {
     separation: Separation<S>,
     fitness: F,
     components: Option<FnComponents<S>>,
-    name: String,
+    description: Description,
 }
 
 /// Writes the components of F at values.
@@ -184,7 +184,10 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
         separation,
         fitness,
         components: None,
-        name: "closure".to_owned(),
+        description: Description {
+            name: "closure".to_owned(),
+            ..Description::default()
+        },
     }
 }
 
@@ -268,7 +271,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
             separation: self.separation,
             fitness: Box::new(self.fitness),
             components: self.components,
-            name: self.name,
+            description: self.description,
         }
     }
 }
@@ -277,7 +280,7 @@ impl<S: Real, F> FnProblem<S, F> {
     /// The same problem under another name in reports; `closure` by default.
     #[must_use]
     pub fn named(mut self, name: &str) -> Self {
-        name.clone_into(&mut self.name);
+        name.clone_into(&mut self.description.name);
         self
     }
 
@@ -310,6 +313,7 @@ impl<S: Real, F> FnProblem<S, F> {
     #[must_use]
     pub fn separation(mut self, radius: S) -> Self {
         self.separation = separation_of(&self.space, |_| radius.max(S::zero()));
+        self.description.parameters = vec![("separation".to_owned(), radius.to_string())];
         self
     }
 
@@ -343,6 +347,8 @@ impl<S: Real, F> FnProblem<S, F> {
         }
         let pairs = axes.iter().zip(radii);
         self.separation = Separation::axes(pairs.map(|(axis, &radius)| separation_on(axis, radius)));
+        let text: Vec<_> = radii.iter().map(S::to_string).collect();
+        self.description.parameters = vec![("separations".to_owned(), text.join(" "))];
         Ok(self)
     }
 }
@@ -375,10 +381,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
         self.components.as_ref().map(|components| components as _)
     }
     fn description(&self) -> Description {
-        Description {
-            name: self.name.clone(),
-            parameters: Vec::new(),
-        }
+        self.description.clone()
     }
 }
 

@@ -18,7 +18,7 @@ use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
 use crate::report::{Counts, TracePoint};
 use crate::scalar::Real;
-use crate::space::AxisKind;
+use crate::space::{AxisKind, Boundary};
 use crate::state::{Saved, State};
 
 /// A search at one moment: [`Search::resume`] continues from it, with the same results but for the times.
@@ -101,7 +101,7 @@ pub struct Unfinished<T> {
     pub(super) state: State,
 }
 
-/// What identifies a problem: its description, its space and its threshold.
+/// What identifies a problem: its description, its space, its threshold and the number of components of F.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Fingerprint {
     /// Its name and parameters.
@@ -109,6 +109,8 @@ pub struct Fingerprint {
     /// The bits of delta, and of each axis with its kind.
     threshold: u64,
     axes: Vec<(u64, u64, AxisKind, [bool; 2])>,
+    boundary: Boundary,
+    components: usize,
 }
 
 impl Fingerprint {
@@ -117,6 +119,10 @@ impl Fingerprint {
         Self {
             description: problem.description(),
             threshold: problem.threshold().to_word(),
+            boundary: problem.space().boundary(),
+            components: problem
+                .components()
+                .map_or(0, crate::capability::Components::count),
             axes: axes
                 .map(|axis| {
                     let (lower, upper) = (axis.lower().to_word(), axis.upper().to_word());
@@ -139,7 +145,7 @@ impl Fingerprint {
         }
         if self != now {
             return Err(Error::State(
-                "its problem has another space or another threshold".to_owned(),
+                "its problem has another space, threshold or number of components".to_owned(),
             ));
         }
         Ok(())

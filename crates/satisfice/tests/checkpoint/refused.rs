@@ -1,5 +1,7 @@
 //! A checkpoint of another search is refused, and damage is detected.
 
+use satisfice::Boundary;
+
 use super::*;
 
 fn refused<P: Problem>(_: &P, saved: Saved, engine: ConfiguredEngine<f64>) -> String {
@@ -51,13 +53,37 @@ fn what_does_not_fit_is_refused() {
         resumed.run_resumed(&lattice, RunOptions::new()),
         Err(Error::State(why)) if why.contains("problem is unnamed")
     ));
-    // Closures have one name; their spaces and thresholds tell them apart.
-    let wider = from_fn(space("lattice"), 0.5, |x: &[f64]| x[0]);
+    // Closures have one name; their separations, spaces and thresholds tell them apart.
+    let wider = from_fn(space("lattice"), 0.5, |x: &[f64]| x[0]).separation(0.02);
     let mut resumed = Search::resume(saved, with(&[])).unwrap();
     assert!(matches!(
         resumed.run_resumed(&wider, RunOptions::new()),
-        Err(Error::State(why)) if why.contains("another threshold")
+        Err(Error::State(why)) if why.contains("another space, threshold")
     ));
+    // How far apart answers are is a part of their description; the boundary rule is one of the space.
+    let start = |separation: f64, boundary: Boundary| {
+        let space = space("lattice").with_boundary(boundary);
+        let problem = from_fn(space, 0.5, |x: &[f64]| x[0]).separation(separation);
+        let mut search = Search::with(with(&[]));
+        let saved = search
+            .start(&problem, &Budget::evaluations(100))
+            .unwrap()
+            .checkpoint();
+        (saved, problem)
+    };
+    let (saved, same) = start(0.5, Boundary::Reflect);
+    for (other, reason) in [
+        (start(0.6, Boundary::Reflect).1, "separation=0.5"),
+        (start(0.5, Boundary::Clamp).1, "another space"),
+    ] {
+        let mut resumed = Search::resume(saved.clone(), with(&[])).unwrap();
+        assert!(matches!(
+            resumed.run_resumed(&other, RunOptions::new()),
+            Err(Error::State(why)) if why.contains(reason)
+        ));
+    }
+    let mut resumed = Search::resume(saved, with(&[])).unwrap();
+    assert!(resumed.run_resumed(&same, RunOptions::new()).is_ok());
     // Nothing has begun.
     let mut fresh = Search::with(with(&[]));
     assert!(fresh.run_resumed(&lattice, RunOptions::new()).is_err());
