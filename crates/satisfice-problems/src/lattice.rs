@@ -1,7 +1,7 @@
 //! Shared by problems on a lattice of cells: the space, decoding, range minima, enumeration.
 
 use satisfice::catalogue::Description;
-use satisfice::{Axis, Error, SatisficingProblem, Space};
+use satisfice::{Axis, AxisKind, Error, SatisficingProblem, Space};
 use satisfice::{Encoding, Neighbourhood};
 
 /// Up to this many keys are ranked by comparing all pairs, without allocating.
@@ -272,7 +272,7 @@ pub(crate) fn reference<P: SatisficingProblem<Scalar = f64>>(
 /// Lattices of at most this many points are enumerated for their reference count, in a few seconds.
 pub const ENUMERABLE: f64 = 2e7;
 
-/// The number of lattice points with F < delta, by visiting every one; `None` if the space has a continuous axis or
+/// The number of lattice points with F < delta, by visiting every one; `None` if the space has a continuous axis, a permutation or
 /// more than `limit` points. Cost: one decoding and one fitness per point.
 ///
 /// ```
@@ -283,10 +283,11 @@ pub const ENUMERABLE: f64 = 2e7;
 /// ```
 pub fn count_hits<P: SatisficingProblem<Scalar = f64>>(problem: &P, limit: f64) -> Option<u64> {
     let space = problem.space();
-    if space.cardinality().is_none_or(|points| points > limit) {
+    let axes = space.axes();
+    let is_place = |axis: &Axis<f64>| axis.kind() == AxisKind::Place;
+    if space.cardinality().is_none_or(|points| points > limit) || axes.iter().any(is_place) {
         return None;
     }
-    let axes = space.axes();
     let mut values: Vec<f64> = axes.iter().map(Axis::lower).collect();
     let mut solution = problem.decode(&values);
     let mut hits = 0;

@@ -12,7 +12,9 @@ use crate::batch::{Batch, Outcome};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
+use crate::scalar::Real;
 use crate::seed::SearchRng;
+use crate::space::Space;
 use crate::unseen::{Sample, Unseen};
 
 /// Streams of the probes' generators, one per slice; far from those of lanes, which count from 0.
@@ -61,6 +63,14 @@ impl Probes {
         };
         probes.schedule();
         Ok(probes)
+    }
+
+    /// Whether so many planned evaluations suffice for every point of a lattice, but not for this share of probes beside.
+    pub(crate) fn leave_no_room<S: Real>(space: &Space<S>, share: f64, planned: Option<u64>) -> bool {
+        space.cardinality().zip(planned).is_some_and(|(points, planned)| {
+            let planned = planned as f64;
+            points <= planned && points > planned * (1.0 - share) - 1.0
+        })
     }
 
     pub(crate) fn share(&self) -> f64 {
@@ -158,10 +168,7 @@ impl Probes {
         }
         // Another point stands for this hit. It has to be a point of the lattice that decodes to it...
         let mut other = vec![P::Scalar::zero(); values.len()];
-        let stands = own
-            .iter()
-            .zip(problem.space().axes())
-            .all(|(&x, axis)| axis.lower() <= x && x <= axis.upper() && axis.value(x) == x)
+        let stands = problem.space().check_values(&own).is_ok()
             && represents(problem, &problem.decode(&own)).same(hit)
             // ...and this solution has to have the same one: if it has its own, the two are the same only roughly.
             && encoding.encode(canonical, &mut other)

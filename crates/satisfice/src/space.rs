@@ -6,6 +6,9 @@
 //! of a permutation are keys, whose ranks are the values. This module alone maps one to the other.
 
 mod axis;
+mod permutations;
+
+use permutations::permutations;
 
 use crate::error::Error;
 use crate::scalar::{Real, floor};
@@ -141,14 +144,21 @@ impl<S: Real> Space<S> {
         self.axes[axis].periodic || self.boundary == Boundary::Wrap
     }
 
-    /// Number of points of an all-integer space, as a real because it may be huge; `None` with a continuous axis of
-    /// positive width.
+    /// Number of points of a space of integers, categories and permutations, as a real because it may be huge: n! for a permutation of n.
+    /// `None` with a continuous axis of positive width.
     #[must_use]
     pub fn cardinality(&self) -> Option<f64> {
         self.axes.iter().try_fold(1.0, |count, axis| match axis.kind {
-            AxisKind::Integer | AxisKind::Categorical => Some(count * axis.width().f64()),
-            AxisKind::Continuous | AxisKind::Place => (axis.width() == S::zero()).then_some(count),
+            AxisKind::Continuous => (axis.width() == S::zero()).then_some(count),
+            AxisKind::Integer | AxisKind::Categorical | AxisKind::Place => Some(count * axis.choices()),
         })
+    }
+
+    /// Whether every point has a number: all axes are integer, or places of permutations whose number of orders is below 2^63.
+    pub(crate) fn is_lattice(&self) -> bool {
+        let discrete = self.axes.iter().all(|axis| axis.kind != AxisKind::Continuous);
+        let countable = || self.cardinality().is_some_and(|count| count < 9.2e18);
+        discrete && (self.permutations.is_empty() || countable())
     }
 
     /// Whether every coordinate of a position is inside. Cost: O(D).
@@ -182,17 +192,12 @@ impl<S: Real> Space<S> {
                 return Err(Error::Solution(format!("{x} on axis {j}, which is whole")));
             }
         }
-        for &(first, length) in &self.permutations {
-            let mut ranks = values[first..first + length].to_vec();
-            ranks.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
-            if ranks.windows(2).any(|pair| pair[0] == pair[1]) {
-                let last = first + length - 1;
-                return Err(Error::Solution(format!(
-                    "axes {first} to {last} are a permutation, in which a value is there twice"
-                )));
-            }
-        }
-        Ok(())
+        self.first_repeated(values).map_or(Ok(()), |(first, length)| {
+            let last = first + length - 1;
+            Err(Error::Solution(format!(
+                "axes {first} to {last} are a permutation, in which a value is there twice"
+            )))
+        })
     }
 
     /// Brings a position inside by the boundary rule; one that is inside stays as it is. Cost: O(D).
@@ -219,27 +224,6 @@ impl<S: Real> Space<S> {
         }
         if !self.permutations.is_empty() {
             self.rank(values);
-        }
-    }
-
-    /// Turns the keys of each permutation into their ranks.
-    #[cold]
-    fn rank(&self, values: &mut [S]) {
-        let mut order = Vec::new();
-        for &(first, length) in &self.permutations {
-            let keys = &mut values[first..first + length];
-            order.clear();
-            order.extend(0..length);
-            // Stable: of equal keys, the earlier place has the lower rank.
-            order.sort_by(|&a, &b| {
-                keys[a]
-                    .partial_cmp(&keys[b])
-                    .unwrap_or(core::cmp::Ordering::Equal)
-            });
-            for (rank, &place) in order.iter().enumerate() {
-                keys[place] =
-                    self.axes[first].lower + S::of(f64::from(u32::try_from(rank).unwrap_or(u32::MAX)));
-            }
         }
     }
 
@@ -275,10 +259,8 @@ impl<S: Real> Space<S> {
                 *x = axis.position(*x);
             }
             for &(first, length) in &self.permutations {
-                // The middle of the keys that have this rank, if all are evenly apart.
-                let count = S::of(f64::from(u32::try_from(length).unwrap_or(u32::MAX)));
                 for x in &mut values[first..first + length] {
-                    *x = (*x + S::of(0.5)) / count;
+                    *x = self.axes[first].key_of_rank(*x);
                 }
             }
         }
@@ -292,44 +274,6 @@ impl<S: Real> Space<S> {
             upper: self.axes.iter().map(Axis::upper).collect(),
         }
     }
-}
-
-/// First axis and length of each permutation.
-fn permutations<S: Real>(axes: &[Axis<S>]) -> Result<Vec<(usize, usize)>, Error> {
-    let mut found = Vec::new();
-    let mut next = 0;
-    while next < axes.len() {
-        let first = next;
-        next += 1;
-        if axes[first].kind != AxisKind::Place {
-            continue;
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a u32, whole"
-        )]
-        let length = axes[first].upper.f64() as usize + 1;
-        let all = axes[first..].iter().take(length).zip(0_u32..);
-        let together = all
-            .filter(|(axis, place)| {
-                axis.kind == AxisKind::Place && axis.place == *place && axis.upper == axes[first].upper
-            })
-            .count();
-        if together != length {
-            let (lower, upper) = (axes[first].lower.f64(), axes[first].upper.f64());
-            let reason = "the places of a permutation stand together, in their order";
-            return Err(Error::Bounds {
-                axis: first,
-                lower,
-                upper,
-                reason,
-            });
-        }
-        found.push((first, length));
-        next = first + length;
-    }
-    Ok(found)
 }
 
 /// Brings `x` inside the positions of its axis if it is not there.

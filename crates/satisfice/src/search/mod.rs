@@ -343,7 +343,12 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self.build_lanes()?;
         let first = &self.lanes[0].engine;
         let rule = self.warm_start.unwrap_or_else(|| first.warm_start());
-        let share = self.probes.unwrap_or_else(|| first.probes());
+        let share = self.probes.unwrap_or_else(|| {
+            // A proof needs no estimate.
+            let share = first.probes();
+            let only = Probes::leave_no_room(problem.space(), share, budget.evaluations);
+            if only && self.islands == 1 { 0.0 } else { share }
+        });
         let probes = Probes::new(share, self.seed, self.slices)?;
         if rule == WarmStart::Cold {
             self.clear();

@@ -4,7 +4,9 @@
 
 use std::collections::BTreeSet;
 
-use satisfice::{Axis, Budget, Error, Identity, SatisficingProblem, Search, Space, engine, from_fn, testing};
+use satisfice::{
+    Axis, Budget, Completeness, Error, Identity, SatisficingProblem, Search, Space, engine, from_fn, testing,
+};
 
 fn mixed() -> Space<f64> {
     let axes = [
@@ -209,4 +211,50 @@ fn a_radius_says_nothing_about_categories() {
         .unwrap();
     assert!(!problem.decode(&[0.0, 0.5]).same(&problem.decode(&[1.0, 0.5])));
     assert!(problem.decode(&[1.0, 0.5]).same(&problem.decode(&[1.0, 0.6])));
+}
+
+/// Orders of five in which no neighbours are two apart, by all 5^5 words.
+#[test]
+fn all_orders_are_enumerated() {
+    let fits = |x: &[f64]| x.windows(2).all(|pair| (pair[0] - pair[1]).abs() != 2.0);
+    let expected = (0..3125_u32)
+        .map(|code| [1, 5, 25, 125, 625].map(|place| f64::from(code / place % 5)))
+        .filter(|x| (1..5).all(|j| !x[..j].contains(&x[j])) && fits(x))
+        .count();
+    let space = Space::new(Axis::permutation(5)).unwrap();
+    assert_eq!(space.cardinality(), Some(120.0));
+    let problem = from_fn(space, 0.5, |x: &[f64]| f64::from(u8::from(!fits(x)))).boxed();
+    for (name, evaluations) in [("portfolio", 120), ("portfolio", 1000), ("branch-and-bound", 120)] {
+        let mut search = Search::named(name).unwrap();
+        let report = search.run(&problem, &Budget::evaluations(evaluations)).unwrap();
+        let found = (report.completeness, report.hit_count());
+        assert_eq!(found, (Completeness::Proved, expected), "{name}: {report}");
+        assert!(report.counts.evaluations <= 125, "{name}: {report}");
+    }
+}
+
+/// Points inside regions are orders, beside a continuous axis, too.
+#[test]
+fn regions_hold_orders_beside_continuous_axes() {
+    let axes = Axis::permutation(4).chain([Axis::continuous(0.0, 1.0)]);
+    let fitness = |x: &[f64]| (x[0] - 3.0).abs() + x[3] + (x[4] - 0.5).abs();
+    let problem = from_fn(Space::new(axes).unwrap(), 0.1, fitness)
+        .separation(0.25)
+        .boxed();
+    let mut search = Search::named("branch-and-bound").unwrap();
+    let report = search.run(&problem, &Budget::evaluations(10_000)).unwrap();
+    let found: BTreeSet<_> = report
+        .hits()
+        .map(|hit| {
+            hit.solution.coordinates[..4]
+                .iter()
+                .map(|&x| x as u8)
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    assert_eq!(
+        found,
+        BTreeSet::from([vec![3, 1, 2, 0], vec![3, 2, 1, 0]]),
+        "{report}"
+    );
 }

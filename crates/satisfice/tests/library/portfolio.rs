@@ -82,6 +82,8 @@ fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {
         (2, Budget::millis(30_000)),
         (3, Budget::evaluations(9_600)),
         (4, Budget::evaluations(1_000_000)),
+        (5, Budget::evaluations(9_216)),
+        (6, Budget::evaluations(9_300)),
     ] {
         let report = Search::new()
             .seed(seed)

@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::{Region, Space};
+use crate::space::{AxisKind, Region, Space};
 use crate::state::{Reader, Saved, State};
 
 /// A live leaf is split after this many evaluations in it that were no hits.
@@ -122,6 +122,10 @@ impl<S: Real> Pruned<S> {
         }
         self.cells[leaf].visits = 0;
         let space = context.space();
+        // A key of a permutation does not tell which half its rank is in.
+        if space.has_permutations() {
+            return;
+        }
         let region = self.region(space, &way);
         let splitter = Splitter {
             first: false,
@@ -174,7 +178,9 @@ impl<S: Real> Pruned<S> {
         for (j, (axis, x)) in space.axes().iter().zip(position).enumerate() {
             let (lower, upper) = (region.lower[j], region.upper[j]);
             let share = S::of(rng.uniform());
-            *x = if axis.is_integer() {
+            *x = if axis.kind() == AxisKind::Place {
+                share
+            } else if axis.is_integer() {
                 let values = upper - lower + S::one();
                 axis.position((lower + (share * values).floor()).min(upper))
             } else {

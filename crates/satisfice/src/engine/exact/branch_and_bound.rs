@@ -32,7 +32,7 @@ engine_settings! {
     /// continuous axes only, where these points find the hits), then latest first. When no region is left, every hit is in C or the
     /// same answer as one in C: [`Ask::Covered`].
     ///
-    /// * On integer axes this always happens. Without bounds it is an enumeration, in the order of halving: completeness `Proved`,
+    /// * On integer axes and permutations this always happens. Without bounds it is an enumeration, in the order of halving: completeness `Proved`,
     ///   `bound_calls` 0.
     /// * On continuous axes a region has to be excluded, or to lie within the separation of one hit. Where F equals delta
     ///   without falling below it, or where the problem does not say what a hit covers, regions shrink to `resolution`. Those that no
@@ -147,12 +147,15 @@ impl<S: Real> RegionSearch<S> {
 
     /// Keeps a region unless it is excluded; on continuous axes a point inside is proposed.
     fn enter(&mut self, context: &dyn Context<S>, region: Region<S>, parent: S, out: &mut Batch<S>) {
+        let space = context.space();
+        if space.has_permutations() && !space.order_inside(&region, &mut region.lower.clone()) {
+            return;
+        }
         let Some(bound) = self.bound(context, &region, parent) else {
             return;
         };
         let index = self.next_index;
         self.next_index += 1;
-        let space = context.space();
         let node = Node {
             bound,
             guide: S::infinity(),

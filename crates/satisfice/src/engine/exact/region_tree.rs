@@ -3,7 +3,12 @@
 use core::cmp::Ordering;
 
 use crate::scalar::Real;
-use crate::space::{Region, Space};
+use crate::space::{Axis, AxisKind, Region, Space};
+
+/// Whether an axis has values that can be counted: integers, categories or the ranks of a permutation.
+fn is_discrete<S: Real>(axis: &Axis<S>) -> bool {
+    axis.kind() != AxisKind::Continuous
+}
 
 /// A waiting region with its bound.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -16,7 +21,7 @@ pub(in crate::engine) struct Node<S> {
 }
 
 impl<S: Real> Node<S> {
-    /// The number of points if finite, as a real.
+    /// The number of points if finite, as a real; of permutations, no less than the number of orders inside.
     pub(in crate::engine) fn cardinality(&self, space: &Space<S>) -> Option<f64> {
         let sides = self.region.lower.iter().zip(&self.region.upper);
         space
@@ -24,7 +29,7 @@ impl<S: Real> Node<S> {
             .iter()
             .zip(sides)
             .try_fold(1.0, |points, (axis, (&lower, &upper))| {
-                if axis.is_integer() {
+                if is_discrete(axis) {
                     Some(points * ((upper - lower).f64() + 1.0))
                 } else {
                     (lower == upper).then_some(points)
@@ -38,15 +43,18 @@ impl<S: Real> Node<S> {
     /// Midpoints fail: hits on a regular grid leave points that are a separation away from several hits, and no region
     /// around such a point is covered by a single hit.
     pub(in crate::engine) fn inner_point(&self, space: &Space<S>, attempt: u64) -> Vec<S> {
-        let inside = |(axis, kind): (usize, &crate::Axis<S>)| {
+        let inside = |(axis, kind): (usize, &Axis<S>)| {
             let (lower, upper) = (self.region.lower[axis], self.region.upper[axis]);
-            if kind.is_integer() {
+            if is_discrete(kind) {
                 return self.region.middle(space, axis);
             }
             let share = S::of(0.25 + 0.5 * scatter(self.index, attempt, axis));
             (lower + share * (upper - lower)).max(lower).min(upper)
         };
-        space.axes().iter().enumerate().map(inside).collect()
+        let mut values: Vec<S> = space.axes().iter().enumerate().map(inside).collect();
+        // Regions without an order are not entered.
+        space.order_inside(&self.region, &mut values);
+        values
     }
 
     /// Visits the positions of all points of a finite region, the last axis fastest.
@@ -55,9 +63,11 @@ impl<S: Real> Node<S> {
         let mut values = lower.clone();
         let mut position = values.clone();
         loop {
-            position.copy_from_slice(&values);
-            space.positions(&mut position);
-            visit(&position);
+            if space.first_repeated(&values).is_none() {
+                position.copy_from_slice(&values);
+                space.positions(&mut position);
+                visit(&position);
+            }
             let Some(axis) = (0..values.len()).rev().find(|&j| values[j] < upper[j]) else {
                 return;
             };
@@ -126,7 +136,7 @@ impl<S: Real> Splitter<S> {
         for (j, axis) in space.axes().iter().enumerate() {
             let (length, whole) = (region.upper[j] - region.lower[j], axis.upper() - axis.lower());
             let share = length / whole; // NaN on an axis of one value
-            let splits = length > S::zero() && (axis.is_integer() || share > self.resolution);
+            let splits = length > S::zero() && (is_discrete(axis) || share > self.resolution);
             if splits && chosen.is_none_or(|(_, longest)| !self.first && share > longest) {
                 chosen = Some((j, share));
             }
@@ -136,7 +146,7 @@ impl<S: Real> Splitter<S> {
         };
         let (mut lower, mut upper) = (region.clone(), region.clone());
         let middle = region.middle(space, j);
-        if space.axes()[j].is_integer() {
+        if is_discrete(&space.axes()[j]) {
             lower.upper[j] = middle;
             upper.lower[j] = middle + S::one();
         } else if region.lower[j] < middle && middle < region.upper[j] {

@@ -30,6 +30,8 @@ pub(super) struct Scan {
     next: u64,
     passed: u64,
     started: bool,
+    /// Whether the search makes no probes, because the budget has no room for them beside the points.
+    unprobed: bool,
     /// Hits known, and the evaluation at which the last of them was new.
     hits: usize,
     latest: u64,
@@ -42,9 +44,9 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    pub(super) fn new<S: Real>(space: &Space<S>) -> Self {
-        let lattice = space.axes().iter().all(crate::Axis::is_integer);
-        let count = space.cardinality().filter(|&count| lattice && count < 9e15);
+    pub(super) fn new<S: Real>(space: &Space<S>, unprobed: bool) -> Self {
+        let count = space.cardinality();
+        let count = count.filter(|&count| space.is_lattice() && count < 9e15);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -52,6 +54,7 @@ impl Scan {
         )]
         Self {
             points: count.map_or(0, |count| count as u64),
+            unprobed,
             ..Self::default()
         }
     }
@@ -86,7 +89,11 @@ impl Scan {
         let (made, used) = (context.evaluations(), context.elapsed_share());
         let due = self.points <= SMALL || visited.is_dense() || self.search_is_stale(made, context.hits());
         self.alone = if let Some(planned) = context.evaluations_planned() {
-            let room = planned as f64 * (1.0 - reserve) - 1.0;
+            let room = if self.unprobed {
+                planned as f64
+            } else {
+                planned as f64 * (1.0 - reserve) - 1.0
+            };
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
             let (takes, left) = (rest * used / all.mean_cost(), (1.0 - used) * made as f64);
@@ -157,7 +164,7 @@ mod tests {
     fn every_point_comes_once_but_those_visited_before() {
         let space = Space::<f64>::lattice(2, 30).unwrap();
         for seed in 0..5 {
-            let (mut scan, mut rng) = (Scan::new(&space), SearchRng::new(seed));
+            let (mut scan, mut rng) = (Scan::new(&space, false), SearchRng::new(seed));
             let (mut visited, mut position) = (Visited::new(&space), [0.0; 2]);
             for _ in 0..300 {
                 rng.position(&space, &mut position);
@@ -185,7 +192,7 @@ mod tests {
         };
         // The search hits every `price` evaluations, the enumeration every 100.
         for (price, expected) in [(10, false), (1000, true)] {
-            let (mut scan, mut all) = (Scan::new(&space), Credit::default());
+            let (mut scan, mut all) = (Scan::new(&space, false), Credit::default());
             let mut alone = false;
             for n in 0..100_000 {
                 all.count(n % price == 0, 1.0);
@@ -208,7 +215,7 @@ mod tests {
             Space::<f64>::cube(2, 0.0, 1.0).unwrap(),
             Space::lattice(12, 10_000).unwrap(),
         ] {
-            assert!(Scan::new(&space).points == 0 && !Scan::new(&space).is_over());
+            assert!(Scan::new(&space, false).points == 0 && !Scan::new(&space, false).is_over());
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Which lattice points have been proposed: a bounded memory that forgets before it grows too large.
 
 use crate::scalar::Real;
-use crate::space::Space;
+use crate::space::{AxisKind, Space};
 
 /// Tables that the points are spread over. Each grows by itself, and moves few points when it does: one table for all would
 /// stop the search for tens of milliseconds when it grows at a million points.
@@ -118,11 +118,7 @@ impl Visited {
         Self {
             bits: vec![0; few.map_or(0, |count| count.div_ceil(64) as usize)],
             shards: vec![shard; if few.is_some() { 0 } else { SHARDS }],
-            cells: space
-                .axes()
-                .iter()
-                .map(|axis| axis.width().f64() as u64)
-                .collect(),
+            cells: space.axes().iter().map(|axis| axis.choices() as u64).collect(),
             points: 0,
             forgot: false,
             cardinality,
@@ -191,8 +187,14 @@ impl Visited {
             clippy::cast_sign_loss,
             reason = "a cell of an axis is a whole number"
         )]
-        let cell = |(axis, &x): (&crate::Axis<S>, &S)| (axis.value(x) - axis.lower()).f64() as u64;
-        let cells = space.axes().iter().zip(position).map(cell);
+        let cell = |(j, (axis, &x)): (usize, (&crate::Axis<S>, &S))| {
+            if axis.kind() == AxisKind::Place {
+                axis.inversions(&position[j..]) as u64
+            } else {
+                (axis.value(x) - axis.lower()).f64() as u64
+            }
+        };
+        let cells = space.axes().iter().zip(position).enumerate().map(cell);
         if self.cardinality.is_some() {
             let cells = cells.zip(&self.cells);
             cells.fold(0, |key, (cell, count)| {
@@ -211,10 +213,22 @@ impl Visited {
         reason = "as in `key`"
     )]
     pub(super) fn point<S: Real>(space: &Space<S>, mut index: u64, position: &mut [S]) {
-        for (axis, x) in space.axes().iter().zip(position).rev() {
-            let count = axis.width().f64() as u64;
-            *x = axis.position(axis.lower() + S::of((index % count) as f64));
+        let axes = space.axes();
+        for (j, axis) in axes.iter().enumerate().rev() {
+            let count = axis.choices() as u64;
+            let cell = S::of((index % count) as f64);
             index /= count;
+            if axis.kind() == AxisKind::Place {
+                position[j] = cell;
+                axis.insert_rank(&mut position[j..]);
+            } else {
+                position[j] = axis.position(axis.lower() + cell);
+            }
+        }
+        for (axis, x) in axes.iter().zip(position) {
+            if axis.kind() == AxisKind::Place {
+                *x = axis.key_of_rank(*x);
+            }
         }
     }
 }
@@ -271,6 +285,31 @@ mod tests {
             assert_eq!(visited.key(&space, &position), index);
         }
         assert!(visited.is_all());
+    }
+
+    /// The orders of a permutation are numbered among the integers beside it.
+    #[test]
+    fn the_order_of_the_lattice_covers_permutations() {
+        let axes = [Axis::integer(2, 4)].into_iter().chain(Axis::permutation(4));
+        let space =
+            Space::<f64>::new(axes.chain([Axis::categorical(2)]).chain(Axis::permutation(3))).unwrap();
+        assert_eq!(space.cardinality(), Some(864.0));
+        let (mut visited, mut all) = (Visited::new(&space), BTreeSet::new());
+        let (mut position, mut values) = ([0.0; 9], [0.0; 9]);
+        for index in 0..864 {
+            Visited::point(&space, index, &mut position);
+            assert!(space.contains(&position) && visited.insert(&space, &position));
+            assert_eq!(visited.key(&space, &position), index);
+            space.values(&position, &mut values);
+            space.check_values(&values).unwrap();
+            assert!(all.insert(values.map(|x| x as u8)));
+        }
+        assert!(visited.is_all());
+        // Equal keys are ranked in their order.
+        assert_eq!(
+            visited.key(&space, &[2.0, 0.5, 0.5, 0.5, 0.5, 0.0, 0.1, 0.1, 0.1]),
+            0
+        );
     }
 
     #[test]
