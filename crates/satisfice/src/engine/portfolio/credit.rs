@@ -7,6 +7,9 @@ use crate::seed::SearchRng;
 
 /// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
 const MEMORY: f64 = 12.0;
+/// Where time alone is limited, so many evaluations are remembered at least: where many points hit, the memory above is a single turn, and
+/// sources change at random.
+const MEMORY_WHERE_TIMED: f64 = 256.0;
 
 /// Prior of an arm, in hits. Its prior evaluations are what the whole search has lately needed for as many hits: an untried arm
 /// is expected to be as good as the others.
@@ -33,6 +36,8 @@ pub(super) struct Credit {
     total_hits: u64,
     total_evaluations: u64,
     total_cost: f64,
+    /// Evaluations that are remembered at least.
+    remembered: f64,
 }
 
 /// How many evaluations a source without a hit may take.
@@ -79,12 +84,21 @@ impl Trial {
 }
 
 impl Credit {
+    /// Without any yield yet. `timed`: whether time alone is limited.
+    pub(super) fn new(timed: bool) -> Self {
+        Self {
+            remembered: if timed { MEMORY_WHERE_TIMED } else { 0.0 },
+            ..Self::default()
+        }
+    }
+
     /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to
     /// the hits expected of it. Where hits are rare, little else tells the sources apart, so misses are not forgotten.
     #[inline]
     pub(super) fn count(&mut self, hit: bool, cost: f64) {
         if self.hits > 0.0 {
-            let keep = 1.0 - (cost * self.hits / self.evaluations / MEMORY).min(0.5);
+            let fade = (cost * self.hits / self.evaluations / MEMORY).min(cost / self.remembered);
+            let keep = 1.0 - fade.min(0.5);
             self.hits *= keep;
             self.evaluations *= keep;
         }
@@ -246,6 +260,18 @@ mod tests {
             arm.count(false, 1.0);
         }
         assert!(arm.hits / arm.evaluations < 0.02, "{arm:?}");
+    }
+
+    /// Where every third point hits, twelve hits are 36 evaluations: where time alone is limited, 256 are remembered.
+    #[test]
+    fn many_hits_are_not_forgotten_within_a_turn() {
+        let remembered = |timed: bool| {
+            let mut arm = Credit::new(timed);
+            (0..5000).for_each(|i| arm.count(i % 3 == 0, 1.0));
+            arm.evaluations
+        };
+        assert!((30.0..42.0).contains(&remembered(false)));
+        assert!((250.0..262.0).contains(&remembered(true)));
     }
 
     /// Ten hits and a hundred evaluations follow each hit in a new place.

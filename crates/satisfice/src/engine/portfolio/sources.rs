@@ -164,8 +164,8 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.climbers.begin(context);
         self.descents.clear();
         self.next_descent = 0;
-        self.arms = [Credit::default(); ARMS];
-        self.whole = Credit::default();
+        self.whole = Credit::new(context.is_timed());
+        self.arms = [self.whole; ARMS];
         self.pace = Pace::new(context.is_timed());
         self.patches = Patches::default();
         self.drought = Drought::default();
