@@ -32,9 +32,7 @@ use crate::state::{Part, Reader, State};
 /// competes by its yield.
 const MODELLED: u64 = MOST_PROPOSALS;
 const EXPENSIVE: f64 = 5e-3;
-const MODEL_AXES: usize = 20;
-/// Seconds of a proposal of the model.
-const PROPOSAL: f64 = 5e-4;
+const MODEL_AXES: usize = 50;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
 /// about half as long.
 const QUADRATIC: f64 = 2e-5;
@@ -131,6 +129,7 @@ impl<S: Real> Guest<S> {
             ),
             GuestKind::Niching => Member::Other(Niching::default().build()),
             GuestKind::Model => Member::Model(Box::new(ModelledSearch::new(Surrogate {
+                batch: sizes.proposals_at_once,
                 candidates: sizes.candidates,
                 ..Surrogate::default()
             }))),
@@ -156,7 +155,7 @@ impl<S: Real> Guests<S> {
     pub(super) fn new() -> Self {
         Self {
             guests: Vec::new(),
-            sizes: Sizes::new(1, None),
+            sizes: Sizes::default(),
             continuous: false,
             components: false,
             part: Batch::new(1),
@@ -175,7 +174,7 @@ impl<S: Real> Guests<S> {
         self.continuous = all && is_smooth(context);
         self.components = context.component_count() > 0;
         self.part = Batch::new(space.dimension());
-        self.sizes = Sizes::new(context.parallel(), context.evaluations_planned());
+        self.sizes = Sizes::new(context);
         self.guests.clear();
         for kind in [
             GuestKind::Cma,
@@ -193,7 +192,11 @@ impl<S: Real> Guests<S> {
                 GuestKind::Flood => continuous,
                 GuestKind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
                 GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
-                GuestKind::Model => self.has_room_for_model(context),
+                GuestKind::Model => {
+                    context.evaluations_planned().is_some()
+                        && self.sizes.proposals > 0
+                        && space.dimension() <= MODEL_AXES
+                }
             };
             if is_of_use {
                 self.open(kind, context);
@@ -201,19 +204,9 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// Whether evaluations are limited, the model may propose, and a limit of time, if there is one, leaves time for that.
-    fn has_room_for_model(&self, context: &dyn Context<S>) -> bool {
-        let proposals = context
-            .evaluations_planned()
-            .map_or(0, |planned| planned.min(self.sizes.proposals));
-        let seconds = proposals as f64 * PROPOSAL;
-        proposals > 0
-            && context.space().dimension() <= MODEL_AXES
-            && context.seconds_planned().is_none_or(|limit| seconds <= limit)
-    }
-
     fn open(&mut self, kind: GuestKind, context: &dyn Context<S>) {
         let mut guest = Guest::new(kind, self.sizes);
+        guest.arm = Credit::new(context.is_timed());
         guest.engine.begin(context);
         self.guests.push(guest);
     }

@@ -66,12 +66,14 @@ engine_settings! {
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or F takes more than
     ///   20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
-    /// - a Gaussian process on at most 20 axes, where evaluations are limited, or where F takes more than 5 ms and only time is limited: up to
-    ///   1,000 proposals, of half a millisecond. Beyond 2,000 planned evaluations they become fewer, so that thinking does not: 250 of
-    ///   4,000, none from 6,400 on. Where F takes less than that, and the time matters more than the number of evaluations, limit the time,
-    ///   too: if the proposals would take longer than the limit, the model is not used;
+    /// - a Gaussian process on at most 50 axes, where evaluations are limited, or where F takes more than 5 ms and only time is limited: up to
+    ///   1,000 proposals, of half a millisecond to a few. Unless the problem tells the components of F, they become fewer beyond 2,000 planned
+    ///   evaluations, so that thinking does not: 250 of 4,000, none from 6,400 on. Where F takes less than that, and the time matters more than
+    ///   the number of evaluations, limit the time, too: if the proposals would take longer than the limit, the model is not used. Of
+    ///   evaluations that go on at once it proposes half;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
-    /// - the lattice point by point, where the budget has room for it: then the result is proved complete, too. A lattice of at most
+    /// - the points of a lattice, or the orders of a permutation, one by one, where the budget has room for all: then the result is proved
+    ///   complete, too, and where there is no room for probes beside them, none are made. A lattice of at most
     ///   4,096 points is enumerated at once, a larger one once it is half visited, or the search finds no more than that would, or under a limit
     ///   of evaluations once it would no longer fit later;
     /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
@@ -89,7 +91,8 @@ engine_settings! {
     /// others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the [components](crate::Components)
     /// of F, the model comes first. Elsewhere on continuous axes the model and descents, by quadratic models and without, look for the first hit
     /// together with up to half of the evaluations: the more a source has lowered the least F, the more it is asked; not so where most values of F
-    /// repeat others: of a step function swarms and uniform points know more than descents and the model. On continuous axes, when no source has found a hit for
+    /// repeat others: of a step function swarms and uniform points know more than descents, and more than the model until it is known to
+    /// predict F. On continuous axes, when no source has found a hit for
     /// 400 evaluations an axis and 2,000 more, and for 200 a hit, every other choice is niching's until one does. All sources learn the hits of the
     /// others. No parameter depends on the problem.
     ///

@@ -1,13 +1,20 @@
 //! How large the engines are, by the budget.
 
+use crate::context::Context;
+use crate::scalar::Real;
+
 /// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
 const CANDIDATES: (usize, usize) = (256, 1024);
-const POINTS_OF_LEAST: u64 = 300;
-/// Proposals of the model, at most; fewer where more than `PLANNED` evaluations are planned, so that thinking stays short beside them, and none
-/// where there would be less than `FEWEST_PROPOSALS`.
+const POINTS_OF_LEAST: f64 = 300.0;
+/// Proposals of the model, at most; where the problem does not tell the components of F, fewer where more than `PLANNED` evaluations are
+/// planned, so that thinking stays short beside them; and none where there would be less than `FEWEST_PROPOSALS`.
 pub(super) const MOST_PROPOSALS: u64 = 1_000;
 const PLANNED: u64 = 2_000;
 const FEWEST_PROPOSALS: u64 = 100;
+/// Proposals of the model in one batch: half of the evaluations that go on at once, and so many at most.
+const MOST_PROPOSALS_AT_ONCE: usize = 32;
+/// Seconds of a proposal of the model.
+const PROPOSAL: f64 = 5e-4;
 /// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
 const MOST_SEARCHES: usize = 64;
 /// Regions that are split at once: one for so many evaluations planned, and so many at most.
@@ -21,26 +28,46 @@ pub(super) struct Sizes {
     pub(super) searches: usize,
     /// Candidates of the model.
     pub(super) candidates: usize,
-    /// Proposals of the model, at most.
+    /// Proposals of the model, at most, and in one batch.
     pub(super) proposals: u64,
+    pub(super) proposals_at_once: usize,
     /// Regions that are split at once.
     pub(super) regions: usize,
 }
 
+impl Default for Sizes {
+    fn default() -> Self {
+        Self::of(1, None)
+    }
+}
+
 impl Sizes {
+    pub(super) fn new<S: Real>(context: &dyn Context<S>) -> Self {
+        let (planned, components) = (context.evaluations_planned(), context.component_count());
+        let sizes = Self::of(context.parallel(), planned);
+        let proposals = planned.map_or(MOST_PROPOSALS, |planned| {
+            proposals(planned, components, context.seconds_planned())
+        });
+        Self { proposals, ..sizes }
+    }
+
     /// For so many evaluations at once, and so many in all, if that is known.
-    pub(super) fn new(parallel: usize, planned: Option<u64>) -> Self {
+    fn of(parallel: usize, planned: Option<u64>) -> Self {
         let (least, most) = CANDIDATES;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "positive, and a conversion from float saturates"
+        )]
         let candidates = planned.map_or(least, |planned| {
-            let more = (POINTS_OF_LEAST / planned.clamp(1, POINTS_OF_LEAST)).pow(2);
-            least
-                .saturating_mul(usize::try_from(more).unwrap_or(most))
-                .min(most)
+            let more = (POINTS_OF_LEAST / planned.max(1) as f64).powi(2);
+            ((least as f64 * more) as usize).clamp(least, most)
         });
         Self {
             searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
             candidates,
-            proposals: planned.map_or(MOST_PROPOSALS, proposals),
+            proposals: MOST_PROPOSALS,
+            proposals_at_once: parallel.div_ceil(2).clamp(1, MOST_PROPOSALS_AT_ONCE),
             regions: planned.map_or(MOST_REGIONS, |planned| {
                 usize::try_from(planned / EVALUATIONS_OF_A_REGION)
                     .unwrap_or(MOST_REGIONS)
@@ -53,15 +80,26 @@ impl Sizes {
         (1..=MOST_SEARCHES).contains(&self.searches)
             && (CANDIDATES.0..=CANDIDATES.1).contains(&self.candidates)
             && self.proposals <= MOST_PROPOSALS
+            && (1..=MOST_PROPOSALS_AT_ONCE).contains(&self.proposals_at_once)
             && (1..=MOST_REGIONS).contains(&self.regions)
     }
 }
 
-/// How many proposals the model may make where so many evaluations are planned: in inverse proportion to their square, beyond `PLANNED`.
-fn proposals(planned: u64) -> u64 {
-    let planned = planned.max(PLANNED);
-    let most = MOST_PROPOSALS * PLANNED / planned * PLANNED / planned;
-    if most < FEWEST_PROPOSALS { 0 } else { most }
+/// How many proposals the model may make where so many evaluations are planned, in so many seconds, if time is limited, too: none if they
+/// would take longer. Without components in inverse proportion to the square of the evaluations, beyond `PLANNED`.
+fn proposals(planned: u64, components: usize, seconds: Option<f64>) -> u64 {
+    let most = if components > 0 {
+        MOST_PROPOSALS
+    } else {
+        let planned = planned.max(PLANNED);
+        MOST_PROPOSALS * PLANNED / planned * PLANNED / planned
+    };
+    let takes = most.min(planned) as f64 * PROPOSAL;
+    if most < FEWEST_PROPOSALS || seconds.is_some_and(|seconds| takes > seconds) {
+        0
+    } else {
+        most
+    }
 }
 
 #[cfg(test)]
@@ -73,13 +111,14 @@ mod tests {
     #[test]
     fn short_searches_think_more_and_ask_for_less_at_once() {
         let sizes = |parallel, planned| {
-            let sizes = Sizes::new(parallel, planned);
+            let sizes = Sizes::of(parallel, planned);
             assert!(sizes.are_possible(), "{sizes:?}");
             [sizes.searches, sizes.candidates, sizes.regions]
         };
         assert_eq!(sizes(1, None), [1, 256, 8]);
         assert_eq!(sizes(1, Some(10_000)), [1, 256, 8]);
         assert_eq!(sizes(1, Some(300)), [1, 256, 4]);
+        assert_eq!(sizes(1, Some(200)), [1, 576, 3]);
         assert_eq!(sizes(1, Some(150)), [1, 1024, 2]);
         assert_eq!(sizes(1, Some(50)), [1, 1024, 1]);
         assert_eq!(sizes(1, Some(0)), [1, 1024, 1]);
@@ -89,12 +128,18 @@ mod tests {
 
     #[test]
     fn the_model_proposes_less_in_long_searches() {
-        let proposals = |planned| Sizes::new(1, planned).proposals;
-        assert_eq!(proposals(None), 1_000);
-        assert_eq!([0, 1, 2_000].map(|planned| proposals(Some(planned))), [1_000; 3]);
-        assert_eq!(
-            [4_000, 6_000, 7_000, u64::MAX].map(|planned| proposals(Some(planned))),
-            [250, 111, 0, 0]
-        );
+        let plain = |planned| proposals(planned, 0, None);
+        assert_eq!([0, 1, 2_000].map(plain), [1_000; 3]);
+        assert_eq!([4_000, 6_000, 7_000, u64::MAX].map(plain), [250, 111, 0, 0]);
+        // Of components it knows too much to be left out.
+        assert_eq!(proposals(30_000, 3, None), 1_000);
+    }
+
+    #[test]
+    fn the_model_keeps_out_where_time_is_short() {
+        let within = |planned, components, seconds| proposals(planned, components, Some(seconds));
+        assert_eq!(within(1_000, 0, 0.51), 1_000);
+        assert_eq!(within(50, 0, 0.03), 1_000);
+        assert_eq!([within(1_000, 0, 0.49), within(50, 3, 0.02)], [0; 2]);
     }
 }

@@ -30,8 +30,9 @@ impl<S: Real> Guest<S> {
             (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
                 None | Some(true) if all.evaluations() >= MODELLED => is_worth_trying.then_some(1.0),
                 None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
-                None | Some(true) if !steps => Some(MODEL_WEIGHT),
-                _ => self.arm.is_within(all, trial).then_some(1.0),
+                Some(true) => Some(MODEL_WEIGHT),
+                None => Some(if steps { 1.0 } else { MODEL_WEIGHT }),
+                Some(false) => self.arm.is_within(all, trial).then_some(1.0),
             },
             // Niching is not drawn by its yield.
             (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,
