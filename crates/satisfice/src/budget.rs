@@ -6,9 +6,6 @@ use crate::error::Error;
 
 pub use crate::cancel::Cancel;
 
-/// The most evaluations at once.
-const MOST_PARALLEL: usize = 65_536;
-
 /// The limits of a time slice. The first limit reached ends it.
 ///
 /// ```
@@ -39,6 +36,9 @@ pub struct Budget {
 }
 
 impl Budget {
+    /// The most evaluations at once.
+    pub const MOST_PARALLEL: usize = 65_536;
+
     /// A budget of wall time.
     #[must_use]
     pub fn time(time: Duration) -> Self {
@@ -186,7 +186,7 @@ impl Budget {
         }
         if self
             .parallel
-            .is_some_and(|parallel| !(1..=MOST_PARALLEL).contains(&parallel))
+            .is_some_and(|parallel| !(1..=Self::MOST_PARALLEL).contains(&parallel))
         {
             return Err(Error::Budget(
                 "evaluations at once (`parallel`) are from 1 to 65536",

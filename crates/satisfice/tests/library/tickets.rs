@@ -435,3 +435,19 @@ fn tickets_that_end_after_their_time_say_so() {
         }
     }
 }
+
+/// More than memory holds may be asked for: a number of any size is only an upper limit.
+#[test]
+fn tickets_that_are_open_are_bounded() {
+    for count in [usize::MAX, 100_000_000] {
+        let space = Space::cube(2, 0.0, 1.0).unwrap();
+        let search = Search::named("random").unwrap().seed(1);
+        let problem = evaluated_elsewhere(space, 0.5);
+        let mut tickets = Tickets::eager(search, problem, &Budget::evaluations(u64::MAX)).unwrap();
+        let first = tickets.ask(count);
+        assert_eq!((first.len(), tickets.open()), (65_536, 65_536));
+        assert!(tickets.ask(count).is_empty());
+        tickets.tell(first[7].ticket, 1.0).unwrap();
+        assert_eq!(tickets.ask(count).len(), 1);
+    }
+}

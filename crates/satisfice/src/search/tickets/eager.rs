@@ -25,6 +25,7 @@ use crate::view::View;
 
 use super::Told;
 use super::lane::{EagerLane, Of, Open, one};
+use super::out::PointsOut;
 
 /// So many candidates in a row that are out already: others have to be answered first.
 const FRUITLESS: usize = 100;
@@ -34,6 +35,7 @@ pub(super) struct Eager<S, T> {
     pub(super) slice: Slice<S, T>,
     pub(super) lanes: Vec<EagerLane<S>>,
     pub(super) open: BTreeMap<u64, Open<S, T>>,
+    pub(super) points_out: PointsOut,
     /// Probes that are to be given out, and how many are out.
     pub(super) probes: VecDeque<Vec<S>>,
     pub(super) probes_out: usize,
@@ -67,6 +69,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             slice,
             lanes: Vec::new(),
             open: BTreeMap::new(),
+            points_out: PointsOut::default(),
             probes: VecDeque::new(),
             probes_out: 0,
             given: Vec::new(),
@@ -110,7 +113,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             if deletes && self.slice.ledger.archive.contains(&solution) {
                 self.slice.ledger.settle_deleted();
                 self.route(of, &position, Outcome::Deleted, problem, &search.previous);
-            } else if self.is_out(problem, &position) {
+            } else if self
+                .points_out
+                .contains(problem.space().axes(), &position, &self.open)
+            {
                 fruitless += 1;
                 self.route(of, &position, Outcome::NotEvaluated, problem, &search.previous);
             } else {
@@ -123,27 +129,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                     position,
                     of,
                 };
+                self.points_out.add(problem.space().axes(), &open.position);
                 self.open.insert(number, open);
                 return Some(solution);
             }
         }
         None
-    }
-
-    /// Whether a point with the same values is out.
-    fn is_out<P>(&self, problem: &P, position: &[S]) -> bool
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
-        let axes = problem.space().axes();
-        self.open.values().any(|open| {
-            let pairs = open.position.iter().zip(position).zip(axes);
-            open.position.len() == position.len()
-                && !position.is_empty()
-                && pairs
-                    .into_iter()
-                    .all(|((&a, &b), axis)| axis.value(a) == axis.value(b))
-        })
     }
 
     fn deletes(&self, of: Of) -> bool {
@@ -380,6 +371,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             position,
             of,
         } = self.open.remove(&number)?;
+        self.points_out.remove(problem.space().axes(), &position);
         match of {
             Of::Probe => self.probes_out -= 1,
             Of::Lane { lane, batch, .. } => {

@@ -5,6 +5,7 @@ mod eager;
 mod lane;
 mod log;
 mod ordered;
+mod out;
 mod saved;
 mod ticket;
 
@@ -25,6 +26,9 @@ use ordered::Ordered;
 pub(super) use contents::SavedTickets;
 pub use log::{TicketEvent, TicketLog};
 pub use ticket::{Asked, Order, Ticket, TicketCounts, Told};
+
+/// Coordinates of all open points: half a gigabyte of numbers, and there are a few copies.
+const MOST_COORDINATES: usize = 1 << 26;
 
 /// A slice whose evaluations happen elsewhere: on other machines, in a simulator, in another language. It gives out solutions
 /// under tickets ([`ask`](Tickets::ask)) and takes their fitness in any order ([`tell`](Tickets::tell)).
@@ -177,6 +181,8 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// At most `n` solutions to evaluate. Fewer where others have to be answered first or where the budget is all given out;
     /// none while none is [open](Tickets::open) means that the slice is over.
     ///
+    /// In [eager](Tickets::eager) order at most 65,536 tickets are open at a time, fewer in a space of more than 1,024 axes.
+    ///
     /// After [`resume`](Tickets::resume), the tickets that were open come first, under their numbers.
     pub fn ask(&mut self, n: usize) -> Vec<Asked<P::Solution>> {
         let mut asked = Vec::new();
@@ -195,9 +201,16 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         if self.waits || repeated == n {
             return asked;
         }
+        let mut wanted = n - repeated;
         if let Inner::Eager(eager) = &mut self.state {
-            eager.slice.ledger.at_once = eager.open() + n - repeated;
+            let room = most_open(self.problem.space().dimension()).saturating_sub(eager.open());
+            wanted = wanted.min(room);
+            if wanted == 0 {
+                return asked;
+            }
+            eager.slice.ledger.at_once = eager.open() + wanted;
         }
+        let n = repeated + wanted;
         while asked.len() < n {
             let (search, problem) = (&mut self.search, &*self.problem);
             let solution = match &mut self.state {
@@ -213,7 +226,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         self.counts.asked += given;
         self.waits = asked.len() < n;
         self.log.push(TicketEvent::Asked {
-            wanted: (n - repeated) as u64,
+            wanted: wanted as u64,
             given,
         });
         asked
@@ -444,6 +457,11 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
             Inner::Eager(eager) => &eager.slice,
         }
     }
+}
+
+/// So many tickets are open at most: as many as evaluations can go on at once, and so few that memory holds their points.
+fn most_open(dimension: usize) -> usize {
+    (MOST_COORDINATES / dimension.max(1)).clamp(1, Budget::MOST_PARALLEL)
 }
 
 /// Position of a solution, empty if the problem does not encode it.

@@ -190,6 +190,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             slice,
             lanes: restored,
             open: tickets,
+            points_out: super::out::PointsOut::default(),
             probes: reader.read()?,
             probes_out: reader.read()?,
             given: reader.read()?,
