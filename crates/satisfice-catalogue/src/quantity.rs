@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use satisfice::Budget;
+
 /// Units of time, in seconds.
 const UNITS: [(&str, f64); 9] = [
     ("ns", 1e-9),
@@ -34,9 +36,11 @@ pub fn time(text: &str) -> Result<Duration, String> {
     let Ok(number) = number.parse::<f64>() else {
         return Err("a time is a number with a unit, such as 100ms, 1.5s or 3min".to_owned());
     };
-    if unit.is_empty() {
+    if unit.is_empty() && number > 0.0 {
         return Err(format!("a time needs a unit: write {number}ms or {number}s"));
     }
+    // No unit makes a time of a number that is not positive.
+    let unit = if unit.is_empty() { "s" } else { unit };
     let Some((_, seconds)) = UNITS.iter().find(|(name, _)| *name == unit) else {
         return Err(format!("the unit `{unit}` is none of ns, us, ms, s, min, h, d"));
     };
@@ -88,12 +92,20 @@ pub fn seed(text: &str) -> Result<u64, String> {
 /// # Errors
 /// Any other text.
 pub fn threads(text: &str) -> Result<usize, String> {
-    match text.trim().parse() {
-        Ok(threads) if threads <= MOST_THREADS => Ok(threads),
-        _ => Err(format!(
-            "must be a whole number from 0 (all cores) to {MOST_THREADS}"
-        )),
+    checked_threads(text.trim().parse().unwrap_or(usize::MAX))
+}
+
+/// A number of threads that is no typing error, 0 for as many as there are cores.
+///
+/// # Errors
+/// More than 1024.
+pub fn checked_threads(threads: usize) -> Result<usize, String> {
+    if threads <= MOST_THREADS {
+        return Ok(threads);
     }
+    Err(format!(
+        "must be a whole number from 0 (all cores) to {MOST_THREADS}"
+    ))
 }
 
 /// A number of islands.
@@ -112,10 +124,11 @@ pub fn islands(text: &str) -> Result<usize, String> {
 /// # Errors
 /// Any other text.
 pub fn parallel(text: &str) -> Result<usize, String> {
-    match text.trim().parse() {
-        Ok(parallel) if parallel > 0 => Ok(parallel),
-        _ => Err("must be a whole number of at least 1".to_owned()),
-    }
+    let most = Budget::MOST_PARALLEL;
+    let number = count(text).ok().and_then(|number| usize::try_from(number).ok());
+    number
+        .filter(|number| *number <= most)
+        .ok_or_else(|| format!("must be a whole number from 1 to {most}"))
 }
 
 /// A number of edges, 0 included.
@@ -276,6 +289,8 @@ mod tests {
         for (text, says) in [
             ("100", "a time needs a unit: write 100ms or 100s"),
             ("0s", "at least 1ns"),
+            ("0", "at least 1ns"),
+            ("-1", "must be positive"),
             ("0.1ns", "at least 1ns"),
             ("-1s", "must be positive"),
             ("-0s", "at least 1ns"),
@@ -332,6 +347,17 @@ mod tests {
         }
         for text in ["0", "-1", "1.5", "1e-3", "NaN", "inf", "1e30", "many", ""] {
             assert!(count(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn evaluations_at_once_have_the_limit_of_a_budget() {
+        assert_eq!((parallel("8"), parallel("65536")), (Ok(8), Ok(65_536)));
+        for text in ["0", "65537", "1e12", "-1", "many"] {
+            assert_eq!(
+                parallel(text),
+                Err("must be a whole number from 1 to 65536".to_owned())
+            );
         }
     }
 
