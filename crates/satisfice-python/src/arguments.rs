@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 use satisfice::engine::ConfiguredEngine;
-use satisfice_catalogue::RunSpec;
+use satisfice_catalogue::{RunSpec, quantity};
 
 use crate::refused;
 
@@ -47,9 +47,15 @@ impl Run {
         spec.budget.parallel = self.parallel;
         spec.probes = self.probes;
         spec.islands = self.islands;
-        spec.threads = self.threads;
+        spec.threads = checked_threads(self.threads)?;
         spec.complete().map_err(refused)
     }
+}
+
+/// A number of threads, within the limit that the command has.
+pub(crate) fn checked_threads(threads: usize) -> PyResult<usize> {
+    quantity::checked_threads(threads)
+        .map_err(|allowed| refused(format!("threads = {threads} is not allowed: it {allowed}")))
 }
 
 /// The engine of a complete specification.

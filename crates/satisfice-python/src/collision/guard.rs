@@ -9,6 +9,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 
+use crate::arguments::checked_threads;
 use crate::refused;
 
 /// How often signals are looked for.
@@ -143,8 +144,14 @@ pub(super) fn pool(threads: usize) -> PyResult<Option<ThreadPool>> {
     if threads == 1 {
         return Ok(None);
     }
+    pool_of(threads).map(Some)
+}
+
+/// A pool of so many threads, 0 for one per core.
+pub(super) fn pool_of(threads: usize) -> PyResult<ThreadPool> {
+    let threads = checked_threads(threads)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map(Some).map_err(refused)
+    pool.map_err(|error| refused(format!("cannot start {threads} threads: {error}")))
 }
 
 #[expect(

@@ -9,7 +9,7 @@ use satisfice_collision::distance::PairKind;
 use satisfice_collision::scene::SharedMesh;
 use satisfice_collision::{Error, FeatureKind};
 
-use super::guard::Guard;
+use super::guard::{Guard, pool_of};
 use super::{Mesh, kind, points, rows};
 use crate::refused;
 
@@ -142,10 +142,7 @@ impl Step {
         let separation = Separation::new(delta).map_err(refused)?;
         let guard = Guard::new(time, None)?;
         // A step works on all threads of the pool that it finds itself in.
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(refused)?;
+        let pool = pool_of(threads)?;
         let (found, complete) = guard.run(py, Some(&pool), || {
             let bodies = self.lock();
             let hits = bodies.step.hits_until(kind, separation, &mut || guard.stops(0))?;
