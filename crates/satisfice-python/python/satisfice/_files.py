@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
+import secrets
+import stat
 import time as clock
 from collections.abc import Callable
 from pathlib import Path
@@ -14,23 +18,66 @@ _EVERY = 5.0
 
 
 def read(path: str | os.PathLike[str] | None) -> bytes | None:
-    """The content of a file; None if there is no such file."""
-    if path is None:
+    """The content of a file; None if there is no such file, and for a device or a pipe, which can only be written."""
+    if path is None or (os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)):
         return None
     try:
         return Path(path).read_bytes()
     except FileNotFoundError:
         return None
+    except OSError as error:
+        raise _named(error, "read", path) from None
 
 
 def write(path: str | os.PathLike[str], content: bytes) -> None:
-    """Replace a file once all is written."""
-    partial = f"{os.fspath(path)}.{os.getpid()}.partial"
-    with open(partial, "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(partial, path)
+    """Replace a file once all is written. A link is written through; a device or a pipe is written in place."""
+    try:
+        _write(os.fsdecode(path), content)
+    except OSError as error:
+        # The file that it names may be a temporary one, which means nothing to the user.
+        raise _named(error, "write", path) from None
+
+
+def _named(error: OSError, verb: str, path: str | os.PathLike[str]) -> OSError:
+    return type(error)(error.errno, f"cannot {verb} the search: {error.strerror}", os.fspath(path))
+
+
+def _write(path: str, content: bytes) -> None:
+    target = os.path.realpath(path)
+    try:
+        found = os.stat(target)
+    except FileNotFoundError:
+        _beside(target, content, mode=None)
+        return
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError(errno.EISDIR, "it is a folder: name a file in it")
+    if not stat.S_ISREG(found.st_mode):
+        with open(target, "wb") as file:
+            file.write(content)
+        return
+    if not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, "the file may not be written to")
+    _beside(target, content, stat.S_IMODE(found.st_mode))
+
+
+def _beside(target: str, content: bytes, mode: int | None) -> None:
+    """Write a file beside its place, and move it there when it is whole."""
+    folder, name = os.path.split(target)
+    # Not `tempfile`, whose files only their owner may read. A long name is cut: with an ending it would be too long.
+    partial = os.path.join(folder, f".{name[:40]}.{secrets.token_hex(4)}.partial")
+    file = open(partial, "xb")
+    try:
+        with file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        if mode is not None:
+            os.chmod(partial, mode)
+        os.replace(partial, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.remove(partial)
+        raise
 
 
 class Keeper:
