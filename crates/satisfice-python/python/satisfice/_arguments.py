@@ -8,9 +8,8 @@ import secrets
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from ._axes import Axes, as_list, is_number
+from ._checked import real, reals, seconds, whole, whole_or_none
 from ._names import texts
 
 
@@ -35,16 +34,16 @@ def run_arguments(
     return {
         "engine": engine,
         "options": texts(options or {}),
-        "seed": secrets.randbits(32) if seed is None else _whole("seed", seed, least=0),
-        "time": None if time is None else _real("time", time),
-        "evaluations": None if evaluations is None else _whole("evaluations", evaluations),
-        "hits": None if hits is None else _whole("hits", hits),
-        "patience": None if patience is None else _whole("patience", patience),
-        "slices": _whole("slices", slices),
-        "probes": None if probes is None else _real("probes", probes),
-        "islands": _whole("islands", islands),
-        "threads": _whole("threads", threads, least=0),
-        "parallel": None if parallel is None else _whole("parallel", parallel),
+        "seed": secrets.randbits(32) if seed is None else whole("seed", seed, least=0),
+        "time": seconds(time),
+        "evaluations": whole_or_none("evaluations", evaluations),
+        "hits": whole_or_none("hits", hits),
+        "patience": whole_or_none("patience", patience),
+        "slices": whole("slices", slices),
+        "probes": None if probes is None else real("probes", probes),
+        "islands": whole("islands", islands),
+        "threads": whole("threads", threads, least=0),
+        "parallel": whole_or_none("parallel", parallel),
     }
 
 
@@ -62,6 +61,7 @@ def question(
         raise ValueError("bounds is missing: give (lower, upper) for each axis")
     if delta is None:
         raise ValueError("delta is missing: a hit is a point with f(x) < delta")
+    delta = real("delta", delta)
     if math.isnan(delta):
         raise ValueError("delta is NaN: no value is below it")
     axes = Axes(bounds, **kinds)
@@ -69,12 +69,12 @@ def question(
         widths = None
     elif is_number(separation):
         # A radius says nothing about categories: different ones are different hits.
-        radius = _real("separation", separation)
+        radius = real("separation", separation)
         if not radius > 0:
             raise ValueError(f"separation = {radius} is not allowed: a positive number, or none for exact coordinates")
         widths = [0.0 if axis in axes.exact else radius for axis in range(len(axes))]
     else:
-        widths = [float(width) for width in as_list(separation)]
+        widths = [real("separation", width) for width in as_list(separation)]
     parameters: dict[str, Any] = {"function": name, **axes.parameters()}
     if widths is not None:
         parameters["separation"] = widths
@@ -83,12 +83,12 @@ def question(
         parameters["x0"] = starts
     if callable(components):
         raise TypeError("components is how many there are: let f return (value, components)")
-    count = 0 if components is None else _whole("components", components)
+    count = 0 if components is None else whole("components", components)
     if count:
         parameters["components"] = count
     return {
         "axes": axes.entries(),
-        "delta": float(delta),
+        "delta": delta,
         "separation": widths,
         "components": count,
         "starts": starts,
@@ -100,7 +100,7 @@ def question(
 def _starts(x0: Any, dimension: int) -> list[list[float]]:
     if x0 is None:
         return []
-    points = np.asarray(x0, dtype=np.float64)
+    points = reals("x0", x0)
     shape = points.shape
     points = points.reshape(1, -1) if points.ndim == 1 else points
     if points.ndim != 2 or points.shape[1] != dimension:
@@ -110,22 +110,3 @@ def _starts(x0: Any, dimension: int) -> list[list[float]]:
         if not all(map(math.isfinite, start)):
             raise ValueError(f"start point {index} is not finite: {start}")
     return starts
-
-
-def _real(name: str, value: Any) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a number, not {value!r}") from None
-
-
-def _whole(name: str, value: Any, least: int = 1) -> int:
-    if isinstance(value, float) and value.is_integer():
-        value = int(value)  # 1e6
-    try:
-        number = value.__index__()
-    except AttributeError:
-        raise TypeError(f"{name} must be a whole number, not {value!r}") from None
-    if not least <= number < 2**64:
-        raise ValueError(f"{name} = {number} is not allowed: a whole number from {least} to 2**64 - 1")
-    return int(number)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from . import _files, _satisfice
 from ._arguments import question, run_arguments
+from ._checked import exceptions, processes
 from ._search import Search
 
 
@@ -107,7 +108,7 @@ def find(
     islands : int, default 1
         The number of engines side by side that share their hits: after 256 evaluations of each, then 512, then every 1,024.
     threads : int, default 1
-        For a problem of the catalogue: the threads that evaluate, 0 for one per core. It does not change the report.
+        For a problem of the catalogue: the threads that evaluate, 0 for one per core, at most 1,024. It does not change the report.
     parallel : int, optional
         How many evaluations can go on at once, from 1 to 65,536: the engine proposes at least so many points at a time. One that
         proposes fewer learns from each value before the next point. It is part of the search, like a seed: the report depends on
@@ -192,6 +193,10 @@ def find(
     saved = _files.read(checkpoint)
     if seed is None and saved is not None:
         seed = _satisfice.saved_seed(saved)
+    if isinstance(workers, int):
+        workers = processes("workers", workers)
+    if isinstance(executor, int):
+        executor = processes("executor", executor)
     if executor is not None:
         if not _is_one(workers):
             raise ValueError("workers evaluate, and an executor runs islands: give one of them")
@@ -239,7 +244,7 @@ def find(
     for name, value, default in [("threads", threads, 1), ("slices", slices, 1), ("reference", reference, False)]:
         if value != default:
             raise ValueError(f"{name} applies to problems of the catalogue only; a function is called on the calling thread")
-    catch = catch if isinstance(catch, tuple) else (catch,)
+    catch = exceptions(catch)
     asked = question(
         _name(f),
         bounds,

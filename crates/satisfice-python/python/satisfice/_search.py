@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _satisfice
 from ._arguments import question, run_arguments
+from ._checked import exceptions, processes, reals, seconds, whole
 from ._drive import Drive
 from ._files import Keeper, write
 from ._workers import ExecutorLike, Guarded, Own, check_pickle, shaped
@@ -134,9 +135,10 @@ class Search:
         """At most `n` points to evaluate.
 
         Fewer if others have to be answered first or if the budget is given out; none while nothing is `pending` means that
-        the search is over. After `load`, points that were pending come first, under their tickets.
+        the search is over. Unless `ordered`, at most 65,536 points are pending at a time, fewer with more than 1,024 axes.
+        After `load`, points that were pending come first, under their tickets.
         """
-        tickets, x = self._search.ask(n)
+        tickets, x = self._search.ask(whole("n", n, least=0))
         return Batch(x, tickets)
 
     def tell(self, tickets: ArrayLike, values: ArrayLike, components: ArrayLike | None = None) -> None:
@@ -161,7 +163,7 @@ class Search:
         """Enter values, shape (m,), at points, shape (m, d), that are known from elsewhere, with their components if the search has some.
         They use up no budget."""
         self._search.inform(
-            np.ascontiguousarray(np.atleast_2d(x), dtype=np.float64), _numbers(values), _rows(components)
+            np.atleast_2d(reals("x", x)), _numbers(values), _rows(components)
         )
 
     @property
@@ -186,7 +188,8 @@ class Search:
         return self._search.report()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the search to a file, from which `load` continues it. It replaces the file when all is written."""
+        """Write the search to a file, from which `load` continues it. It replaces the file when all is written; a link is written
+        through, a device or a pipe in place."""
         write(path, self._search.save())
 
     @classmethod
@@ -256,8 +259,13 @@ class Search:
         KeyboardInterrupt, or an exception of `f` or of the executor
             What was found until then is its attribute ``report``. The search can go on: what was out is pending.
         """
-        catch = catch if isinstance(catch, tuple) else (catch,)
-        deadline = math.inf if time is None else clock.monotonic() + float(time)
+        catch = exceptions(catch)
+        if isinstance(workers, int):
+            workers = processes("workers", workers)
+        if in_flight is not None:
+            in_flight = whole("in_flight", in_flight)
+        time = seconds(time)
+        deadline = math.inf if time is None else clock.monotonic() + time
         deadline = min(deadline, self._deadline)
         keeper = Keeper(checkpoint, self._search.save)
         try:
@@ -329,11 +337,11 @@ class Search:
 
 
 def _numbers(values: ArrayLike) -> NDArray[np.float64]:
-    return np.ascontiguousarray(np.atleast_1d(values), dtype=np.float64)
+    return np.atleast_1d(reals("values", values))
 
 
 def _rows(components: ArrayLike | None) -> NDArray[np.float64] | None:
-    return None if components is None else np.ascontiguousarray(np.atleast_2d(components), dtype=np.float64)
+    return None if components is None else np.atleast_2d(reals("components", components))
 
 
 def _tickets(value: ArrayLike) -> NDArray[np.uint64]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._checked import reals
 from .._satisfice import Mesh
 
 
@@ -46,18 +47,19 @@ def mesh(value: Any, faces: Any = None, edges: Any = None) -> Mesh:
 
 
 def vertices_of(value: Any) -> NDArray[np.float64]:
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"no mesh: {type(value).__name__} has no vertices and faces, and is no array of shape (n, 3)") from None
+    if not hasattr(value, "__len__") or isinstance(value, (str, bytes)):
+        raise ValueError(f"no mesh: {type(value).__name__} has no vertices and faces, and is no array of shape (n, 3)")
+    array = reals("vertices", value)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"vertices have shape {array.shape}: they need shape (n, 3)")
-    return np.ascontiguousarray(array)
+    return array
 
 
 def indices_of(name: str, value: Any, corners: int) -> NDArray[np.int64] | None:
     if value is None:
         return None
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name} must have no masked entries: leave them out, or fill them")
     array = np.asarray(value)
     if array.size == 0:
         return np.empty((0, corners), np.int64)
@@ -72,7 +74,7 @@ def pose_of(transform: Any) -> tuple[tuple[float, ...], tuple[float, ...]] | Non
     """A rotation, as a quaternion, and a translation."""
     if transform is None:
         return None
-    array = np.asarray(transform, dtype=np.float64)
+    array = reals("a transform", transform)
     if array.shape == (3,):
         return (1.0, 0.0, 0.0, 0.0), tuple(array.tolist())
     if array.shape != (4, 4):
@@ -101,8 +103,8 @@ def _quaternion(r: NDArray[np.float64]) -> tuple[float, ...]:
     return tuple(part / length for part in q)
 
 
-def point_of(value: ArrayLike) -> tuple[float, ...]:
-    array = np.asarray(value, dtype=np.float64)
+def point_of(name: str, value: ArrayLike) -> tuple[float, ...]:
+    array = reals(name, value)
     if array.shape != (3,):
-        raise ValueError(f"a point has shape {array.shape}: it needs shape (3,)")
+        raise ValueError(f"{name} has shape {array.shape}: a point needs shape (3,)")
     return tuple(array.tolist())

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _satisfice
+from .._checked import real, seconds, whole
 from ._mesh import mesh, vertices_of
 
 
@@ -79,7 +80,7 @@ class Step:
         int
             Its number.
         """
-        return self._step.add(mesh(start, faces), vertices_of(end), self_collision)
+        return self._step.add(mesh(start, faces), vertices_of(end), bool(self_collision))
 
     def set_motion(self, body: int, start: Any, end: Any) -> None:
         """Give a body another motion: the next step of a simulation. Its trees are kept and fitted to it, which takes a fraction of
@@ -92,7 +93,7 @@ class Step:
         start, end : array, shape (n, 3)
             Its vertices at time 0 and at time 1.
         """
-        self._step.set_motion(body, vertices_of(start), vertices_of(end))
+        self._step.set_motion(whole("body", body, least=0), vertices_of(start), vertices_of(end))
 
     def impacts(
         self,
@@ -117,23 +118,25 @@ class Step:
         time : float, optional
             Stop after so many seconds, with what was found.
         threads : int, default 1
-            Threads, 0 for one per core. They do not change the impacts.
+            Threads, 0 for one per core, at most 1,024. They do not change the impacts.
         """
         (body_a, body_b, a, b), times, (point_a, point_b, normal), complete = self._step.impacts(
-            pairs, float(threshold), float(tolerance), time, threads
+            pairs, real("threshold", threshold), real("tolerance", tolerance), seconds(time), whole("threads", threads, least=0)
         )
         return Impacts(body_a, body_b, a, b, np.column_stack(times), point_a, point_b, normal, complete)
 
     def free_step(self, *, threshold: float = 0.0, time: float | None = None) -> float:
         """A time up to which the step is proved free of impacts; 1 if the whole step is. After `time` seconds it is what is
         proved until then: the step is free up to it, and may be for longer."""
-        return self._step.free_step(float(threshold), time)
+        return self._step.free_step(real("threshold", threshold), seconds(time))
 
     def earliest(
         self, *, threshold: float = 0.0, tolerance: float = 1e-6, time: float | None = None
     ) -> tuple[tuple[float, float], tuple[str, tuple[int, int, int, int]] | None, bool]:
         """The first impact: bounds of its time, the kind and the pair (body_a, body_b, a, b), whether that is proved."""
-        (lower, upper), first, proved = self._step.earliest(float(threshold), float(tolerance), time)
+        (lower, upper), first, proved = self._step.earliest(
+            real("threshold", threshold), real("tolerance", tolerance), seconds(time)
+        )
         if first is None:
             return (lower, upper), None, proved
         kind, (body_a, body_b, a, b) = first

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _satisfice
+from .._checked import real, seconds, whole, whole_or_none
 from ._mesh import mesh, pose_of
 from ._world import Nearest, World
 
@@ -84,7 +85,7 @@ def close_pairs(
     limit : int, optional
         Stop at so many pairs.
     threads : int, default 1
-        Threads, 0 for one per core. They do not change the pairs.
+        Threads, 0 for one per core, at most 1,024. They do not change the pairs.
 
     Returns
     -------
@@ -103,13 +104,13 @@ def close_pairs(
         mesh(a),
         None if b is None else mesh(b),
         pairs,
-        float(threshold),
+        real("threshold", threshold),
         (pose_of(transform_a), pose_of(transform_b)),
-        ring,
-        witnesses,
-        time,
-        limit,
-        threads,
+        whole("ring", ring, least=0),
+        bool(witnesses),
+        seconds(time),
+        whole_or_none("limit", limit),
+        whole("threads", threads, least=0),
     )
     point_a, point_b = points if points is not None else (None, None)
     return Pairs(i, j, distance, point_a, point_b, complete)

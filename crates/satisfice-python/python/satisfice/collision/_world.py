@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _satisfice
+from .._checked import real, seconds, whole, whole_or_none
 from .._satisfice import Body
 from ._mesh import mesh, point_of, pose_of, vertices_of
 
@@ -66,7 +67,7 @@ class World:
     pairs : str, default "triangle-triangle"
         The kind of pair, as for `close_pairs`. For two different features, both orders of the bodies count.
     threads : int, default 1
-        Threads of the queries, 0 for one per core.
+        Threads of the queries, 0 for one per core, at most 1,024.
 
     Examples
     --------
@@ -83,7 +84,7 @@ class World:
     """
 
     def __init__(self, *, threshold: float, pairs: str = "triangle-triangle", threads: int = 1) -> None:
-        self._world = _satisfice.World(pairs, float(threshold), threads)
+        self._world = _satisfice.World(pairs, real("threshold", threshold), whole("threads", threads, least=0))
 
     def __len__(self) -> int:
         return len(self._world)
@@ -98,7 +99,7 @@ class World:
 
     @threshold.setter
     def threshold(self, value: float) -> None:
-        self._world.set_threshold(float(value))
+        self._world.set_threshold(real("threshold", value))
 
     def add(
         self,
@@ -133,7 +134,9 @@ class World:
         Body
             Its handle, valid until it is removed.
         """
-        return self._world.add(mesh(mesh_), motion, pose_of(transform), (groups, mask), self_collision, ring)
+        return self._world.add(
+            mesh(mesh_), motion, pose_of(transform), _bits(groups, mask), bool(self_collision), whole("ring", ring, least=0)
+        )
 
     def place(self, body: Body, transform: ArrayLike | None) -> None:
         """Move a rigid body to this rotation and translation, shape (4, 4), or translation, shape (3,)."""
@@ -141,7 +144,7 @@ class World:
 
     def translate(self, body: Body, translation: ArrayLike) -> None:
         """Move a rigid body to this translation, shape (3,). It stays turned as it is, unlike by `place` with a translation."""
-        self._world.translate(body, point_of(translation))
+        self._world.translate(body, point_of("translation", translation))
 
     def deform(self, body: Body, vertices: ArrayLike) -> None:
         """Move the vertices of a deforming body, shape (n, 3)."""
@@ -157,7 +160,7 @@ class World:
 
     def set_groups(self, body: Body, groups: int, mask: int = 0xFFFFFFFF) -> None:
         """Set the groups of a body and the groups that it collides with."""
-        self._world.set_groups(body, groups, mask)
+        self._world.set_groups(body, *_bits(groups, mask))
 
     def exclude(self, a: Body, b: Body) -> None:
         """Let two bodies not collide."""
@@ -177,7 +180,7 @@ class World:
         limit : int, optional
             Stop at about so many contacts.
         """
-        complete, recomputed, skipped = self._world.update(time, limit)
+        complete, recomputed, skipped = self._world.update(seconds(time), whole_or_none("limit", limit))
         return Update(complete, recomputed, dict(skipped))
 
     def contacts(self, *, distances: bool = True) -> NDArray[np.void]:
@@ -211,7 +214,7 @@ class World:
         TimeoutError
             If the time, in seconds, has ended before all are known.
         """
-        found, complete = self._world.touching(time)
+        found, complete = self._world.touching(seconds(time))
         if not complete:
             raise TimeoutError(f"{len(found)} pairs of bodies were found in time, and there may be more")
         return found
@@ -224,7 +227,7 @@ class World:
         TimeoutError
             If the time, in seconds, has ended before that is known.
         """
-        contact, complete = self._world.first(time)
+        contact, complete = self._world.first(seconds(time))
         if contact is None and not complete:
             raise TimeoutError("no contact was found in time, and there may be one")
         return contact
@@ -237,7 +240,7 @@ class World:
         TimeoutError
             If the time, in seconds, has ended before they are known.
         """
-        (columns, distances, _, _), complete = self._world.nearest(count, time)
+        (columns, distances, _, _), complete = self._world.nearest(whole("count", count, least=0), seconds(time))
         if not complete:
             raise TimeoutError("the closest pairs were not known in time")
         return _contacts(columns, distances)
@@ -253,17 +256,21 @@ class World:
 
     def nearest_to_point(self, point: ArrayLike) -> tuple[Body, int, float, NDArray[np.float64]] | None:
         """The body closest to a point of shape (3,): body, its feature, the distance, the closest point."""
-        found = self._world.nearest_to_point(point_of(point))
+        found = self._world.nearest_to_point(point_of("point", point))
         return None if found is None else (*found[:3], np.array(found[3]))
 
     def cast_ray(self, start: ArrayLike, end: ArrayLike) -> tuple[Body, int, float, NDArray[np.float64]] | None:
         """What a ray from `start` to `end`, each of shape (3,), meets first: body, triangle, the share of the way, the point."""
-        found = self._world.cast_ray(point_of(start), point_of(end))
+        found = self._world.cast_ray(point_of("start", start), point_of("end", end))
         return None if found is None else (*found[:3], np.array(found[3]))
 
     def bodies_in(self, lower: ArrayLike, upper: ArrayLike) -> list[Body]:
         """The bodies whose boxes meet the box from `lower` to `upper`, each of shape (3,)."""
-        return self._world.bodies_in(point_of(lower), point_of(upper))
+        return self._world.bodies_in(point_of("lower", lower), point_of("upper", upper))
+
+
+def _bits(groups: int, mask: int) -> tuple[int, int]:
+    return whole("groups", groups, 0, 2**32 - 1), whole("mask", mask, 0, 2**32 - 1)
 
 
 def _contacts(columns: Sequence[Any], distances: Any) -> NDArray[np.void]:

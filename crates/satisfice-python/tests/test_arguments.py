@@ -1,0 +1,137 @@
+"""Arguments that cannot be used: the error names the argument and says what to give."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import satisfice
+from satisfice import collision
+
+SQUARE = [(-1, 1)] * 2
+TRIANGLE = ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2]])
+
+
+def norm(x):
+    return float((x**2).sum())
+
+
+def find(**given):
+    return satisfice.find(norm, SQUARE, **{"delta": 0.1, "separation": 0.1, "evaluations": 20, "seed": 1, **given})
+
+
+def search(**given):
+    return satisfice.Search(SQUARE, **{"delta": 0.1, "separation": 0.1, "evaluations": 20, "seed": 1, **given})
+
+
+def pairs(**given):
+    return collision.close_pairs(TRIANGLE, TRIANGLE, **{"threshold": 0.1, **given})
+
+
+def asked():
+    begun = search()
+    return begun, begun.ask(1).tickets
+
+
+def world():
+    return collision.World(threshold=0.1)
+
+
+def step():
+    moving = collision.Step()
+    moving.add(TRIANGLE, TRIANGLE[0])
+    return moving
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "says"),
+    [
+        (lambda: find(evaluations=-1), ValueError, "evaluations = -1"),
+        (lambda: find(hits="3"), TypeError, "hits must be a whole number"),
+        (lambda: find(workers=0), ValueError, "workers = 0 is not allowed: a whole number from 1 to 1024"),
+        (lambda: find(workers=10**6), ValueError, "workers = 1000000"),
+        (lambda: find(workers=-2), ValueError, "workers = -2"),
+        (lambda: find(executor=0), ValueError, "executor = 0"),
+        (lambda: find(catch=3), TypeError, "catch must be an exception type .* not 3"),
+        (lambda: find(catch=(ValueError, "no")), TypeError, "catch must be"),
+        (lambda: find(time=0), ValueError, r"time = 0\.0 is not allowed: a positive number of seconds"),
+        (lambda: find(time="1"), TypeError, "time must be a real number, not '1'"),
+        (lambda: find(time=math.inf), ValueError, "time = inf"),
+        (lambda: find(delta="1"), TypeError, "delta must be a real number"),
+        (lambda: find(delta=1j), TypeError, "delta must be a real number"),
+        (lambda: find(delta=10**400), ValueError, "delta is too large"),
+        (lambda: find(separation=["1", 1]), TypeError, "separation must be a real number"),
+        (lambda: find(x0=[1j, 0]), ValueError, "x0 must be real numbers"),
+        (lambda: search().ask(-1), ValueError, "n = -1 is not allowed: a whole number from 0"),
+        (lambda: search().ask(10**30), ValueError, "n = 10000"),
+        (lambda: search().ask(1.5), TypeError, r"n must be a whole number, not 1\.5"),
+        (lambda: search().run(norm, workers=0), ValueError, "workers = 0"),
+        (lambda: search().run(norm, in_flight=0), ValueError, "in_flight = 0"),
+        (lambda: search().run(norm, time=-1), ValueError, "time = -1"),
+        (lambda: search().run(norm, catch=3), TypeError, "catch must be"),
+        (lambda: (lambda begun, tickets: begun.tell(tickets, None))(*asked()), ValueError, "values must be real .* None"),
+        (lambda: (lambda begun, tickets: begun.tell(tickets, "1"))(*asked()), ValueError, "values must be real numbers"),
+        (lambda: search().inform([0, None], 1.0), ValueError, "x must be real numbers"),
+        (lambda: pairs(threshold="1"), TypeError, "threshold must be a real number, not '1'"),
+        (lambda: pairs(limit=-1), ValueError, "limit = -1"),
+        (lambda: pairs(limit=0), ValueError, "limit = 0 is not allowed: a whole number from 1"),
+        (lambda: pairs(time=0), ValueError, "time = 0"),
+        (lambda: pairs(threads=-1), ValueError, "threads = -1"),
+        (lambda: collision.close_pairs(TRIANGLE, threshold=1, ring=-1), ValueError, "ring = -1"),
+        (lambda: collision.close_pairs(TRIANGLE, threshold=1, ring=None), TypeError, "ring must be a whole number"),
+        (lambda: world().add(TRIANGLE, groups=-1), ValueError, "groups = -1"),
+        (lambda: world().add(TRIANGLE, mask=2**32), ValueError, "mask = 4294967296"),
+        (lambda: world().update(limit=0), ValueError, "limit = 0"),
+        (lambda: world().nearest(-1), ValueError, "count = -1"),
+        (lambda: world().cast_ray("abc", [0, 0, 0]), ValueError, "start must be real numbers"),
+        (lambda: world().nearest_to_point([0, 0]), ValueError, "point has shape"),
+        (lambda: step().impacts(tolerance="1"), TypeError, "tolerance must be"),
+        (lambda: step().free_step(time=0), ValueError, "time = 0"),
+        (lambda: step().set_motion(-1, TRIANGLE[0], TRIANGLE[0]), ValueError, "body = -1"),
+        (lambda: collision.mesh([["0", "0", "0"]]), ValueError, "vertices must be real numbers"),
+        (lambda: collision.mesh(np.zeros((2, 3), complex)), ValueError, "vertices must be real numbers"),
+        (lambda: collision.mesh([[None, 0, 0]]), ValueError, "vertices must be real numbers"),
+        (lambda: collision.mesh([[0, 0], [0, 0, 0]]), ValueError, "vertices must be real numbers"),
+        (lambda: collision.mesh(np.ma.masked_equal([[0.0, 1, 2]], 1)), ValueError, "vertices must have no masked"),
+        (lambda: collision.mesh(TRIANGLE[0], np.ma.masked_equal([[0, 1, 2]], 1)), ValueError, "faces must have no masked"),
+    ],
+)
+def test_an_unusable_argument_is_named(call, error, says):
+    with pytest.raises(error, match=says):
+        call()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: pairs(threads=1025),
+        lambda: pairs(threads=10**6),
+        lambda: collision.World(threshold=0.1, threads=10**6),
+        lambda: step().impacts(threads=10**6),
+        lambda: satisfice.find(satisfice.problem("queens"), evaluations=10, threads=10**6),
+    ],
+)
+def test_threads_have_the_limit_of_the_command(call):
+    with pytest.raises(ValueError, match=r"threads = \d+ is not allowed: it must be a whole number from 0 \(all cores\) to 1024"):
+        call()
+
+
+def test_numbers_of_other_types_are_numbers():
+    assert find(delta=Fraction(1, 10), evaluations=np.float64(20), time=np.array(30)).to_dict()["threshold"] == 0.1
+    begun, tickets = asked()
+    begun.tell(tickets, [Fraction(1, 100)])
+    begun.inform(np.array([[0, 1]], dtype=object), True)
+    assert begun.report().hits == 1
+    mesh = collision.mesh(np.array(TRIANGLE[0], dtype=np.float32)[:, ::-1], np.array([[0, 1, 2]], dtype=np.uint8))
+    assert len(collision.close_pairs(mesh, mesh, threshold=np.float32(0.5))) == 1
+    unmasked = np.ma.array(TRIANGLE[0])
+    assert len(collision.mesh(unmasked).vertices) == 3
+
+
+def test_as_many_points_as_there_are_numbers_can_be_asked():
+    assert len(search(evaluations=100).ask(10**8)) == 100
+    endless = search(evaluations=None, time=60, engine="random")
+    batch = endless.ask(10**8)
+    assert len(batch) == 65_536 and len(endless.ask(10**8)) == 0
+    endless.tell(batch.tickets, np.ones(len(batch)))
+    assert len(endless.ask(1)) == 1
