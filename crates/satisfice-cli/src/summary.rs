@@ -22,17 +22,22 @@ pub(crate) fn summary(report: &RunReport) -> String {
 /// The summary while all hits are still being counted.
 pub(crate) fn before_the_count(report: &RunReport) -> String {
     let show = |solution: &Value| shortened(&solution.to_string());
-    text(report, " (all hits are being counted)", show)
+    text(report, Known::Later, show)
 }
 
-/// The line that follows when all hits have been counted, or have not.
+/// The lines that follow when all hits have been counted, or have not.
 pub(crate) fn count(report: &RunReport) -> String {
     let counted = match (report.reference_hits, report.recall) {
         (Some(all), Some(recall)) => format!("{all} (recall {:.1} %)", 100.0 * recall),
         (Some(all), None) => all.to_string(),
         (None, _) => "not known".to_owned(),
     };
-    format!("  {:<13} {counted}\n", "all hits")
+    let mut text = String::new();
+    if report.completeness != Completeness::Proved {
+        let _ = writeln!(text, "  {:<13} {}", "completeness", completeness(report));
+    }
+    let _ = writeln!(text, "  {:<13} {counted}", "all hits");
+    text
 }
 
 /// A solution on one line of a terminal: the first values of a long one.
@@ -50,11 +55,17 @@ fn shortened(solution: &str) -> String {
 
 /// The summary of a report, with a function that formats its solutions.
 pub(crate) fn summary_with(report: &RunReport, show: impl Fn(&Value) -> String) -> String {
-    text(report, " (the number of all hits is not known)", show)
+    text(report, Known::Now, show)
 }
 
-/// The summary, with what is said of the number of all hits where it is not known.
-fn text(report: &RunReport, unknown: &str, show: impl Fn(&Value) -> String) -> String {
+/// When the number of all hits is known, if it ever is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    Now,
+    Later,
+}
+
+fn text(report: &RunReport, known: Known, show: impl Fn(&Value) -> String) -> String {
     let mut text = format!(
         "{} by {}, seed {}\n",
         report.spec.problem, report.spec.engine, report.spec.seed
@@ -66,10 +77,13 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&Value) -> String) -> S
     let recall = match (report.reference_hits, report.recall) {
         (Some(reference), Some(recall)) => format!(" of {reference} (recall {:.1} %)", 100.0 * recall),
         (Some(reference), None) => format!(" of {reference}"),
-        (None, _) => unknown.to_owned(),
+        (None, _) if known == Known::Later => " (all hits are being counted)".to_owned(),
+        (None, _) => " (the number of all hits is not known)".to_owned(),
     };
     line("hits", format!("{}{recall}", report.hits));
-    line("completeness", completeness(report));
+    if known == Known::Now || report.completeness == Completeness::Proved {
+        line("completeness", completeness(report));
+    }
     let counts = &report.counts;
     line(
         "evaluations",
@@ -152,16 +166,18 @@ fn text(report: &RunReport, unknown: &str, show: impl Fn(&Value) -> String) -> S
 
 /// What is known of the hits that the report does not list.
 pub(crate) fn completeness(report: &RunReport) -> String {
-    match (
-        report.completeness,
-        report.unseen_estimate,
-        report.unseen_interval,
-    ) {
-        (Completeness::Proved, ..) => "proved: these are all".to_owned(),
-        (Completeness::Unknown, Some(estimate), Some(interval)) => {
-            format!("unknown: {}", unseen(estimate, interval))
-        }
-        (Completeness::Unknown, ..) => "unknown: there may be more".to_owned(),
+    if report.completeness == Completeness::Proved {
+        return "proved: these are all".to_owned();
+    }
+    // A number that is known says more than an estimate of it.
+    match report.reference_hits.and_then(|all| all.checked_sub(report.hits)) {
+        Some(0) => return "these are all: the problem has no other hits".to_owned(),
+        Some(left) => return format!("{left} of the problem's {} hits not seen", left + report.hits),
+        None => {}
+    }
+    match (report.unseen_estimate, report.unseen_interval) {
+        (Some(estimate), Some(interval)) => format!("unknown: {}", unseen(estimate, interval)),
+        _ => "unknown: there may be more".to_owned(),
     }
 }
 
@@ -246,6 +262,34 @@ mod tests {
         assert!(long.starts_with(cut.strip_suffix(", ... (whole in --json FILE)").unwrap()));
         assert!(cut.len() < LONGEST + 40 && cut.contains("1234, ..."));
         assert!(shortened(&"ü".repeat(400)).starts_with("üüü"));
+    }
+
+    #[test]
+    fn a_known_number_of_hits_replaces_the_estimate() {
+        let spec = satisfice_catalogue::RunSpec::new("random");
+        let mut report = RunReport::new(spec);
+        report.unseen_estimate = Some(0.0);
+        report.unseen_interval = Some((0.0, Some(26_115.0)));
+        report.hits = 83;
+        assert_eq!(completeness(&report), "unknown: 0 to 26115 hits not seen");
+        for (all, says) in [
+            (92, "9 of the problem's 92 hits not seen"),
+            (83, "these are all: the problem has no other hits"),
+            // Where hits are told apart more finely than they were counted.
+            (80, "unknown: 0 to 26115 hits not seen"),
+        ] {
+            report.set_reference(Some(all));
+            assert_eq!(completeness(&report), says);
+        }
+        assert!(
+            before_the_count(&report)
+                .lines()
+                .all(|line| !line.contains("completeness"))
+        );
+        assert_eq!(
+            count(&report),
+            "  completeness  unknown: 0 to 26115 hits not seen\n  all hits      80 (recall 103.8 %)\n"
+        );
     }
 
     #[test]

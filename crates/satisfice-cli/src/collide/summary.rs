@@ -133,6 +133,11 @@ fn completeness(report: &Report<'_>) -> String {
     if searched_all {
         return "all are counted, but not all are listed".to_owned();
     }
+    match head.reference_hits.and_then(|all| all.checked_sub(head.hits)) {
+        Some(0) => return "these are all: there are no other pairs".to_owned(),
+        Some(more) => return format!("{} pairs not seen", shown::count(more)),
+        None => {}
+    }
     match (head.unseen_estimate, head.unseen_interval) {
         (Some(unseen), Some((low, high))) => {
             let high = high.map_or_else(|| "no known bound".to_owned(), |high| format!("{high:.0}"));
