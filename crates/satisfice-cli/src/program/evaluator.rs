@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 use super::process::{Heard, Process, now};
 use super::space::SpaceFile;
@@ -58,10 +58,15 @@ pub(super) struct Evaluator {
 #[derive(Deserialize)]
 struct Reply {
     ticket: u64,
-    #[serde(default)]
+    /// `null`, which is no number, is not the same as no value.
+    #[serde(default, deserialize_with = "present")]
     value: Option<serde_json::Value>,
     #[serde(default)]
     error: Option<String>,
+}
+
+fn present<'de, D: Deserializer<'de>>(from: D) -> Result<Option<serde_json::Value>, D::Error> {
+    serde_json::Value::deserialize(from).map(Some)
 }
 
 impl Evaluator {
@@ -221,10 +226,14 @@ fn answer(line: &str, ticket: u64) -> Result<Option<Result<f64, String>>, String
     }
     Ok(Some(match (answer.error, answer.value) {
         (Some(error), _) => Err(format!("the worker says: {error}")),
-        (None, value) => value
-            .as_ref()
-            .map_or(Some(f64::NAN), number)
-            .ok_or_else(|| format!("the worker's value is no number: {}", shown())),
+        (None, Some(value)) => {
+            number(&value).ok_or_else(|| format!("the worker's value is no number: {}", shown()))
+        }
+        (None, None) => Err(format!(
+            "the worker's answer has no value: {}; answer {{\"ticket\": {ticket}, \"value\": 0.5}}, or null as the value or \
+             {{\"ticket\": {ticket}, \"error\": \"why\"}} where there is none",
+            shown()
+        )),
     }))
 }
 
@@ -269,7 +278,15 @@ mod tests {
     fn what_workers_write() {
         assert_eq!(answer(r#"{"ticket":7,"value":0.3}"#, 7), Ok(Some(Ok(0.3))));
         assert_eq!(answer(r#"{"ticket":6,"value":0.3}"#, 7), Ok(None));
-        assert!(answer(r#"{"ticket":7}"#, 7).unwrap().unwrap().unwrap().is_nan());
+        let null = answer(r#"{"ticket":7,"value":null}"#, 7);
+        assert!(null.unwrap().unwrap().unwrap().is_nan());
+        for line in [r#"{"ticket":7}"#, r#"{"ticket":7,"values":1}"#] {
+            let says = answer(line, 7).unwrap().unwrap().unwrap_err();
+            assert!(
+                says.contains(line) && says.contains(r#"answer {"ticket": 7, "value": 0.5}"#),
+                "{says}"
+            );
+        }
         let error = answer(r#"{"ticket":7,"error":"diverged"}"#, 7).unwrap().unwrap();
         assert_eq!(error, Err("the worker says: diverged".to_owned()));
         assert!(
