@@ -153,7 +153,7 @@ fn spatial(bodies: &[Vec<[f64; 3]>], up: usize, from: &str, y_label: &str) -> Ma
             .collect()
     };
     Map {
-        title: format!("seven joints {from}: {DRAWN} of {} found", bodies.len()),
+        title: format!("seven joints {from}: {DRAWN} of {} postures drawn", bodies.len()),
         x_label: "x (m)".to_owned(),
         y_label: y_label.to_owned(),
         x_range: (-0.4, 0.8),

@@ -167,8 +167,8 @@ fn panel(evaluated: &[(Vec<f64>, f64)], delta: f64) -> Option<Map> {
     };
     Some(Map {
         title: format!("{} evaluations, {} below delta", evaluated.len(), hits.len()),
-        x_label: "first axis".to_owned(),
-        y_label: "second axis".to_owned(),
+        x_label: "x₁ (share of its range)".to_owned(),
+        y_label: "x₂ (share of its range)".to_owned(),
         x_range: (0.0, 1.0),
         y_range: (0.0, 1.0),
         to_scale: true,

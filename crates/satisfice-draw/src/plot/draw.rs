@@ -2,6 +2,7 @@
 
 mod boards;
 mod map;
+mod outline;
 
 pub use boards::draw_boards;
 pub use map::draw_maps;

@@ -6,7 +6,9 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::figure::Figure;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
+use kuva::render::render::{Primitive, Scene};
 
+use super::outline::outline_areas;
 use super::{encode, title_size};
 use crate::error::Error;
 use crate::plot::{Format, Layer, Map, Maps, Marker, Shape};
@@ -32,12 +34,36 @@ pub fn draw_maps(maps: &Maps, format: Format) -> Result<Vec<u8>, Error> {
             .iter()
             .all(|map| labels(map) == labels(&maps.panels[0]));
     let has_scale = |layer: &Layer| matches!(layer.shape, Shape::Contours { .. });
-    let scene = if one_legend && !maps.panels[0].layers.iter().any(has_scale) {
+    let mut scene = if one_legend && !maps.panels[0].layers.iter().any(has_scale) {
         figure.with_shared_legend_bottom().render()
     } else {
         figure.render()
     };
+    // The library's own pixels fill holes, and cells cost nothing there.
+    if format == Format::Svg {
+        outline_areas(&mut scene);
+    }
+    show_whole_discs(&mut scene);
     encode(&scene, format)
+}
+
+/// Lets discs at the border of a map be seen whole: what the library draws over a map is cut there.
+fn show_whole_discs(scene: &mut Scene) {
+    let mut cut = None;
+    for element in std::mem::take(&mut scene.elements) {
+        match (&element, &cut) {
+            (Primitive::ClipStart { .. }, _) => cut = Some(element.clone()),
+            (Primitive::ClipEnd, _) => cut = None,
+            (Primitive::CircleBatch { .. }, Some(start)) => {
+                scene
+                    .elements
+                    .extend([Primitive::ClipEnd, element, start.clone()]);
+                continue;
+            }
+            _ => {}
+        }
+        scene.elements.push(element);
+    }
 }
 
 fn panel(map: &Map) -> (Vec<Plot>, Layout) {
@@ -92,8 +118,10 @@ fn draw(map: &Map, layer: &Layer) -> Vec<Plot> {
     };
     match &layer.shape {
         Shape::Points(marker, points) => {
+            let within = |range: (f64, f64), at: f64| (range.0..=range.1).contains(&at);
+            let points = shown(points).into_iter();
             let plot = ScatterPlot::new()
-                .with_data(shown(points))
+                .with_data(points.filter(|&(x, y)| within(map.x_range, x) && within(map.y_range, y)))
                 .with_color(layer.colour.hexadecimal())
                 .with_size(layer.size)
                 .with_marker(match marker {
@@ -195,6 +223,20 @@ mod tests {
         });
         assert_ne!(draw_maps(&maps, Format::Png).unwrap(), empty);
         assert!(svg(&maps).contains("height"));
+        // A band is one path, whatever number of cells it covers.
+        let picture = svg(&maps);
+        let bands: Vec<&str> = picture.split("<path d=\"").skip(1).collect();
+        assert!(
+            bands
+                .iter()
+                .any(|path| path.split('"').next().unwrap().matches('M').count() == 1)
+        );
+        assert!(
+            bands
+                .iter()
+                .all(|path| path.split('"').next().unwrap().len() < 100),
+            "{picture}"
+        );
         assert!(!svg(&Maps::default()).is_empty());
     }
 }
