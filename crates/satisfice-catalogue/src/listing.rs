@@ -37,7 +37,7 @@ pub struct Row {
     /// Its name.
     pub name: &'static str,
     /// A summary.
-    pub summary: &'static str,
+    pub summary: String,
     /// Its values.
     #[serde(flatten)]
     pub values: Range,
@@ -119,10 +119,29 @@ impl From<&Parameter> for Row {
         };
         Self {
             name: parameter.name,
-            summary: parameter.summary,
+            summary: without_links(parameter.summary),
             values,
         }
     }
+}
+
+/// A text of the documentation without its links, which lead nowhere on a terminal: `[the budget](crate::Budget)` is "the budget".
+fn without_links(text: &str) -> String {
+    let (mut plain, mut rest) = (String::with_capacity(text.len()), text);
+    while let Some((before, label, after)) = first_link(rest) {
+        plain.push_str(before);
+        plain.push_str(label);
+        rest = after;
+    }
+    plain + rest
+}
+
+/// What is before a link, its label, and what is after it.
+fn first_link(text: &str) -> Option<(&str, &str, &str)> {
+    let middle = text.find("](")?;
+    let begin = text[..middle].rfind('[')?;
+    let end = middle + text[middle..].find(')')?;
+    Some((&text[..begin], &text[begin + 1..middle], &text[end + 1..]))
 }
 
 /// All engines, and the problems of a catalogue.
@@ -150,5 +169,26 @@ pub fn listing(catalogue: &Catalogue) -> Listing {
                 parameters: rows(entry.parameters),
             })
             .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_of_the_documentation_are_left_out() {
+        for (text, plain) in [
+            (
+                "as many as [the budget](crate::Budget::with_parallel) says",
+                "as many as the budget says",
+            ),
+            ("[a](b) [0, 1] and [`c`](d).", "a [0, 1] and `c`."),
+            ("a share (of [0, 1])", "a share (of [0, 1])"),
+        ] {
+            assert_eq!(without_links(text), plain);
+        }
+        let listing = serde_json::to_string(&listing(&Catalogue::bundled())).unwrap();
+        assert!(!listing.contains("]("), "{listing}");
     }
 }

@@ -18,6 +18,14 @@ const DEFAULT_TIME: Duration = Duration::from_secs(1);
 
 /// Parses the command line, the name of the program included.
 pub(crate) fn parse(arguments: &[std::ffi::OsString]) -> Result<Subcommands, clap::Error> {
+    let asks_for_help = |word: &std::ffi::OsString| word == "--help" || word == "-h";
+    let arguments = match arguments {
+        // The subcommand `help` takes names only.
+        [program, help, rest @ ..] if help == "help" && rest.iter().all(asks_for_help) => {
+            vec![program.clone(), "--help".into()]
+        }
+        others => others.to_vec(),
+    };
     Satisfice::try_parse_from(arguments).map(|satisfice| satisfice.command)
 }
 
@@ -55,7 +63,16 @@ pub(crate) enum Subcommands {
 
 /// List every engine and problem with its parameters, their defaults and ranges.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  satisfice list
+  satisfice list queens portfolio
+      Only this problem and this engine.")]
 pub(crate) struct ListArguments {
+    /// Names of engines and problems: list only these.
+    #[arg(value_name = "NAME")]
+    pub(crate) names: Vec<String>,
+
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -379,7 +396,7 @@ pub(crate) struct BenchArguments {
     #[arg(long, value_name = "A..B", value_parser = satisfice_bench::sweep::seeds, allow_hyphen_values = true)]
     pub(crate) seeds: Option<std::ops::Range<u64>>,
 
-    /// Folder for the results [default: bench-SUITE].
+    /// Folder for the results [default: bench- and the name of the suite, and of the shard, such as bench-mine-1-of-4].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
 
@@ -401,7 +418,7 @@ pub(crate) struct MergeArguments {
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath, required = true)]
     pub(crate) folders: Vec<PathBuf>,
 
-    /// Folder for the results [default: bench-SUITE].
+    /// Folder for the results [default: bench- and the name of the suite].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
 }

@@ -16,7 +16,11 @@ pub(crate) fn completions(
 ) -> anyhow::Result<ExitCode> {
     let engines = || engine::all().iter().map(|entry| entry.name);
     let names: Vec<&'static str> = catalogue.problems().iter().map(|problem| problem.name).collect();
+    let listed: Vec<&'static str> = engines().chain(names.iter().copied()).collect();
     let mut command = Satisfice::command()
+        .mut_subcommand("list", |list| {
+            list.mut_arg("names", |arg| arg.value_parser(PossibleValuesParser::new(listed)))
+        })
         .mut_subcommand("run", |run| {
             run.mut_arg("problem", |arg| {
                 arg.value_parser(PossibleValuesParser::new(names))

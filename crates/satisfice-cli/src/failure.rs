@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::CommandFactory;
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ErrorKind};
 
 use crate::arguments::Satisfice;
 use crate::message;
@@ -54,6 +54,11 @@ fn one_line(error: &clap::Error) -> String {
         .unwrap_or_default()
         .trim_start_matches("error: ")
         .to_owned();
+    if is_below_zero(error) {
+        return format!(
+            "{said}; a value that begins with - is joined to its option, as in --from=-1s; see --help"
+        );
+    }
     for line in lines {
         let known = line.strip_prefix("tip: ").or_else(|| {
             // Lists such as the possible values, and the names of what is missing.
@@ -71,6 +76,16 @@ fn one_line(error: &clap::Error) -> String {
         "see --help".to_owned()
     });
     said
+}
+
+/// Whether a number below 0 was taken for an option.
+fn is_below_zero(error: &clap::Error) -> bool {
+    let argument = error.get(ContextKind::InvalidArg).map(ToString::to_string);
+    let digits = argument
+        .as_deref()
+        .and_then(|argument| argument.strip_prefix('-'));
+    error.kind() == ErrorKind::UnknownArgument
+        && digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 fn tell(message: &str) -> ExitCode {

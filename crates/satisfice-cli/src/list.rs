@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use satisfice_catalogue::listing::{Item, Range, Row, listing};
+use satisfice_catalogue::listing::{Item, Listing, Range, Row, listing};
 use satisfice_catalogue::{Catalogue, json};
 
 use satisfice_bench::table;
@@ -12,31 +12,70 @@ use crate::arguments::ListArguments;
 use crate::output;
 
 pub(crate) fn list(arguments: &ListArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
-    let listing = listing(catalogue);
+    let mut listing = listing(catalogue);
+    if !arguments.names.is_empty() {
+        select(&mut listing, &arguments.names)?;
+    }
     if arguments.json {
         output::print(&json::to_vec(&listing)?)?;
     } else {
-        let mut text = items(
-            "engine",
-            "--engine NAME --engine-set PARAMETER=VALUE",
-            &listing.engines,
-        );
-        text.push_str("\n  Every engine also takes:\n");
-        text.push_str(&parameters(&listing.common_engine_parameters));
-        text.push('\n');
-        text.push_str(&items(
-            "problem",
-            "run PROBLEM --set PARAMETER=VALUE",
-            &listing.problems,
-        ));
-        output::print(text.as_bytes())?;
+        output::print(text(&listing).as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
+/// Keeps the engines and problems of these names.
+fn select(listing: &mut Listing, names: &[String]) -> anyhow::Result<()> {
+    let mut wanted = Vec::new();
+    for name in names {
+        // An engine may be named by its alias.
+        let engine = satisfice::engine::find(name).map(|engine| engine.name);
+        let mut known = listing
+            .engines
+            .iter()
+            .chain(&listing.problems)
+            .map(|item| item.name);
+        match engine.ok().or_else(|| known.find(|known| known == name)) {
+            Some(name) => wanted.push(name),
+            None => {
+                let known = listing.problems.iter().chain(&listing.engines);
+                return Err(satisfice::Error::unknown(
+                    "problem or engine",
+                    name,
+                    known.map(|item| item.name),
+                )
+                .into());
+            }
+        }
+    }
+    listing.engines.retain(|item| wanted.contains(&item.name));
+    listing.problems.retain(|item| wanted.contains(&item.name));
+    Ok(())
+}
+
+fn text(listing: &Listing) -> String {
+    let mut parts = Vec::new();
+    if !listing.engines.is_empty() {
+        let usage = "--engine NAME --engine-set PARAMETER=VALUE";
+        let mut text = items("engine", usage, &listing.engines);
+        text.push_str("\n  Every engine also takes:\n");
+        text.push_str(&parameters(&listing.common_engine_parameters));
+        parts.push(text);
+    }
+    if !listing.problems.is_empty() {
+        parts.push(items(
+            "problem",
+            "run PROBLEM --set PARAMETER=VALUE",
+            &listing.problems,
+        ));
+    }
+    parts.join("\n")
+}
+
 /// The items one below the other, each with a table of its parameters.
 fn items(what: &str, usage: &str, items: &[Item]) -> String {
-    let mut text = format!("{} {what}s ({usage})\n", items.len());
+    let plural = if items.len() == 1 { "" } else { "s" };
+    let mut text = format!("{} {what}{plural} ({usage})\n", items.len());
     // Writing to a string cannot fail.
     for item in items {
         let _ = writeln!(text, "\n  {}: {}", item.name, item.summary);
@@ -68,7 +107,7 @@ fn columns(row: &Row) -> [String; 4] {
         Range::Choice { default, of } => (default.to_owned(), of.join(" | ")),
         Range::Text { default } => (format!("{default:?}"), "any text".to_owned()),
     };
-    [row.name.to_owned(), default, range, row.summary.to_owned()]
+    [row.name.to_owned(), default, range, row.summary.clone()]
 }
 
 /// The greatest integer stands for no bound.

@@ -53,6 +53,7 @@ fn mistakes_are_told_in_one_line() {
         "run teapots --engine-set particles=0",
         "run teapots --tiem 1s",
         "run teapots --time 100",
+        "run teapots --time 0",
         "run teapots --time 0s",
         "run teapots --time -1s",
         "run teapots --time soon",
@@ -67,12 +68,16 @@ fn mistakes_are_told_in_one_line() {
         "run teapots --threads many",
         "run teapots --threads 100000",
         "run teapots --islands 0",
+        "run teapots --parallel 1e12",
+        "list qeens",
         "run teapots --plot hits.pdf",
         "run teapots --json no/such/folder/report.json",
         "run teapots --json src",
         "verify no-such-report.json",
         "verify Cargo.toml",
         "completions csh",
+        "collide --from -1s --to 0.5s a.glb --threshold 1",
+        "collide --from=-1s --to 0.5s a.glb --threshold 1",
     ]
     .iter()
     .map(|arguments| {
