@@ -417,12 +417,17 @@ fn slips_of_units_and_scale_are_warned_of() {
         io::save_obj(&mesh, folder.path().join(name)).unwrap();
     }
     fs::write(folder.path().join("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
+    let with_lines = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\nl 2 3\n";
+    fs::write(folder.path().join("lines.obj"), with_lines).unwrap();
     let lines: Vec<String> = [
         "collide a.obj b.obj --threshold 2.5",
         "collide a.obj millimetres.obj --threshold 0.1",
         "collide a.obj away.obj --threshold 0.1",
         "collide a.obj lost.obj --threshold 0.001",
         "collide a.obj points.obj --threshold 0.1 --pairs vertex-triangle",
+        "collide a.obj lines.obj --threshold 0.1 --pairs triangle-triangle",
+        "collide a.obj lines.obj --threshold 0.1",
+        "collide a.obj b.obj --threshold 1e-320",
         "collide a.obj b.obj --threshold 0.1",
     ]
     .iter()

@@ -180,6 +180,9 @@ impl Error {
     }
 
     pub(crate) fn in_file(self, path: &std::path::Path) -> Self {
+        if matches!(&self, Self::InFile { path: known, .. } if known == path) {
+            return self;
+        }
         Self::InFile {
             path: path.to_owned(),
             source: Box::new(self),

@@ -56,7 +56,8 @@ pub(crate) struct CollideArguments {
     pub(crate) from: Vec<PathBuf>,
 
     /// The same bodies, in the same order, at the end of the step. Every vertex moves along a straight line at constant speed;
-    /// times are parts of the step, from 0 to 1. Or a time of the animations, at most that of their last key.
+    /// times are parts of the step, from 0 to 1. Or a time of the animations, at most that of their last key; one before --from
+    /// plays them backwards.
     #[arg(long, value_name = "MESH|TIME", num_args = 1.., requires = "from", value_hint = ValueHint::FilePath)]
     pub(crate) to: Vec<PathBuf>,
 
@@ -136,7 +137,8 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 
-    /// Draw the bodies with the pairs marked where they are closest, and their triangles highlighted.
+    /// Draw the bodies with the pairs marked where they are closest, and their triangles highlighted. Not with --from: --page shows
+    /// bodies that move.
     #[arg(long, value_name = "FILE.png", value_hint = ValueHint::FilePath)]
     pub(crate) picture: Option<PathBuf>,
 

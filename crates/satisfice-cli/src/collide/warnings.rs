@@ -1,6 +1,7 @@
 //! Signs of wrong units, wrong scales and seams. They do not change the pairs, which are exact for the given numbers.
 
 use satisfice_catalogue::quantity::shown;
+use satisfice_collision::FeatureKind;
 
 use super::scene::World;
 use super::weld;
@@ -28,6 +29,19 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
                 name(body),
                 kind.plural()
             ));
+        }
+    }
+
+    if kind_a == FeatureKind::Triangle || kind_b == FeatureKind::Triangle {
+        for body in &world.bodies {
+            let lines = body.mesh.lines().len();
+            if lines > 0 && !body.mesh.triangles().is_empty() {
+                said.push(format!(
+                    "{} has {} beside its triangles (lines, or faces of two corners): no pair of triangles has one of them",
+                    body.name,
+                    if lines == 1 { "1 edge".to_owned() } else { format!("{} edges", shown::count(lines as u64)) }
+                ));
+            }
         }
     }
 
@@ -65,9 +79,14 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
             .fold(0.0_f64, |most, c| most.max(c.abs()));
         let step = f64::EPSILON * reach;
         if step > threshold {
+            // Moving helps only what lies away from the origin.
+            let advice = if reach > 2.0 * mesh.size() {
+                "move it near the origin before it is written"
+            } else {
+                "is it in the unit of the meshes?"
+            };
             said.push(format!(
-                "{} has coordinates up to {}, where neighbouring numbers are {} apart, more than the threshold: move it near the \
-                 origin before it is written",
+                "{} has coordinates up to {}, where neighbouring numbers are {} apart, more than the threshold: {advice}",
                 name(body),
                 readable(reach),
                 readable(step)
@@ -111,6 +130,7 @@ fn readable(x: f64) -> String {
     let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
     match rounded.abs() {
         0.0 => "0".to_owned(),
+        f64::INFINITY => "more than 1e308".to_owned(),
         v if (1e-3..1e3).contains(&v) => format!("{rounded}"),
         v if (1e3..1e7).contains(&v) => shown::count(v as u64),
         _ => format!("{rounded:e}"),
@@ -132,6 +152,7 @@ mod tests {
             (1.000_01e13, "1e13"),
             (2.22e-4, "2.22e-4"),
             (540.0, "540"),
+            (1e300 / 1e-300, "more than 1e308"),
         ] {
             assert_eq!(readable(x), text);
         }
