@@ -51,9 +51,11 @@ pub(super) fn page(
         }
         @if suite.regret.is_none() { (studies(findings)) }
         h2 { "The machine" }
-        table {
-            @for (what, value) in satisfice_catalogue::machine() {
-                tr { td { (what) } td.text { (value) } }
+        div.wide {
+            table {
+                @for (what, value) in satisfice_catalogue::machine() {
+                    tr { td { (what) } td.text { (value) } }
+                }
             }
         }
         h2 { "The suite" }
