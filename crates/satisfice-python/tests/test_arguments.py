@@ -61,6 +61,7 @@ def step():
         (lambda: find(delta=1j), TypeError, "delta must be a real number"),
         (lambda: find(delta=10**400), ValueError, "delta is too large"),
         (lambda: find(separation=["1", 1]), TypeError, "separation must be a real number"),
+        (lambda: satisfice.find(norm, [("0", "1")], delta=0.1, evaluations=9), ValueError, r"bounds of axis 0 are \('0', '1'\)"),
         (lambda: find(x0=[1j, 0]), ValueError, "x0 must be real numbers"),
         (lambda: search().ask(-1), ValueError, "n = -1 is not allowed: a whole number from 0"),
         (lambda: search().ask(10**30), ValueError, "n = 10000"),

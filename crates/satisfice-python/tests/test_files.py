@@ -61,6 +61,8 @@ def test_a_place_that_cannot_be_written_is_named(tmp_path, name):
 def test_a_folder_is_no_file(tmp_path):
     with pytest.raises(IsADirectoryError, match="it is a folder: name a file in it"):
         search().save(tmp_path)
+    with pytest.raises(IsADirectoryError, match="it is a folder: name a file in it"):
+        satisfice.find(lambda x: 1.0, SQUARE, delta=0.1, evaluations=20, checkpoint=tmp_path)
 
 
 def test_a_failure_leaves_the_file_as_it_was(tmp_path, monkeypatch):

@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from ._checked import real
+
 _MOST = 2.0**53
 
 
@@ -100,7 +102,7 @@ class Axes:
 
     def _ends(self, axis: int, pair: Any) -> tuple[float, float]:
         try:
-            lower, upper = (float(end) for end in pair)
+            lower, upper = (real("bounds", end) for end in pair)
         except (TypeError, ValueError):
             raise ValueError(f"bounds of axis {axis} are {pair!r}: give (lower, upper)") from None
         if not (math.isfinite(lower) and math.isfinite(upper)):

@@ -22,6 +22,8 @@ def read(path: str | os.PathLike[str] | None) -> bytes | None:
     if path is None or (os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)):
         return None
     try:
+        if os.path.isdir(path):
+            raise _folder()
         return Path(path).read_bytes()
     except FileNotFoundError:
         return None
@@ -38,6 +40,10 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
         raise _named(error, "write", path) from None
 
 
+def _folder() -> OSError:
+    return IsADirectoryError(errno.EISDIR, "it is a folder: name a file in it")
+
+
 def _named(error: OSError, verb: str, path: str | os.PathLike[str]) -> OSError:
     return type(error)(error.errno, f"cannot {verb} the search: {error.strerror}", os.fspath(path))
 
@@ -50,7 +56,7 @@ def _write(path: str, content: bytes) -> None:
         _beside(target, content, mode=None)
         return
     if stat.S_ISDIR(found.st_mode):
-        raise IsADirectoryError(errno.EISDIR, "it is a folder: name a file in it")
+        raise _folder()
     if not stat.S_ISREG(found.st_mode):
         with open(target, "wb") as file:
             file.write(content)
