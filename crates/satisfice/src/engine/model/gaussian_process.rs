@@ -39,7 +39,13 @@ impl GaussianProcess {
         }
         let inputs: Vec<&[f64]> = points.chunks_exact(axes).collect();
         let values = [values.to_vec()];
-        let scales = likeliest(&Scales::new(vec![Shape::Line; axes]), &inputs, &values, STEPS);
+        let scales = likeliest(
+            &Scales::new(vec![Shape::Line; axes]),
+            &inputs,
+            &values,
+            STEPS,
+            &|| false,
+        );
         Some(Self {
             process: Process::new(scales, &inputs, &values),
         })

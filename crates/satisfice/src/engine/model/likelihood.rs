@@ -189,8 +189,14 @@ impl SignDescent {
     }
 }
 
-/// Improves the scales by [`SignDescent`]. Returns the best scales of all steps.
-pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[Vec<f64>], steps: usize) -> Scales {
+/// Improves the scales by [`SignDescent`], unless it is to `stop`. Returns the best scales of all steps.
+pub(super) fn likeliest(
+    from: &Scales,
+    inputs: &[&[f64]],
+    values: &[Vec<f64>],
+    steps: usize,
+    stop: &dyn Fn() -> bool,
+) -> Scales {
     let mut fit = Fit::default();
     let mut scales = from.clone();
     let mut best = (f64::INFINITY, from.clone());
@@ -202,6 +208,9 @@ pub(super) fn likeliest(from: &Scales, inputs: &[&[f64]], values: &[Vec<f64>], s
         scales.logs.len()
     ];
     for _ in 0..steps {
+        if stop() {
+            break;
+        }
         let (loss, gradient) = fit.evaluate(&scales, inputs, values);
         if loss < best.0 {
             best = (loss, scales.clone());
@@ -288,7 +297,9 @@ mod tests {
         let (inputs, values) = data(40);
         let values = [values];
         let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-        let scales = likeliest(&Scales::new(vec![Shape::Line; 2]), &inputs, &values, 40);
+        let scales = likeliest(&Scales::new(vec![Shape::Line; 2]), &inputs, &values, 40, &|| {
+            false
+        });
         assert!(scales.length(1) > 3.0 * scales.length(0), "{scales:?}");
     }
 }

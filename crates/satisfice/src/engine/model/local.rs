@@ -111,7 +111,9 @@ impl Model {
             .iter()
             .map(|values| chosen.iter().map(|&i| values[i]).collect())
             .collect();
-        let scales = likeliest(&scales, &some, &some_values, steps);
+        let scales = likeliest(&scales, &some, &some_values, steps, &|| {
+            given.context.is_out_of_time()
+        });
         let reach = match record.hits.last() {
             Some(&hit) => reach(given.context, given.units, record.point(hit), given.position),
             None => vec![0.0; axes],
@@ -129,7 +131,8 @@ impl Model {
         };
         let least = least(record, &model.region.known);
         let lengths = model.lengths();
-        while pool.len() < (candidates / LANES).max(2) {
+        while pool.len() < (candidates / LANES).max(2) && !(pool.len() >= 2 && given.context.is_out_of_time())
+        {
             let radius = model.radius;
             let source = model.source(given.units, record, &lengths);
             let mut rounded = Vec::new();

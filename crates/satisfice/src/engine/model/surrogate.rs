@@ -241,7 +241,10 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         if self.is_covered() {
             return Ask::Covered;
         }
-        for _ in 0..self.settings.batch {
+        for proposed in 0..self.settings.batch {
+            if proposed > 0 && context.is_out_of_time() {
+                break;
+            }
             let next = self
                 .first_point(context, rng)
                 .or_else(|| self.modelled(context, rng))
