@@ -4,6 +4,13 @@
 const COORDINATES: usize = 1 << 16;
 const FEWEST: usize = 16;
 const MOST: usize = 1024;
+/// How much slower radii shrink, all together, than one grows.
+const SLOWER: f64 = 0.5;
+/// The radius of the first hit; that of a later one is the smallest but a tenth of them.
+const FIRST: f64 = 1.0;
+const TENTH: usize = 10;
+/// The smallest and the largest radius: a larger one would refuse nearly all samples of any search.
+const RADII: (f64, f64) = (0.01, 100.0);
 
 /// The ends of local searches, hits or not. Coordinates are shares of the axes' widths.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -17,6 +24,9 @@ pub(super) struct Ends {
     /// Memory of one choice.
     #[serde(skip)]
     list: Vec<usize>,
+    /// Memory of one look at the radii.
+    #[serde(skip)]
+    radii: Vec<f64>,
 }
 
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -27,6 +37,8 @@ struct End {
     apart: f64,
     /// Searches that have started from here.
     tries: u32,
+    /// The radius within which samples are refused, of a hit; in a search's own metric.
+    radius: f64,
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
@@ -67,11 +79,12 @@ impl Ends {
             }
         }
         self.misses += usize::from(!is_hit);
-        let end = End {
+        let mut end = End {
             fitness,
             is_hit,
             apart,
             tries: 0,
+            radius: 0.0,
         };
         let most = (COORDINATES / dimension).clamp(FEWEST, MOST);
         if self.ends.is_empty() {
@@ -79,6 +92,10 @@ impl Ends {
             self.places.reserve_exact(most * dimension);
             self.ends.reserve_exact(most);
             self.list.reserve_exact(most);
+            self.radii.reserve_exact(most);
+        }
+        if is_hit {
+            end.radius = self.new_radius();
         }
         if self.ends.len() < most {
             self.places.extend_from_slice(place);
@@ -115,6 +132,54 @@ impl Ends {
         Some(index)
     }
 
+    /// How many are kept.
+    pub(super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The place, the radius and the fitness of each hit.
+    pub(super) fn hits(&self, dimension: usize) -> impl Iterator<Item = (&[f64], f64, f64)> {
+        let ends = self.places.chunks_exact(dimension).zip(&self.ends);
+        ends.filter(|(_, end)| end.is_hit)
+            .map(|(place, end)| (place, end.radius, end.fitness))
+    }
+
+    /// How far the nearest hit is, in its radius.
+    pub(super) fn room(&self, point: &[f64]) -> f64 {
+        let hits = self.hits(point.len());
+        let distances = hits.map(|(place, radius, _)| distance(place, point) / radius);
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The radius of a hit that is new: one of the smaller ones.
+    fn new_radius(&mut self) -> f64 {
+        let Self { ends, radii, .. } = self;
+        radii.clear();
+        radii.extend(ends.iter().filter(|end| end.is_hit).map(|end| end.radius));
+        if radii.is_empty() {
+            return FIRST;
+        }
+        let rank = radii.len() / TENTH;
+        *radii.select_nth_unstable_by(rank, f64::total_cmp).1
+    }
+
+    /// A search has been attracted by a hit that was known, or by none: radii adapt.
+    pub(super) fn adapt_radii(&mut self, attracted: Option<usize>, rate: f64) {
+        let hits = (self.ends.len() - self.misses) as f64;
+        let others = attracted.map_or(hits, |_| (hits - 1.0).max(1.0));
+        let decay = (-SLOWER * rate / others).exp();
+        for (index, end) in self.ends.iter_mut().enumerate() {
+            if !end.is_hit {
+                continue;
+            }
+            if Some(index) == attracted {
+                end.radius = (end.radius * rate.exp()).min(RADII.1);
+            } else {
+                end.radius = (end.radius * decay).max(RADII.0);
+            }
+        }
+    }
+
     /// Whether this is a list in a space of so many axes.
     pub(super) fn fit(&self, dimension: usize) -> bool {
         let misses = self.ends.iter().filter(|end| !end.is_hit).count();
@@ -141,6 +206,27 @@ mod tests {
         assert_eq!(tries, [8, 4, 0, 0]);
         assert_eq!(ends.promising(0.001), Some(2));
         assert_eq!(ends.promising(2.0), None);
+    }
+
+    #[test]
+    fn a_radius_grows_with_every_search_that_its_hit_attracts() {
+        let mut ends = Ends::default();
+        for (place, is_hit) in [(0.1, true), (0.5, false), (0.9, true)] {
+            ends.add(&[place], 0.0, is_hit);
+        }
+        ends.adapt_radii(Some(0), 1.0);
+        ends.adapt_radii(None, 1.0);
+        let radii: Vec<f64> = ends.hits(1).map(|(_, radius, _)| radius).collect();
+        approx::assert_relative_eq!(radii[0], 0.75_f64.exp(), max_relative = 1e-12);
+        approx::assert_relative_eq!(radii[1], (-0.75_f64).exp(), max_relative = 1e-12);
+        ends.add(&[0.6], 0.0, true);
+        assert_eq!(ends.hits(1).last().map(|(_, radius, _)| radius), Some(radii[1]));
+        assert_eq!(ends.room(&[0.1]), 0.0);
+        for _ in 0..1000 {
+            ends.adapt_radii(Some(0), 1.0);
+        }
+        let radii: Vec<f64> = ends.hits(1).map(|(_, radius, _)| radius).collect();
+        assert_eq!(radii, [RADII.1, RADII.0, RADII.0]);
     }
 
     #[test]

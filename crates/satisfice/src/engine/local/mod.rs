@@ -6,13 +6,14 @@ mod descent_flood;
 mod ends;
 pub(super) mod flood;
 pub(super) mod luby;
-mod matrix_adaptation;
 mod misses;
 mod niching;
 pub(super) mod one_plus_one;
 mod random;
 pub(super) mod recombination;
+mod repelled;
 mod restarted_cma_es;
+mod strategy;
 mod walk;
 
 pub use descent::Descent;

@@ -1,11 +1,14 @@
 //! Local searches by generations that end where they come near a known end, and go on from good ends: for optima that are hard to
 //! reach.
 
+mod starts;
+
 use super::bandit::Arm;
 use super::ends::Ends;
-use super::matrix_adaptation::{Distribution, usual_size};
 use super::misses::MissList;
 use super::recombination::Pairs;
+use super::repelled::Repelled;
+use super::strategy::{Strategy, usual_size};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_between_looks};
 use crate::engine::compiled::both_scalars;
@@ -19,9 +22,10 @@ use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// Local searches by an evolution strategy (Beyer, Sendhoff 2017) of three kinds, and recombinations of all pairs of hits:
+    /// Local searches by an evolution strategy (Beyer, Sendhoff 2008) of three kinds, and recombinations of all pairs of hits:
     ///
-    /// - from points that cover the space evenly;
+    /// - from points that cover the space evenly, far from known hits. Samples near those are refused (Ahrari and others 2022): within a
+    ///   radius that belongs to the hit, in units of the search's own spread. It grows with every search that the hit attracts;
     /// - from near misses of recombinations;
     /// - from beside the ends of searches that were no hits. A length is drawn log-uniformly, then one of the ends that have no better
     ///   one within it: good ends more often. A search that will not come below its origin ends early.
@@ -40,19 +44,17 @@ engine_settings! {
     /// # Ok::<(), satisfice::Error>(())
     /// ```
     pub struct Niching {
-        /// Largest first step from a uniform point, as a share of the axes.
-        pub step: f64 = 0.2, 1e-12..=1.0;
-        /// Smallest first step from a uniform point, as a share of the axes; first steps are drawn log-uniformly.
-        pub smallest_step: f64 = 0.05, 1e-12..=1.0;
+        /// First step from a uniform point, as a share of the axes.
+        pub step: f64 = 0.3, 1e-12..=1.0;
         /// Share of the searches' evaluations that start beside known ends.
-        pub hops: f64 = 0.5, 0.0..=1.0;
+        pub hops: f64 = 0.4, 0.0..=1.0;
     }
 }
 
 impl EngineConfig for Niching {
     const NAME: &'static str = "niching";
     const SUMMARY: &'static str = "evolution strategies that turn away from known optima and go on from good ends, and recombination of hits";
-    const CITATION: &'static str = "this project; parts after Beyer, Sendhoff 2017, doi 10.1109/TEVC.2017.2680320, and Ursem 1999, doi 10.1109/CEC.1999.785498";
+    const CITATION: &'static str = "this project; parts after Beyer, Sendhoff 2008, doi 10.1007/978-3-540-87700-4_13, Ahrari and others 2022, doi 10.1109/TEVC.2021.3117116, and Ursem 1999, doi 10.1109/CEC.1999.785498";
 
     both_scalars!();
 }
@@ -63,17 +65,8 @@ impl Niching {
     }
 }
 
-/// Displacements from known ends, as shares of the axes: drawn log-uniformly.
-const HOPS: (f64, f64) = (0.01, 0.2);
-/// First steps after a displacement are this share of it or more.
-const SETTLING: f64 = 0.1;
-/// The first step from a near miss.
-const REFINING_STEP: f64 = 0.003;
 /// Recombinations that are examined for one that is not a known hit, for each candidate of a batch.
 const LOOKS: usize = 8;
-/// How often a generation is of twice the usual size, and how often again; up to so many coordinates.
-const DOUBLING: f64 = 0.25;
-const COORDINATES: usize = 1 << 20;
 /// Samples at once: the rest of a larger generation is left out if one of these hits.
 const AT_ONCE: usize = 64;
 /// Spreads within which a known end has to be to be looked at: a hit, and another end. Around those, F is often rugged.
@@ -133,9 +126,13 @@ struct NichingSearch<S> {
     spent: [u64; 2],
     start: Vec<f64>,
     run: StrategyRun,
-    distribution: Distribution,
+    distribution: Strategy,
     asked: BatchKind,
+    /// The known end at which the probes look.
+    approaching: Option<usize>,
     position: Vec<S>,
+    /// Memory of one batch.
+    repelled: Repelled,
     /// Memory of one place.
     place: Vec<f64>,
 }
@@ -157,10 +154,6 @@ fn to_position<S: Real>(space: &Space<S>, place: impl Iterator<Item = f64>, posi
     }
 }
 
-fn log_uniform(rng: &mut SearchRng, (smallest, largest): (f64, f64)) -> f64 {
-    largest * (smallest / largest).powf(rng.uniform())
-}
-
 impl<S: Real> NichingSearch<S> {
     fn new(settings: Niching) -> Self {
         Self {
@@ -175,9 +168,11 @@ impl<S: Real> NichingSearch<S> {
             spent: [0; 2],
             start: Vec::new(),
             run: StrategyRun::default(),
-            distribution: Distribution::default(),
+            distribution: Strategy::default(),
             asked: BatchKind::default(),
+            approaching: None,
             position: Vec::new(),
+            repelled: Repelled::default(),
             place: Vec::new(),
         }
     }
@@ -200,56 +195,6 @@ impl<S: Real> NichingSearch<S> {
                 self.arms[1].count(false);
             }
         }
-    }
-
-    /// Starts the next search: from the best near miss every other time, else beside a known end or anywhere.
-    fn begin_run(&mut self, space: &Space<S>, rng: &mut SearchRng) {
-        let dimension = self.start.len();
-        self.restarts += 1;
-        self.run = StrategyRun {
-            running: true,
-            is_hop: false,
-            origin: f64::INFINITY,
-            size: usual_size(dimension),
-            generations: 0,
-            deleted: 0,
-            best: core::mem::take(&mut self.run.best),
-            fitness: f64::INFINITY,
-            before: f64::INFINITY,
-            looked: f64::INFINITY,
-        };
-        let (size, distribution) = (self.run.size, &mut self.distribution);
-        let start = |place: &[f64]| distribution.reset(place, REFINING_STEP, size);
-        if self.restarts.is_multiple_of(2) && self.misses.take_best(start) {
-            return;
-        }
-        let step = self.hop(rng).unwrap_or_else(|| {
-            self.even.draw(space, rng, &mut self.position);
-            to_place(space, &self.position, &mut self.start);
-            log_uniform(rng, (self.settings.smallest_step, self.settings.step))
-        });
-        while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
-            self.run.size *= 2;
-        }
-        self.distribution.reset(&self.start, step, self.run.size);
-    }
-
-    /// Writes a start beside a known end, if it is the turn of one, and returns the first step.
-    fn hop(&mut self, rng: &mut SearchRng) -> Option<f64> {
-        let (share, [hops, others]) = (self.settings.hops, self.spent.map(|count| count as f64));
-        if hops * (1.0 - share) >= others * share {
-            return None;
-        }
-        let dimension = self.start.len();
-        let length = log_uniform(rng, HOPS);
-        let end = self.ends.promising(length * (dimension as f64).sqrt())?;
-        self.start.copy_from_slice(self.ends.place(end, dimension));
-        for x in &mut self.start {
-            *x = (*x + length * rng.normal()).clamp(0.0, 1.0);
-        }
-        self.run.is_hop = true;
-        self.run.origin = self.ends.fitness(end);
-        Some(log_uniform(rng, (SETTLING * length, length)))
     }
 
     /// A known end that the search seems to be on its way to, if it is time to look.
@@ -287,16 +232,17 @@ impl<S: Real> NichingSearch<S> {
         }
         if 2 * run.deleted >= run.size {
             run.running = false;
+            let nearest = self.ends.nearest(&self.distribution.mean).map(|(index, _)| index);
+            self.attracted(nearest);
             return;
         }
         run.deleted = 0;
         self.distribution.adapt();
-        for (m, axis) in self.distribution.mean.iter_mut().zip(space.axes()) {
-            *m = match *m {
-                m if !m.is_finite() => 0.5,
-                m if axis.is_periodic() => m.rem_euclid(1.0),
-                m => m.clamp(0.0, 1.0),
-            };
+        for (j, axis) in space.axes().iter().enumerate() {
+            let m = self.distribution.mean[j];
+            if axis.is_periodic() && !(0.0..1.0).contains(&m) {
+                self.distribution.shift(j, -m.floor());
+            }
         }
         run.generations += 1;
         let an_axis = WINDOW.1 * space.dimension() as f64 / run.size as f64;
@@ -311,6 +257,16 @@ impl<S: Real> NichingSearch<S> {
         }
     }
 
+    /// A search that started anywhere has been attracted by a known end, or ends with no hit.
+    fn attracted(&mut self, index: Option<usize>) {
+        if self.run.is_hop {
+            return;
+        }
+        let rate = 1.0 / (self.start.len() as f64).sqrt();
+        self.ends
+            .adapt_radii(index.filter(|&index| self.ends.is_hit(index)), rate);
+    }
+
     /// Ends the search if it does not come forward.
     fn judge(&mut self, threshold: f64) {
         let run = &mut self.run;
@@ -321,6 +277,7 @@ impl<S: Real> NichingSearch<S> {
         } else if moved < PROGRESS * (run.fitness - threshold) {
             run.running = false;
             self.ends.add(&run.best, run.fitness, false);
+            self.attracted(None);
         }
     }
 }
@@ -357,6 +314,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
                 self.begin_run(space, rng);
             } else if let Some(index) = self.approached() {
                 self.run.looked = self.distribution.spread();
+                self.approaching = Some(index);
                 for probe in 1..=PROBES.min(points_between_looks(dimension)) {
                     let share = probe as f64 / (PROBES as f64 + 1.0);
                     let ends = self.run.best.iter().zip(self.ends.place(index, dimension));
@@ -369,9 +327,21 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
         }
         self.asked = BatchKind::Samples;
         let left = self.run.size - self.distribution.sampled();
+        let run = &self.run;
+        let axes = space.axes();
+        let confine = |j: usize, x: f64| {
+            if axes[j].is_periodic() {
+                x
+            } else {
+                x.clamp(0.0, 1.0)
+            }
+        };
+        self.repelled.find(&self.ends, &self.distribution, |fitness| {
+            !run.is_hop && fitness < run.fitness
+        });
         for _ in 0..left.min(AT_ONCE).min(points_between_looks(dimension)) {
-            let sample = self.distribution.sample(rng);
-            out.push_with(|position| to_position(space, sample, position));
+            let sample = self.distribution.sample(rng, &mut self.repelled, confine);
+            out.push_with(|position| to_position(space, sample.iter().copied(), position));
         }
         Ask::More
     }
@@ -409,6 +379,9 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
                     *outcome == Outcome::Deleted || outcome.fitness().f64() <= self.run.fitness
                 };
                 self.run.running = !outcomes.iter().all(is_low);
+                if !self.run.running {
+                    self.attracted(self.approaching);
+                }
                 for outcome in outcomes {
                     self.arms[0].count(outcome.is_hit());
                 }
@@ -433,6 +406,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
             && self.run.best.len() == dimension
             && (!self.run.running || self.distribution.fit(dimension, self.run.size))
             && self.ends.fit(dimension)
+            && self.approaching.is_none_or(|index| index < self.ends.len())
             && self.misses.fit(dimension)
             && self.pairs.fit(self.hits.len() / dimension.max(1), dimension);
         fits.then_some(())
@@ -454,6 +428,7 @@ impl<S: Real> Part for NichingSearch<S> {
         run,
         distribution,
         asked,
+        approaching,
         position
     );
 }

@@ -1,0 +1,94 @@
+//! Where the searches of [`Niching`](super::Niching) start.
+
+use super::{NichingSearch, StrategyRun, to_place, usual_size};
+use crate::scalar::Real;
+use crate::seed::SearchRng;
+use crate::space::Space;
+
+/// Displacements from known ends, as shares of the axes: drawn log-uniformly.
+const HOPS: (f64, f64) = (0.01, 0.2);
+/// First steps after a displacement are this share of it or more.
+const SETTLING: f64 = 0.1;
+/// Points of which the one farthest from known hits becomes a start, at most; and coordinates of hits that are looked at for it.
+const STARTS: usize = 100;
+const LOOKED: usize = 1 << 16;
+/// The first step from a near miss.
+const REFINING_STEP: f64 = 0.003;
+/// How often a generation is of twice the usual size, and how often again; up to so many coordinates.
+const DOUBLING: f64 = 0.25;
+const COORDINATES: usize = 1 << 20;
+
+fn log_uniform(rng: &mut SearchRng, (smallest, largest): (f64, f64)) -> f64 {
+    largest * (smallest / largest).powf(rng.uniform())
+}
+
+impl<S: Real> NichingSearch<S> {
+    /// Starts the next search: from the best near miss every other time, else beside a known end or anywhere.
+    pub(super) fn begin_run(&mut self, space: &Space<S>, rng: &mut SearchRng) {
+        let dimension = self.start.len();
+        self.restarts += 1;
+        self.run = StrategyRun {
+            running: true,
+            is_hop: false,
+            origin: f64::INFINITY,
+            size: usual_size(dimension),
+            generations: 0,
+            deleted: 0,
+            best: core::mem::take(&mut self.run.best),
+            fitness: f64::INFINITY,
+            before: f64::INFINITY,
+            looked: f64::INFINITY,
+        };
+        let (size, distribution) = (self.run.size, &mut self.distribution);
+        let start = |place: &[f64]| distribution.reset(place, REFINING_STEP, size);
+        if self.restarts.is_multiple_of(2) && self.misses.take_best(start) {
+            return;
+        }
+        let step = self.hop(rng).unwrap_or_else(|| {
+            self.draw_start(space, rng);
+            self.settings.step
+        });
+        while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
+            self.run.size *= 2;
+        }
+        self.distribution.reset(&self.start, step, self.run.size);
+    }
+
+    /// Writes a start that is far from known hits, in their radii, of points that cover the space evenly.
+    fn draw_start(&mut self, space: &Space<S>, rng: &mut SearchRng) {
+        let dimension = self.start.len();
+        let coordinates = self.hits.len().min(self.ends.len() * dimension);
+        let candidates = LOOKED
+            .checked_div(coordinates)
+            .map_or(1, |count| count.clamp(1, STARTS));
+        let mut widest = 0.0;
+        self.place.resize(dimension, 0.5);
+        for _ in 0..candidates {
+            self.even.draw(space, rng, &mut self.position);
+            to_place(space, &self.position, &mut self.place);
+            let room = self.ends.room(&self.place);
+            if room > widest {
+                widest = room;
+                self.start.copy_from_slice(&self.place);
+            }
+        }
+    }
+
+    /// Writes a start beside a known end, if it is the turn of one, and returns the first step.
+    fn hop(&mut self, rng: &mut SearchRng) -> Option<f64> {
+        let (share, [hops, others]) = (self.settings.hops, self.spent.map(|count| count as f64));
+        if hops * (1.0 - share) >= others * share {
+            return None;
+        }
+        let dimension = self.start.len();
+        let length = log_uniform(rng, HOPS);
+        let end = self.ends.promising(length * (dimension as f64).sqrt())?;
+        self.start.copy_from_slice(self.ends.place(end, dimension));
+        for x in &mut self.start {
+            *x = (*x + length * rng.normal()).clamp(0.0, 1.0);
+        }
+        self.run.is_hop = true;
+        self.run.origin = self.ends.fitness(end);
+        Some(log_uniform(rng, (SETTLING * length, length)))
+    }
+}
