@@ -21,6 +21,8 @@ pub(super) struct Ends {
     misses: usize,
     /// Where the next one is written, once there is no room.
     oldest: usize,
+    /// The radius of a hit that is new, once it is known since radii last changed.
+    new_radius: Option<f64>,
     /// Memory of one choice.
     #[serde(skip)]
     list: Vec<usize>,
@@ -151,20 +153,24 @@ impl Ends {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// The radius of a hit that is new: one of the smaller ones.
+    /// The radius of a hit that is new: one of the smaller ones. That does not change with another hit of this radius.
     fn new_radius(&mut self) -> f64 {
         let Self { ends, radii, .. } = self;
-        radii.clear();
-        radii.extend(ends.iter().filter(|end| end.is_hit).map(|end| end.radius));
-        if radii.is_empty() {
-            return FIRST;
-        }
-        let rank = radii.len() / TENTH;
-        *radii.select_nth_unstable_by(rank, f64::total_cmp).1
+        *self.new_radius.get_or_insert_with(|| {
+            radii.clear();
+            radii.extend(ends.iter().filter(|end| end.is_hit).map(|end| end.radius));
+            let rank = radii.len() / TENTH;
+            if radii.is_empty() {
+                FIRST
+            } else {
+                *radii.select_nth_unstable_by(rank, f64::total_cmp).1
+            }
+        })
     }
 
     /// A search has been attracted by a hit that was known, or by none: radii adapt.
     pub(super) fn adapt_radii(&mut self, attracted: Option<usize>, rate: f64) {
+        self.new_radius = None;
         let hits = (self.ends.len() - self.misses) as f64;
         let others = attracted.map_or(hits, |_| (hits - 1.0).max(1.0));
         let decay = (-SLOWER * rate / others).exp();
