@@ -6,11 +6,11 @@ use super::strategy::Strategy;
 /// A hit is near if the mean is no farther outside its radius: a normal variable is beyond this once in a hundred times.
 const REACH: f64 = 2.33;
 /// What is left of the radii after a refusal, raised to the inverse of D (or of the second value, where D is larger), until the next
-/// generation: so that sampling ends, and soon.
+/// batch: so that sampling ends, and soon.
 const SHRINKAGE: f64 = 0.99;
 const SLOWEST: usize = 50;
 
-/// The known hits near a generation, as N(0, I) sees them.
+/// The known hits near a generation, as N(0, I) sees them; found anew for each batch.
 #[derive(Debug, Default)]
 pub(super) struct Repelled {
     /// From each hit to the mean.
