@@ -30,8 +30,8 @@ engine_settings! {
     /// - from beside the ends of searches that were no hits. A length is drawn log-uniformly, then one of the ends that have no better
     ///   one within it: good ends more often. A search that will not come below its origin ends early.
     ///
-    /// A search ends at a hit, when it hardly comes nearer to delta any more, or when a known end is within the spread of its samples
-    /// and no hill lies between (Ursem 1999), so that it costs little to be on the way to a known optimum.
+    /// A search ends at a hit, when it hardly comes nearer to delta any more, or when a known end is near in terms of the spread of its
+    /// samples and no hill lies between (Ursem 1999), so that it costs little to be on the way to a known optimum.
     ///
     /// Steps on integer axes are rounded, so this engine suits continuous axes. Hits are deleted.
     ///
@@ -46,8 +46,8 @@ engine_settings! {
     pub struct Niching {
         /// First step from a uniform point, as a share of the axes.
         pub step: f64 = 0.3, 1e-12..=1.0;
-        /// Share of the searches' evaluations that start beside known ends.
-        pub hops: f64 = 0.4, 0.0..=1.0;
+        /// Share of the searches that start beside known ends; near misses aside.
+        pub hops: f64 = 0.33, 0.0..=1.0;
     }
 }
 
@@ -71,12 +71,14 @@ const LOOKS: usize = 8;
 const AT_ONCE: usize = 64;
 /// Spreads within which a known end has to be to be looked at: a hit, and another end. Around those, F is often rugged.
 const SCOPE: (f64, f64) = (1.0, 0.2);
+/// Once the spread is this share of the first one, a hit has to be within so many: the samples that it refuses keep the mean out of one.
+const SETTLED: (f64, f64) = (0.2, 3.0);
 /// Points between a search and a known end that tell whether there is a hill.
 const PROBES: usize = 3;
 /// A search is judged after so many generations and, divided by their size, so many evaluations an axis; it goes on if the distance
 /// to delta has become smaller by this share.
 const WINDOW: (f64, f64) = (20.0, 30.0);
-const PROGRESS: f64 = 0.05;
+const PROGRESS: f64 = 0.2;
 
 /// What the points of a batch are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -92,9 +94,12 @@ enum BatchKind {
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 struct StrategyRun {
     running: bool,
+    is_from_miss: bool,
     /// Whether it started beside a known end, of which this is F.
     is_hop: bool,
     origin: f64,
+    /// The spread of the first generation.
+    first_spread: f64,
     /// Samples of a generation.
     size: usize,
     generations: u64,
@@ -122,7 +127,9 @@ struct NichingSearch<S> {
     restarts: u64,
     /// Where searches start that do not start beside a known end.
     even: EvenPoints,
-    /// Evaluations of searches from known ends, and of the others.
+    /// Searches that started beside known ends, and anywhere.
+    started: [u64; 2],
+    /// Evaluations of searches from near misses, and of all.
     spent: [u64; 2],
     start: Vec<f64>,
     run: StrategyRun,
@@ -165,6 +172,7 @@ impl<S: Real> NichingSearch<S> {
             arms: [Arm::default(); 2],
             restarts: 0,
             even: EvenPoints::default(),
+            started: [0; 2],
             spent: [0; 2],
             start: Vec::new(),
             run: StrategyRun::default(),
@@ -204,7 +212,11 @@ impl<S: Real> NichingSearch<S> {
             return None;
         }
         let (index, distance) = self.ends.nearest(&self.distribution.mean)?;
-        let scope = if self.ends.is_hit(index) { SCOPE.0 } else { SCOPE.1 };
+        let scope = match self.ends.is_hit(index) {
+            false => SCOPE.1,
+            true if spread < SETTLED.0 * self.run.first_spread => SETTLED.1,
+            true => SCOPE.0,
+        };
         (distance < scope * spread && self.ends.fitness(index) < self.run.fitness).then_some(index)
     }
 
@@ -212,7 +224,9 @@ impl<S: Real> NichingSearch<S> {
     fn learn(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
         let space = context.space();
         let run = &mut self.run;
-        self.spent[usize::from(!run.is_hop)] += outcomes.len() as u64;
+        let count = outcomes.len() as u64;
+        self.spent[0] += u64::from(run.is_from_miss) * count;
+        self.spent[1] += count;
         for (position, outcome) in batch.points().zip(outcomes) {
             self.arms[0].count(outcome.is_hit());
             run.deleted += usize::from(*outcome == Outcome::Deleted);
@@ -423,6 +437,7 @@ impl<S: Real> Part for NichingSearch<S> {
         arms,
         restarts,
         even,
+        started,
         spent,
         start,
         run,

@@ -12,8 +12,9 @@ const SETTLING: f64 = 0.1;
 /// Points of which the one farthest from known hits becomes a start, at most; and coordinates of hits that are looked at for it.
 const STARTS: usize = 100;
 const LOOKED: usize = 1 << 16;
-/// The first step from a near miss.
+/// The first step from a near miss; and the largest share of the evaluations that searches from there may take.
 const REFINING_STEP: f64 = 0.003;
+const REFINING: f64 = 0.05;
 /// How often a generation is of twice the usual size, and how often again; up to so many coordinates.
 const DOUBLING: f64 = 0.25;
 const COORDINATES: usize = 1 << 20;
@@ -29,8 +30,10 @@ impl<S: Real> NichingSearch<S> {
         self.restarts += 1;
         self.run = StrategyRun {
             running: true,
+            is_from_miss: false,
             is_hop: false,
             origin: f64::INFINITY,
+            first_spread: 0.0,
             size: usual_size(dimension),
             generations: 0,
             deleted: 0,
@@ -39,19 +42,29 @@ impl<S: Real> NichingSearch<S> {
             before: f64::INFINITY,
             looked: f64::INFINITY,
         };
-        let (size, distribution) = (self.run.size, &mut self.distribution);
-        let start = |place: &[f64]| distribution.reset(place, REFINING_STEP, size);
-        if self.restarts.is_multiple_of(2) && self.misses.take_best(start) {
-            return;
-        }
-        let step = self.hop(rng).unwrap_or_else(|| {
-            self.draw_start(space, rng);
-            self.settings.step
-        });
-        while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
-            self.run.size *= 2;
-        }
+        let step =
+            if self.is_refining_due() && self.misses.take_best(|place| self.start.copy_from_slice(place)) {
+                self.run.is_from_miss = true;
+                REFINING_STEP
+            } else {
+                let step = self.hop(rng).unwrap_or_else(|| {
+                    self.draw_start(space, rng);
+                    self.settings.step
+                });
+                self.started[usize::from(!self.run.is_hop)] += 1;
+                while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
+                    self.run.size *= 2;
+                }
+                step
+            };
         self.distribution.reset(&self.start, step, self.run.size);
+        self.run.first_spread = self.distribution.spread();
+    }
+
+    /// Whether it is the turn of a near miss.
+    fn is_refining_due(&self) -> bool {
+        let [refining, all] = self.spent.map(|count| count as f64);
+        self.restarts.is_multiple_of(2) && refining <= REFINING * all
     }
 
     /// Writes a start that is far from known hits, in their radii, of points that cover the space evenly.
@@ -76,7 +89,7 @@ impl<S: Real> NichingSearch<S> {
 
     /// Writes a start beside a known end, if it is the turn of one, and returns the first step.
     fn hop(&mut self, rng: &mut SearchRng) -> Option<f64> {
-        let (share, [hops, others]) = (self.settings.hops, self.spent.map(|count| count as f64));
+        let (share, [hops, others]) = (self.settings.hops, self.started.map(|count| count as f64));
         if hops * (1.0 - share) >= others * share {
             return None;
         }
