@@ -88,7 +88,7 @@ const PER_FRAME: u64 = 5_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quick = std::env::var_os("SATISFICE_QUICK").is_some();
-    let (seeds, evaluations) = if quick { (1, 6_000) } else { (16, 100_000) };
+    let (seeds, evaluations) = if quick { (1, 200) } else { (16, 100_000) };
     let mut means = vec![Vec::new(); ENGINES.len()];
     let mut names = Vec::new();
     for (problem, settings) in PROBLEMS {
