@@ -59,6 +59,11 @@ fn one_line(error: &clap::Error) -> String {
             "{said}; a value that begins with - is joined to its option, as in --from=-1s; see --help"
         );
     }
+    if let Some(assignment) = as_parameter(error) {
+        return format!(
+            "{said}; --set {assignment} sets a parameter of the problem, --engine-set one of the engine; see --help"
+        );
+    }
     for line in lines {
         let known = line.strip_prefix("tip: ").or_else(|| {
             // Lists such as the possible values, and the names of what is missing.
@@ -86,6 +91,24 @@ fn is_below_zero(error: &clap::Error) -> bool {
         .and_then(|argument| argument.strip_prefix('-'));
     error.kind() == ErrorKind::UnknownArgument
         && digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_digit()))
+}
+
+/// What was meant, if an unknown argument may be a parameter: `NAME=VALUE`.
+fn as_parameter(error: &clap::Error) -> Option<String> {
+    let is_new = error.kind() == ErrorKind::UnknownArgument && error.get(ContextKind::SuggestedArg).is_none();
+    let argument = error.get(ContextKind::InvalidArg).filter(|_| is_new)?.to_string();
+    let command = Satisfice::command();
+    let subcommand = command.find_subcommand(std::env::args_os().nth(1)?)?;
+    subcommand.get_arguments().find(|known| known.get_id() == "set")?;
+    if argument.contains('=') && !argument.starts_with('-') {
+        return Some(argument);
+    }
+    let name = argument.strip_prefix("--").filter(|name| name.len() > 1)?;
+    Some(if name.contains('=') {
+        name.to_owned()
+    } else {
+        format!("{name}=VALUE")
+    })
 }
 
 fn tell(message: &str) -> ExitCode {
