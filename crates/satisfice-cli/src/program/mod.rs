@@ -64,6 +64,11 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let engine = arguments.engine.as_deref().unwrap_or(DEFAULT_ENGINE);
     let mut spec = arguments.search.spec(engine)?;
     arguments.slices.enter(&mut spec);
+    if given.workers > 1 && !given.ordered {
+        // The engine has to know how many answers it does not wait for.
+        let workers = usize::from(given.workers);
+        spec.budget.parallel = spec.budget.parallel.or(Some(workers));
+    }
     let search = search(&spec)?;
     let way = enter(&mut spec, given, &space)?;
     let task = Arc::new(Task {

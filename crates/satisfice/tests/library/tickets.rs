@@ -393,6 +393,22 @@ fn the_engine_that_models_f_takes_answers_in_any_order() {
     }
 }
 
+/// Points that are out count as what the model predicts. When they counted as nearly hits, the next ones were proposed beside them, and
+/// half of all seeds found none of a ring that is a tenth of the square.
+#[test]
+fn points_that_are_out_do_not_draw_the_model_to_them() {
+    for (name, least) in [("surrogate", 30), ("portfolio", 10)] {
+        let entry = engine::find(name).unwrap();
+        for seed in 0..12 {
+            let search = Search::with(entry.configure([]).unwrap()).seed(seed);
+            let mut tickets = Tickets::eager(search, problem("square"), &Budget::evaluations(80)).unwrap();
+            work(&mut tickets, 4, seed, u64::MAX);
+            let hits = tickets.finish().hit_count();
+            assert!(hits >= least, "{name}, seed {seed}: {hits}");
+        }
+    }
+}
+
 #[test]
 fn another_problem_is_refused() {
     let entry = engine::find("portfolio").unwrap();

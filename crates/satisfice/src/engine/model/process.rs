@@ -273,18 +273,17 @@ mod tests {
         assert_eq!(one.predictions(&a, 0), two.predictions(&b, 0));
     }
 
-    /// The constant liar (Ginsbourger, Le Riche, Carraro 2010): a proposed point is predicted as its lie, nearly for certain, and
-    /// nothing becomes less certain.
+    /// A point that is told far from the others is predicted as its value, nearly for certain, and nothing becomes less certain.
     #[test]
-    fn a_pending_point_is_believed_to_have_its_lie() {
-        let (mut lied, honest) = (process(40), process(40));
+    fn a_point_that_is_told_makes_its_neighbourhood_certain() {
+        let (mut told, before) = (process(40), process(40));
         let far = [5.0, -5.0];
-        lied.push(&far, &[0.0]);
+        told.push(&far, &[0.0]);
         let at = Block::new(far.map(|x| [x; LANES]).to_vec());
         for (mut a, mut b, is_far) in [(at.clone(), at, true), (block(700), block(700), false)] {
-            lied.update(&mut a);
-            honest.update(&mut b);
-            let ((means, after), (_, before)) = (lied.predictions(&a, 0), honest.predictions(&b, 0));
+            told.update(&mut a);
+            before.update(&mut b);
+            let ((means, after), (_, before)) = (told.predictions(&a, 0), before.predictions(&b, 0));
             assert!((0..LANES).all(|lane| after[lane] <= before[lane] * (1.0 + 1e-9)));
             assert!(
                 !is_far || (means[0].abs() < 0.02 && after[0] < 0.02 * before[0]),

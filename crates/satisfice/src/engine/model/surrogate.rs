@@ -21,13 +21,13 @@ use crate::seed::SearchRng;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// After a low-discrepancy design of `2 d + 2` points, each proposal is the candidate with the highest probability of
+    /// After a low-discrepancy design of `d + 2` points, each proposal is the candidate with the highest probability of
     /// `F < delta` under a Gaussian process with a Matérn 5/2 kernel and a length scale for each axis:
     ///
     /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate.
     /// - A candidate that is a known point, or the same as a hit, is excluded. So is one within the separation radius of a point
-    ///   that is proposed and not told yet; such points count as told with `F = delta` (constant liar: Ginsbourger, Le Riche,
-    ///   Carraro 2010, doi 10.1007/978-3-642-10701-6_6).
+    ///   that is proposed and not told yet; such points count as told with the values that the model predicts (kriging believer:
+    ///   Ginsbourger, Le Riche, Carraro 2010, doi 10.1007/978-3-642-10701-6_6). The design goes on until as many points are told.
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
     /// - Where the problem tells the [components](crate::Components) of F, each is modelled, with length scales in common, and the score
     ///   is the probability that all are within their limits. Damped Gauss-Newton steps lead from candidates to roots of the models.
@@ -120,13 +120,25 @@ impl<S: Real> ModelledSearch<S> {
         self.skill.is_useful()
     }
 
-    /// The next point of the design that is new. Misses of others count for its points.
+    /// How many points are told before there is a model: the values of fewer say too little about its scales.
+    fn design_size(&self) -> usize {
+        self.units.len() + 2
+    }
+
+    /// Points that were told, those of known solutions aside.
+    fn told(&self) -> usize {
+        self.record.len() - self.record.duplicates.len()
+    }
+
+    /// The next point of the design that is new. Misses of others count for its points; while answers are awaited, it goes on.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
-        let axes = self.units.len();
+        let (axes, size) = (self.units.len(), self.design_size());
         let mut x = Vec::new();
-        let hits = self.record.hits.len() + self.record.duplicates.len();
-        let misses = self.record.len().saturating_sub(hits);
-        while self.started.max(misses) < (2 * axes + 2).min(4 * axes) {
+        let misses = self.told() - self.record.hits.len();
+        for _ in 0..TRIES.max(size) {
+            if self.started.max(misses) >= size && self.told() >= size {
+                break;
+            }
             x.clear();
             x.extend(self.design.next_point(axes, rng));
             self.started += 1;
@@ -149,7 +161,7 @@ impl<S: Real> ModelledSearch<S> {
 
     /// The best candidate of the model.
     fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
-        if self.record.len() == self.record.duplicates.len() {
+        if self.told() < self.design_size() {
             return None;
         }
         let mut given = Given {
@@ -171,11 +183,7 @@ impl<S: Real> ModelledSearch<S> {
         model.refresh(&mut given, rng);
         let known = model.process.len();
         for point in &self.pending {
-            if model.target.units.is_empty() {
-                model.process.push(point, &[0.0]);
-            } else {
-                model.process.believe(point);
-            }
+            model.process.believe(point);
         }
         let chosen = model.choose(&mut given, &self.pending, rng);
         if !self.pending.is_empty() {

@@ -11,7 +11,7 @@ const POINTS_OF_LEAST: f64 = 300.0;
 pub(super) const MOST_PROPOSALS: u64 = 1_000;
 const PLANNED: u64 = 2_000;
 const FEWEST_PROPOSALS: u64 = 100;
-/// Proposals of the model in one batch: half of the evaluations that go on at once, and so many at most.
+/// Proposals of the model in one batch: as many as evaluations go on at once, and so many at most.
 const MOST_PROPOSALS_AT_ONCE: usize = 32;
 /// Seconds of a proposal of the model.
 const PROPOSAL: f64 = 5e-4;
@@ -67,7 +67,7 @@ impl Sizes {
             searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
             candidates,
             proposals: MOST_PROPOSALS,
-            proposals_at_once: parallel.div_ceil(2).clamp(1, MOST_PROPOSALS_AT_ONCE),
+            proposals_at_once: parallel.clamp(1, MOST_PROPOSALS_AT_ONCE),
             regions: planned.map_or(MOST_REGIONS, |planned| {
                 usize::try_from(planned / EVALUATIONS_OF_A_REGION)
                     .unwrap_or(MOST_REGIONS)
