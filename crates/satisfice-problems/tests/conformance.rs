@@ -76,7 +76,7 @@ fn components_of_hits_are_within_their_limits<P: Catalogued<Scalar = f64>>(setti
     let problem = P::from_params(&values).unwrap();
     let report = Search::new()
         .seed(2)
-        .run(&problem, &Budget::evaluations(100))
+        .run(&problem, &Budget::evaluations(200))
         .unwrap();
     assert!(report.hit_count() >= 1, "{}", P::NAME);
     let components = problem.components().unwrap();
