@@ -82,8 +82,15 @@ fn workers_answer_line_by_line_and_ordered_reports_do_not_depend_on_their_number
     });
     assert_eq!(hits(&reports[0]), FIVE);
     assert_eq!(reports[0], reports[1]);
-    let eager = run(place.path(), &["--worker", "sh worker", "--workers", "3"]);
-    assert_eq!(hits(&report(&eager)), FIVE);
+    assert_eq!(reports[0]["budget"]["parallel"], Value::Null);
+    // Out of order, the engine is told how many answers are awaited.
+    for (arguments, parallel) in [(&[][..], 3), (&["--parallel", "2"], 2)] {
+        let mut all = vec!["--worker", "sh worker", "--workers", "3"];
+        all.extend(arguments);
+        let eager = report(&run(place.path(), &all));
+        assert_eq!(hits(&eager), FIVE);
+        assert_eq!(eager["budget"]["parallel"], parallel);
+    }
 }
 
 #[test]

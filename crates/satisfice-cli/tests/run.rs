@@ -53,7 +53,7 @@ fn mistakes_are_told_in_one_line() {
         "run teapots --engine-set particles=0",
         "run teapots --tiem 1s",
         "run teapots delta=0.1",
-        "run teapots --order random",
+        "run teapots --offset 0.1",
         "run teapots --time 100",
         "run teapots --time 0",
         "run teapots --time 0s",

@@ -94,6 +94,7 @@ enum BatchKind {
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 struct StrategyRun {
     running: bool,
+    /// Whether it started from a near miss of recombinations.
     is_from_miss: bool,
     /// Whether it started beside a known end, of which this is F.
     is_hop: bool,
