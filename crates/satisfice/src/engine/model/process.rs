@@ -13,6 +13,8 @@ const LEAST_VARIANCE: f64 = 1e-9;
 pub(super) struct Process {
     pub(super) scales: Scales,
     fit: Fit,
+    /// How many points have values of their own: those after them are believed to have the predicted ones.
+    told: usize,
     /// `L⁻¹ (y - mean)` for each output.
     solved: Vec<Vec<f64>>,
 }
@@ -29,6 +31,8 @@ pub(super) struct Block {
     mean: Vec<Lanes>,
     /// What the points take from the variance, as a share of it.
     explained: Lanes,
+    /// The same of the points that are believed.
+    believed: Lanes,
 }
 
 impl Block {
@@ -39,6 +43,7 @@ impl Block {
             solved: Vec::new(),
             mean: Vec::new(),
             explained: [0.0; LANES],
+            believed: [0.0; LANES],
         }
     }
 
@@ -47,6 +52,7 @@ impl Block {
         self.solved.clear();
         self.mean.clear();
         self.explained = [0.0; LANES];
+        self.believed = [0.0; LANES];
     }
 }
 
@@ -56,7 +62,12 @@ impl Process {
         let mut fit = Fit::default();
         fit.factor(&scales, inputs);
         let solved = fit.moments(values);
-        Self { scales, fit, solved }
+        Self {
+            scales,
+            fit,
+            told: inputs.len(),
+            solved,
+        }
     }
 
     /// Number of points.
@@ -64,10 +75,13 @@ impl Process {
         self.solved[0].len()
     }
 
-    /// Adds a point that is believed to have the values that are predicted for it (Ginsbourger, Le Riche, Carraro 2010).
+    /// Adds a point that is believed to have the values that are predicted for it (Ginsbourger, Le Riche, Carraro 2010). Until it is
+    /// [forgotten](Self::truncate) no other kind is added.
     pub(super) fn believe(&mut self, input: &[f64]) {
         let unknown = vec![f64::NAN; self.outputs()];
+        let told = self.told;
         self.push(input, &unknown);
+        self.told = told;
     }
 
     /// Adds a point, and returns by how much each output was predicted wrongly. Cost: n² / 2.
@@ -93,6 +107,7 @@ impl Process {
             solved.push(known * fit.factor.inverse_pivot(new));
             errors.push(known);
         }
+        self.told = new + 1;
         errors
     }
 
@@ -102,6 +117,7 @@ impl Process {
             block.solved.truncate(len);
             block.mean.clear();
             block.explained = [0.0; LANES];
+            block.believed = [0.0; LANES];
             self.accumulate(block, 0);
         }
     }
@@ -111,6 +127,7 @@ impl Process {
         self.fit.points.truncate(len);
         self.fit.factor.truncate(len);
         self.solved.iter_mut().for_each(|solved| solved.truncate(len));
+        self.told = self.told.min(len);
     }
 
     /// Brings what is known of a block up to date. Cost for each candidate and new point: n.
@@ -137,11 +154,27 @@ impl Process {
                 }
             }
         }
-        for solved in &block.solved[from..] {
-            for (explained, solved) in block.explained.iter_mut().zip(solved) {
-                *explained += solved * solved;
+        for (i, solved) in block.solved.iter().enumerate().skip(from) {
+            let sum = if i < self.told {
+                &mut block.explained
+            } else {
+                &mut block.believed
+            };
+            for (sum, solved) in sum.iter_mut().zip(solved) {
+                *sum += solved * solved;
             }
         }
+    }
+
+    /// The share of a block's variances that the points leave which are believed; `None` if there are none.
+    pub(super) fn left(&self, block: &Block) -> Option<Lanes> {
+        (self.told < self.len()).then(|| {
+            let share = |lane: usize| {
+                let before = (1.0 - block.explained[lane]).max(LEAST_VARIANCE);
+                ((before - block.believed[lane]) / before).clamp(0.0, 1.0)
+            };
+            core::array::from_fn(share)
+        })
     }
 
     /// The mean of the squares of these errors, each by the variance of its output.
@@ -292,6 +325,29 @@ mod tests {
         }
     }
 
+    /// A point that is believed leaves as much of the variances as one that is told.
+    #[test]
+    fn a_point_that_is_believed_says_how_much_its_value_will_tell() {
+        let (mut believes, mut is_told) = (process(20), process(20));
+        let (mut a, mut b) = (block(300), block(300));
+        believes.update(&mut a);
+        assert!(believes.left(&a).is_none());
+        let (_, before) = believes.predictions(&a, 0);
+        believes.believe(&point(301));
+        believes.update(&mut a);
+        is_told.push(&point(301), &[0.3]);
+        is_told.update(&mut b);
+        let left = believes.left(&a).unwrap();
+        let (_, after) = is_told.predictions(&b, 0);
+        for lane in 0..LANES {
+            approx::assert_relative_eq!(left[lane] * before[lane], after[lane], max_relative = 1e-6);
+        }
+        believes.truncate(20);
+        believes.rewind(&mut a, 20);
+        assert!(believes.left(&a).is_none());
+        assert_eq!(believes.predictions(&a, 0).1, before);
+    }
+
     /// Each output is predicted as it would be alone, and a point that is believed moves no prediction.
     #[test]
     fn outputs_share_scales_and_nothing_else() {
@@ -324,7 +380,8 @@ mod tests {
         for lane in 0..LANES {
             approx::assert_relative_eq!(before.0[lane], after.0[lane], max_relative = 1e-12);
         }
-        assert!(after.1[2] < 0.01 * before.1[2]);
+        assert_eq!(before.1, after.1);
+        assert!(both.left(&block_of_both).unwrap()[2] < 0.01);
     }
 
     /// Solves `A x = b` by Gaussian elimination with pivots.

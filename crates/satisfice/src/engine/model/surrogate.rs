@@ -25,9 +25,10 @@ engine_settings! {
     /// `F < delta` under a Gaussian process with a Matérn 5/2 kernel and a length scale for each axis:
     ///
     /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate.
-    /// - A candidate that is a known point, or the same as a hit, is excluded. So is one within the separation radius of a point
-    ///   that is proposed and not told yet; such points count as told with the values that the model predicts (kriging believer:
-    ///   Ginsbourger, Le Riche, Carraro 2010, doi 10.1007/978-3-642-10701-6_6). The design goes on until as many points are told.
+    /// - A candidate that is a known point, or the same as a hit, is excluded; so is one within the separation radius of a point that is
+    ///   proposed and not told yet. Where such points will say more of a candidate, it waits: its probability p counts
+    ///   `p (1 - (1 - s) (1 - p))`, where s is the share of its variance that their values will leave. The design goes on until as many points
+    ///   are told.
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
     /// - Where the problem tells the [components](crate::Components) of F, each is modelled, with length scales in common, and the score
     ///   is the probability that all are within their limits. Damped Gauss-Newton steps lead from candidates to roots of the models.

@@ -346,7 +346,7 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
                 let excess = self.given.len().saturating_sub(GIVEN);
                 self.given.drain(..excess);
             }
-            Origin::WarmStart | Origin::Exhaustion => {}
+            Origin::Single { .. } | Origin::WarmStart | Origin::Exhaustion => {}
         }
     }
 
