@@ -1,13 +1,17 @@
 //! Hits after 50, 200 and 400 evaluations: the figures of `docs/results/expensive.md`.
 //!
-//! `cargo run --release -p satisfice-problems --example few_evaluations -- [engine=NAME] [seeds=N] [only=TEXT]`
+//! `cargo run --release -p satisfice-problems --example few_evaluations -- [engine=NAME] [seeds=N] [only=TEXT] [out=N]`
+//!
+//! With `out` so many evaluations are out at a time, answered in the order in which they were given out.
 
 #![allow(missing_docs, reason = "an example")]
 
+use std::collections::VecDeque;
 use std::error::Error;
+use std::sync::Arc;
 
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::{Budget, SatisficingProblem, Search, SearchRng, Space, from_fn};
+use satisfice::{Budget, SatisficingProblem, Search, SearchRng, Space, Tickets, from_fn};
 use satisfice_problems::{Arm, Branin, Falsification, Hartmann6, SallenKey, Shell};
 
 /// Share of the space that is a hit of the functions with a name.
@@ -20,6 +24,7 @@ struct Settings {
     engine: String,
     seeds: u64,
     only: String,
+    out: usize,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -27,13 +32,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         engine: "surrogate".to_owned(),
         seeds: 16,
         only: String::new(),
+        out: 1,
     };
     for argument in std::env::args().skip(1) {
         match argument.split_once('=') {
             Some(("engine", name)) => settings.engine = name.to_owned(),
             Some(("seeds", count)) => settings.seeds = count.parse()?,
             Some(("only", text)) => settings.only = text.to_owned(),
-            _ => return Err(format!("`{argument}` is not engine=, seeds= or only=").into()),
+            Some(("out", count)) => settings.out = count.parse()?,
+            _ => return Err(format!("`{argument}` is not engine=, seeds=, only= or out=").into()),
         }
     }
     settings.catalogued::<Falsification>()?;
@@ -57,7 +64,7 @@ impl Settings {
     where
         P: Catalogued + SatisficingProblem<Scalar = f64>,
     {
-        let problem = P::from_params(&Params::defaults(P::PARAMETERS)?)?;
+        let problem = Arc::new(P::from_params(&Params::defaults(P::PARAMETERS)?)?);
         self.row(P::NAME, &[50, 200], |_, seed, budget| {
             self.hits(&problem, seed, budget)
         })
@@ -72,6 +79,7 @@ impl Settings {
         f: fn(&[f64]) -> f64,
     ) -> Result<(), Box<dyn Error>> {
         let problem = from_fn(Space::cube(axes, 0.0, 1.0)?, quantile(axes, f), f).separation(separation);
+        let problem = Arc::new(problem);
         self.row(name, &[50, 200], |_, seed, budget| {
             self.hits(&problem, seed, budget)
         })
@@ -86,19 +94,36 @@ impl Settings {
                 all.fold(f64::INFINITY, f64::min)
             };
             let problem = from_fn(Space::cube(AXES, 0.0, 1.0)?, 0.05, f).separation(0.2);
-            settings.hits(&problem, seed, budget)
+            settings.hits(&Arc::new(problem), seed, budget)
         })
     }
 
     /// The evaluations at which hits were found.
     fn hits<P: SatisficingProblem<Scalar = f64>>(
         &self,
-        problem: &P,
+        problem: &Arc<P>,
         seed: u64,
         budget: u64,
     ) -> Result<Vec<u64>, satisfice::Error> {
         let mut search = Search::named(&self.engine)?.seed(seed);
-        let report = search.run(problem, &Budget::evaluations(budget))?;
+        let budget = Budget::evaluations(budget);
+        let report = if self.out > 1 {
+            let budget = budget.with_parallel(self.out);
+            let mut tickets = Tickets::eager(search, Arc::clone(problem), &budget)?;
+            let mut out = VecDeque::new();
+            loop {
+                out.extend(tickets.ask(self.out - out.len()));
+                let Some(next) = out.pop_front() else { break };
+                let value = problem.fitness(&next.solution);
+                tickets.tell(next.ticket, value)?;
+            }
+            tickets.finish()
+        } else {
+            search.run(&**problem, &budget)?
+        };
+        if seed == 1 {
+            eprintln!("{:?}", (&report.sources.names, report.sources.rows.last()));
+        }
         Ok(report.hits().map(|hit| hit.evaluation).collect())
     }
 

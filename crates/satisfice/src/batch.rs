@@ -38,6 +38,13 @@ impl<S: Real> Batch<S> {
         }
     }
 
+    /// A batch of one point.
+    pub(crate) fn of_one(position: &[S]) -> Self {
+        let mut batch = Self::new(position.len());
+        batch.push(position);
+        batch
+    }
+
     /// A batch of these coordinates, point after point; `None` if the last point is not complete.
     pub(crate) fn from_positions(positions: Vec<S>, dimension: usize) -> Option<Self> {
         let dimension = dimension.max(1);

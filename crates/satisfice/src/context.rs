@@ -74,6 +74,12 @@ pub trait Context<S: Real> {
         1
     }
 
+    /// Whether answers are told one by one, in any order, while the engine is asked for more: where [they come as they
+    /// come](crate::Tickets::eager), and the engine [says so](crate::engine::Answers::AnyOrder).
+    fn is_in_any_order(&self) -> bool {
+        false
+    }
+
     /// Seconds that a call of the fitness has taken lately; where it is computed elsewhere, the mean time of an evaluation, thinking
     /// included, as of the last look at the clock. `None` where evaluations are limited, so that such a search does not depend on the clock,
     /// and before the first ones.

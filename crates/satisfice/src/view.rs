@@ -306,6 +306,9 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn parallel(&self) -> usize {
         self.ledger.budget.parallel.unwrap_or(1).max(self.ledger.at_once)
     }
+    fn is_in_any_order(&self) -> bool {
+        self.ledger.in_any_order
+    }
     fn seconds_an_evaluation(&self) -> Option<f64> {
         let timed = self.evaluations_planned().is_none();
         timed.then(|| self.ledger.seconds_an_evaluation()).flatten()

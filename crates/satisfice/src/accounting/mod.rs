@@ -44,6 +44,8 @@ pub(crate) struct Ledger<T> {
     pub(crate) hold: Option<Duration>,
     /// How many evaluations go on at once as far as the search knows, beside what the budget says.
     pub(crate) at_once: usize,
+    /// Whether the engine is told one answer at a time, in any order.
+    pub(crate) in_any_order: bool,
     /// When the next points of the trace are due, by evaluations and by time.
     next_count: u64,
     /// The evaluation that ends the slice unless there is a new hit before.
@@ -107,6 +109,7 @@ impl<T> Ledger<T> {
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             hold: None,
             at_once: 1,
+            in_any_order: false,
             next_count: next,
             stale_at,
             next_event: next.min(stale_at),

@@ -51,7 +51,8 @@ pub enum Answers {
     /// A batch at a time, and a second engine would do the same again. While answers are awaited, the batch is told without
     /// them; they are told later.
     Alone,
-    /// Each by itself, while it is asked for more: [`Engine::tell`] is then given parts of any batch, in any order.
+    /// Each by itself, while it is asked for more: [`Engine::tell`] is then given one point of any batch, as [`Origin::Single`], in any
+    /// order.
     AnyOrder,
 }
 
@@ -165,6 +166,13 @@ pub trait Steps<S> {
 pub enum Origin {
     /// The engine itself: the points are those of its last `ask`, in order.
     Engine,
+    /// The engine itself: one point, in [any order](Answers::AnyOrder).
+    Single {
+        /// Of which `ask` since the slice began, counted from 1.
+        ask: u64,
+        /// Which of its proposals it was, from 0.
+        place: usize,
+    },
     /// The search: hits of the slice before, evaluated again; also answers that came after their batch was told.
     WarmStart,
     /// The user: [start points](crate::Search::start_from) and [values from elsewhere](crate::Tickets::inform).

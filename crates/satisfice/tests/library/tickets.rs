@@ -394,17 +394,21 @@ fn the_engine_that_models_f_takes_answers_in_any_order() {
 }
 
 /// Points that are out count as what the model predicts. When they counted as nearly hits, the next ones were proposed beside them, and
-/// half of all seeds found none of a ring that is a tenth of the square.
+/// half of all seeds found none of a ring that is a tenth of the square. The default has one model for all points that are out: when 16
+/// workers had an engine each, with a model of its own answers alone, these twelve seeds had 12 hits at least and 235 in all, not 40 and 619.
 #[test]
 fn points_that_are_out_do_not_draw_the_model_to_them() {
-    for (name, least) in [("surrogate", 30), ("portfolio", 10)] {
+    for name in ["surrogate", "portfolio"] {
         let entry = engine::find(name).unwrap();
-        for seed in 0..12 {
-            let search = Search::with(entry.configure([]).unwrap()).seed(seed);
-            let mut tickets = Tickets::eager(search, problem("square"), &Budget::evaluations(80)).unwrap();
-            work(&mut tickets, 4, seed, u64::MAX);
-            let hits = tickets.finish().hit_count();
-            assert!(hits >= least, "{name}, seed {seed}: {hits}");
+        for (workers, least) in [(4, 45), (16, 25)] {
+            for seed in 0..12 {
+                let search = Search::with(entry.configure([]).unwrap()).seed(seed);
+                let mut tickets =
+                    Tickets::eager(search, problem("square"), &Budget::evaluations(80)).unwrap();
+                work(&mut tickets, workers, seed, u64::MAX);
+                let hits = tickets.finish().hit_count();
+                assert!(hits >= least, "{name}, {workers} workers, seed {seed}: {hits}");
+            }
         }
     }
 }

@@ -305,7 +305,7 @@ impl<S: Real> Engine<S> for RestartedDescent<S> {
         match origin {
             Origin::Engine => self.learn(batch.point(0), outcomes[0]),
             Origin::Start => self.keep_starts(batch, outcomes),
-            Origin::WarmStart | Origin::Exhaustion => {}
+            Origin::Single { .. } | Origin::WarmStart | Origin::Exhaustion => {}
         }
     }
 

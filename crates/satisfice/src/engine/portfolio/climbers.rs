@@ -40,6 +40,8 @@ struct Climber<S> {
     neighbours: Option<Untried>,
     /// The last move; `None` at a start.
     last: Option<Move>,
+    /// Whether its last candidate is not told yet.
+    waits: bool,
 }
 
 /// Each index once, in a random order and without a list: by steps of a random length that has no divisor in common with the
@@ -164,11 +166,13 @@ impl<S: Real> Climbers<S> {
                 mutation: Mutation::default(),
                 neighbours: None,
                 last: None,
+                waits: false,
             });
         }
     }
 
-    /// Proposes a candidate of the next climber and returns its index; `None` if every climber has proposed in this batch.
+    /// Proposes a candidate of the next climber that awaits no answer and returns its index; `None` if every climber has proposed in this
+    /// batch, or waits.
     pub(super) fn propose(
         &mut self,
         context: &dyn Context<S>,
@@ -180,9 +184,11 @@ impl<S: Real> Climbers<S> {
             return None;
         }
         self.proposed += 1;
-        let index = self.next % self.active;
+        let mut turns = (0..self.active).map(|k| (self.next + k) % self.active);
+        let index = turns.find(|&index| !self.climbers[index].waits)?;
         self.next = (index + 1) % self.active;
         let climber = &mut self.climbers[index];
+        climber.waits = true;
         if !climber.running {
             self.restarts += 1;
             climber.start(luby(self.restarts), context, rng);
@@ -210,6 +216,7 @@ impl<S: Real> Climbers<S> {
     /// Tells climber `index` the outcome of its candidate.
     pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
         let climber = &mut self.climbers[index];
+        climber.waits = false;
         let fitness = outcome.fitness();
         let improved = fitness < climber.fitness;
         if let Some(kind) = climber.last {

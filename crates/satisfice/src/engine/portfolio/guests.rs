@@ -1,7 +1,9 @@
 //! Whole engines as sources: each proposes part of a batch, and is told the hits of all the others.
 
 mod flood_alone;
+mod lessons;
 mod member;
+mod share;
 mod sizes;
 mod weights;
 
@@ -9,18 +11,18 @@ use core::ops::Range;
 
 use flood_alone::FloodAlone;
 use member::Member;
+use share::Share;
 use sizes::{MOST_PROPOSALS, Sizes};
 
 use super::credit::{Credit, Trial};
-use super::pace::Pace;
 use super::progress::Seeker;
-use super::source::{PLACES, Role, Source, Tag};
+use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
 use crate::engine::local::{Niching, RestartedCmaEs};
 use crate::engine::model::{ModelledSearch, QuadraticDescent, Surrogate};
-use crate::engine::{Ask, EngineConfig, Origin};
+use crate::engine::{Ask, EngineConfig};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -69,8 +71,9 @@ struct Guest<S> {
     arm: Credit,
     /// Whether it may still propose something.
     open: bool,
-    /// Its part of the batch under evaluation.
+    /// Its share of the batch under evaluation; where answers come in any order, of the batch in which it has proposed.
     own: Range<usize>,
+    share: Share<S>,
 }
 
 /// The engines.
@@ -81,6 +84,8 @@ pub(super) struct Guests<S> {
     continuous: bool,
     /// Whether the problem tells the components of F, of which the model knows more than descents do.
     components: bool,
+    /// Whether answers come one by one, in any order: then engines of a kind work side by side.
+    in_any_order: bool,
     /// A buffer: what an engine has proposed, or is to be told.
     part: Batch<S>,
     outcomes: Vec<Outcome<S>>,
@@ -103,7 +108,7 @@ pub(super) enum GuestAnswer {
 }
 
 impl<S: Real> Guest<S> {
-    fn new(kind: GuestKind, sizes: Sizes) -> Self {
+    fn new(kind: GuestKind, sizes: Sizes, dimension: usize) -> Self {
         let engine = match kind {
             GuestKind::Cma => Member::Other(
                 RestartedCmaEs {
@@ -140,11 +145,16 @@ impl<S: Real> Guest<S> {
             arm: Credit::default(),
             open: true,
             own: 0..0,
+            share: Share::new(dimension),
         }
     }
 }
 
 impl<S> Guest<S> {
+    fn is_ready(&self) -> bool {
+        self.open && self.own.is_empty()
+    }
+
     /// Its index among the names of all sources.
     fn place(&self) -> usize {
         Source::Guest as usize + self.kind as usize
@@ -158,6 +168,7 @@ impl<S: Real> Guests<S> {
             sizes: Sizes::default(),
             continuous: false,
             components: false,
+            in_any_order: false,
             part: Batch::new(1),
             outcomes: Vec::new(),
         }
@@ -173,6 +184,7 @@ impl<S: Real> Guests<S> {
             .all(|axis| axis.kind() == AxisKind::Continuous);
         self.continuous = all && is_smooth(context);
         self.components = context.component_count() > 0;
+        self.in_any_order = context.is_in_any_order();
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context);
         self.guests.clear();
@@ -204,11 +216,24 @@ impl<S: Real> Guests<S> {
         }
     }
 
+    /// Opens the engine of a kind; several side by side, where it works on several points one after another and answers come one by one.
     fn open(&mut self, kind: GuestKind, context: &dyn Context<S>) {
-        let mut guest = Guest::new(kind, self.sizes);
-        guest.arm = Credit::new(context.is_timed());
-        guest.engine.begin(context);
-        self.guests.push(guest);
+        let engines = match kind {
+            GuestKind::Cma | GuestKind::Quadratic => self.sizes.engines,
+            GuestKind::Flood | GuestKind::Regions | GuestKind::Model | GuestKind::Niching => 1,
+        };
+        for _ in 0..engines {
+            let mut guest = Guest::new(kind, self.sizes, context.space().dimension());
+            guest.arm = Credit::new(context.is_timed());
+            guest.engine.begin(context);
+            self.guests.push(guest);
+        }
+    }
+
+    /// One engine of each kind: those of a kind are next to each other, with the same credit.
+    fn kinds(&self) -> impl Iterator<Item = &Guest<S>> {
+        let kinds = self.guests.chunk_by(|a, b| a.kind == b.kind);
+        kinds.filter_map(|same| same.first())
     }
 
     /// Opens the model and the descents by quadratic models once F turns out to be expensive enough for them.
@@ -238,9 +263,9 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// Whether the engine has a part of the batch.
-    pub(super) fn has_part(&self, index: usize) -> bool {
-        !self.guests[index].own.is_empty()
+    /// Whether the engine may still propose something, and has no share of the batch.
+    pub(super) fn is_ready(&self, index: usize) -> bool {
+        self.guests[index].is_ready()
     }
 
     pub(super) fn role(&self, index: usize) -> Role {
@@ -283,9 +308,13 @@ impl<S: Real> Guests<S> {
         }
         let find = |kind| {
             let mut guests = self.guests.iter();
-            guests.position(|guest| guest.kind == kind && guest.open && guest.own.is_empty())
+            guests.position(|guest| guest.kind == kind && guest.is_ready())
         };
-        Some([find(GuestKind::Model)?, find(GuestKind::Quadratic)?])
+        let model = find(GuestKind::Model)?;
+        let quadratic = find(GuestKind::Quadratic);
+        // While all descents await answers, the model proposes.
+        let quadratic = quadratic.or(self.in_any_order.then_some(model));
+        Some([model, quadratic?])
     }
 
     pub(super) fn has_components(&self) -> bool {
@@ -295,7 +324,7 @@ impl<S: Real> Guests<S> {
     /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
     pub(super) fn niching(&self) -> Option<usize> {
         let mut guests = self.guests.iter();
-        guests.position(|guest| guest.kind == GuestKind::Niching && guest.own.is_empty())
+        guests.position(|guest| guest.kind == GuestKind::Niching && guest.is_ready())
     }
 
     /// What a source is among those that look for the first hit.
@@ -313,10 +342,7 @@ impl<S: Real> Guests<S> {
 
     /// The credits of the engines that are drawn by their yield.
     pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
-        let drawn = self
-            .guests
-            .iter()
-            .filter(|guest| guest.kind != GuestKind::Niching);
+        let drawn = self.kinds().filter(|guest| guest.kind != GuestKind::Niching);
         drawn.map(|guest| &guest.arm)
     }
 
@@ -331,10 +357,12 @@ impl<S: Real> Guests<S> {
     ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
         let descends_first = modelled && self.continuous && !self.components && !steps;
         let ready = self.guests.iter().enumerate();
+        let mut offered = None;
         ready.filter_map(move |(index, guest)| {
-            if !guest.open || !guest.own.is_empty() {
+            if !guest.is_ready() || offered == Some(guest.kind) {
                 return None;
             }
+            offered = Some(guest.kind);
             let weight = guest.weight(all, trial, descends_first, steps);
             weight.map(|weight| (index, &guest.arm, weight))
         })
@@ -364,6 +392,12 @@ impl<S: Real> Guests<S> {
         for position in self.part.points() {
             out.push(position);
         }
+        let proposed = guest.own.len();
+        if self.in_any_order && guest.kind == GuestKind::Model {
+            guest.own = 0..0; // it takes each answer as it comes
+        } else {
+            guest.share.begin(self.part.points());
+        }
         match answer {
             Ask::Covered => return GuestAnswer::Covered,
             Ask::Exhausted => guest.open = false,
@@ -372,78 +406,20 @@ impl<S: Real> Guests<S> {
         if guest.kind == GuestKind::Model && guest.arm.evaluations() >= self.sizes.proposals {
             guest.open = false;
         }
-        if guest.own.is_empty() && calls == 0 {
+        if proposed == 0 && calls == 0 {
             guest.arm.count(false, idle_cost);
             return GuestAnswer::Nothing;
         }
-        GuestAnswer::Worked(calls + guest.own.len() as u64)
-    }
-
-    /// Tells each engine the outcomes of its part, if the portfolio proposed the batch, and the other outcomes that concern it.
-    pub(super) fn tell(
-        &mut self,
-        context: &dyn Context<S>,
-        batch: &Batch<S>,
-        outcomes: &[Outcome<S>],
-        origin: Origin,
-        pace: &mut Pace<PLACES>,
-    ) {
-        let Self {
-            guests,
-            part,
-            outcomes: told,
-            ..
-        } = self;
-        let hits = outcomes.iter().any(|outcome| outcome.is_hit());
-        for guest in guests {
-            let place = guest.place();
-            let own = match origin {
-                Origin::Engine => core::mem::take(&mut guest.own),
-                _ => 0..0,
-            };
-            for outcome in &outcomes[own.clone()] {
-                if *outcome != Outcome::NotEvaluated {
-                    guest.arm.count(outcome.is_hit(), pace.cost(place));
-                }
-            }
-            if !guest.open {
-                continue;
-            }
-            let mut tell = |points: &mut dyn Iterator<Item = usize>, origin| {
-                part.clear();
-                told.clear();
-                for i in points {
-                    part.push(batch.point(i));
-                    told.push(outcomes[i]);
-                }
-                if !told.is_empty() {
-                    guest.engine.tell(context, part, told, origin);
-                }
-            };
-            if !own.is_empty() {
-                let watch = pace.learns(place);
-                tell(&mut own.clone(), Origin::Engine);
-                pace.learned(place, watch, own.len());
-            }
-            // An engine takes start points for what they are, and hits of others as if exhaustion had found them.
-            let origin = match origin {
-                Origin::Start => Origin::Start,
-                _ => Origin::Exhaustion,
-            };
-            let learns_from_all = guest.kind == GuestKind::Model || origin == Origin::Start;
-            if learns_from_all || hits {
-                let others = (0..batch.len()).filter(|i| !own.contains(i));
-                let told = |i: &usize| learns_from_all || outcomes[*i].is_hit();
-                tell(&mut others.filter(told), origin);
-            }
-        }
+        GuestAnswer::Worked(calls + proposed as u64)
     }
 
     pub(super) fn save(&self, state: &mut State) {
         (self.sizes, self.continuous, self.components, self.guests.len()).save(state);
+        self.in_any_order.save(state);
         for guest in &self.guests {
             (guest.kind, guest.arm, guest.open).save(state);
             (guest.own.start, guest.own.end).save(state);
+            guest.share.save(state);
             guest.engine.save(state);
         }
     }
@@ -458,30 +434,39 @@ impl<S: Real> Guests<S> {
         }
         self.sizes = sizes;
         (self.continuous, self.components) = (continuous, components);
+        self.in_any_order = from.read()?;
         self.guests.clear();
         for _ in 0..count {
             let (kind, arm, open) = from.read()?;
             let (start, end) = from.read()?;
-            let mut guest = Guest::new(kind, sizes);
+            let share = Share::restored(dimension, from)?;
+            let mut guest = Guest::new(kind, sizes, dimension);
             guest.engine.restore(from)?;
             self.guests.push(Guest {
                 arm,
                 open,
                 own: start..end,
+                share,
                 ..guest
             });
         }
         Ok(())
     }
 
-    /// Whether restored parts lie inside the batch, and the tags name engines that exist.
-    pub(super) fn fit(&self, tags: &[Tag], chosen: Option<Tag>) -> bool {
-        let inside = |own: &Range<usize>| own.start <= own.end && own.end <= tags.len();
-        self.guests.iter().all(|guest| inside(&guest.own))
+    /// Whether restored parts lie inside a batch of this size, and the tags name engines that exist.
+    pub(super) fn fit(&self, batch: usize, tags: impl Iterator<Item = Tag>, chosen: Option<Tag>) -> bool {
+        let fits = |guest: &Guest<S>| {
+            let own = &guest.own;
+            if self.in_any_order {
+                own.is_empty() || own.start <= own.end && own.len() == guest.share.len()
+            } else {
+                own.start <= own.end && own.end <= batch
+            }
+        };
+        self.guests.iter().all(fits)
             && tags
-                .iter()
-                .chain(&chosen)
-                .all(|&(source, index)| source != Source::Guest || index < self.guests.len())
+                .chain(chosen)
+                .all(|(source, index)| source != Source::Guest || index < self.guests.len())
     }
 }
 

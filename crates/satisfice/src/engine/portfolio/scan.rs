@@ -113,12 +113,15 @@ impl Scan {
         (found - CERTAIN * found.sqrt()) * all.price() > self.sampled as f64
     }
 
-    /// Learns what became of a batch, if it is a sample.
+    /// Whether the batch that is out is a sample.
+    pub(super) fn is_sample(&self) -> bool {
+        self.samples
+    }
+
+    /// Learns what became of a sample, or of a part of one.
     pub(super) fn learn<S: Real>(&mut self, outcomes: &[Outcome<S>]) {
-        if self.samples {
-            self.sampled += outcomes.len() as u64;
-            self.found += outcomes.iter().filter(|outcome| outcome.is_hit()).count() as u64;
-        }
+        self.sampled += outcomes.len() as u64;
+        self.found += outcomes.iter().filter(|outcome| outcome.is_hit()).count() as u64;
     }
 
     /// Whether an enumeration promises as much as the search now does: by what it last found, or because half of the points are

@@ -1,14 +1,16 @@
 //! The engine of the portfolio: it chooses a source, and learns from the outcomes.
 
+mod awaited;
 mod choice;
+mod filling;
 mod proposals;
 
-use proposals::SCANNED;
+use awaited::Awaited;
 
 use super::climbers::Climbers;
 use super::credit::{Credit, Patches};
 use super::drought::Drought;
-use super::guests::{GuestAnswer, Guests};
+use super::guests::Guests;
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::pace::Pace;
@@ -23,7 +25,7 @@ use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::local::descent::RestartedDescent;
 use crate::engine::low_discrepancy::EvenPoints;
-use crate::engine::{Ask, Engine, Origin};
+use crate::engine::{Answers, Ask, Engine, Origin};
 use crate::error::Error;
 use crate::probes::Probes;
 use crate::report::SourceCount;
@@ -31,16 +33,6 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::state::{Part, Reader, State};
 
-/// A batch ends after this many choices of a source that gave no candidate.
-const REJECTED: usize = 100;
-/// Fewest points of the first batch, in which no point can learn from another. With a model of F it is a single point.
-const FIRST: usize = 4;
-/// Batches grow by one point every `SLOW` evaluations, up to `LARGEST`: small ones learn sooner, large ones cost less time.
-const SLOW: usize = 2048;
-const LARGEST: usize = 32;
-/// F is quick below so many seconds: then batches grow sooner, and choices last longer. Known only where time alone is limited.
-const QUICK: f64 = 2e-6;
-const SLOW_WHERE_QUICK: usize = 256;
 /// Share of the evaluations that serve to estimate how complete the result is.
 const PROBES: f64 = 0.02;
 
@@ -65,6 +57,8 @@ pub(super) struct Sources<S> {
     pace: Pace<PLACES>,
     rejections: u64,
     descents: Vec<RestartedDescent<S>>,
+    /// Which of them have a candidate that is not told yet.
+    waiting: Vec<bool>,
     next_descent: usize,
     descended: usize,
     patches: Patches,
@@ -86,6 +80,7 @@ pub(super) struct Sources<S> {
     neighbourhoods: Neighbourhoods<S>,
     near_misses: NearMisses<S>,
     tags: Vec<Tag>,
+    awaited: Awaited<S>,
     tally: Tally,
     trials: Vec<S>,
     position: Vec<S>,
@@ -105,6 +100,7 @@ impl<S: Real> Sources<S> {
             pace: Pace::new(false),
             rejections: 0,
             descents: Vec::new(),
+            waiting: Vec::new(),
             next_descent: 0,
             descended: 0,
             patches: Patches::default(),
@@ -128,6 +124,7 @@ impl<S: Real> Sources<S> {
             timing: settings.neighbours,
             near_misses: NearMisses::new(),
             tags: Vec::new(),
+            awaited: Awaited::default(),
             tally: Tally::default(),
             trials: Vec::new(),
             position: Vec::new(),
@@ -142,6 +139,10 @@ impl<S: Real> Sources<S> {
 impl<S: Real> Engine<S> for Sources<S> {
     fn probes(&self) -> f64 {
         PROBES
+    }
+
+    fn answers(&self) -> Answers {
+        Answers::AnyOrder
     }
 
     fn sources(&self) -> Vec<SourceCount> {
@@ -163,6 +164,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.swarms.begin(dimension);
         self.climbers.begin(context);
         self.descents.clear();
+        self.waiting.clear();
         self.next_descent = 0;
         self.whole = Credit::new(context.is_timed());
         self.arms = [self.whole; ARMS];
@@ -175,6 +177,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         // The tags of the last batch name sources of the slice before.
         self.tags.clear();
         self.trials.clear();
+        self.awaited = Awaited::default();
         self.planned = context.evaluations_planned();
         self.guests.begin(context, self.without == Omitted::Recombination);
         let late = match self.timing {
@@ -192,111 +195,27 @@ impl<S: Real> Engine<S> for Sources<S> {
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
         self.tags.clear();
         self.trials.clear();
-        self.swarms.begin_batch();
-        self.descended = 0;
-        self.guests.begin_batch();
-        // With fewer than `wanted` candidates, workers would wait.
-        let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
-        let first = if made == 0 && !self.guests.has_model() {
-            FIRST
-        } else {
-            1
-        };
-        let wanted = self.asked_for.unwrap_or_else(|| context.parallel().max(first));
-        self.is_quick =
-            context.is_timed() && context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
-        let slow = if self.is_quick { SLOW_WHERE_QUICK } else { SLOW };
-        self.batch = self
-            .asked_for
-            .unwrap_or_else(|| (made / slow).clamp(1, LARGEST).max(wanted));
-        self.block = self.batch.div_ceil(4);
-        self.climbers.begin_batch(self.block);
-        while self.descents.len() < self.block {
-            self.descents.push(RestartedDescent::new(0.25, 1e-6));
+        let answer = self.fill(context, rng, out);
+        if context.is_in_any_order() {
+            self.awaited
+                .add(&mut self.tags, &self.trials, self.position.len());
         }
-        self.guests.look_at_price(context);
-        if let Some(visited) = &self.visited
-            && self.scan.goes_on(context, visited, PROBES, SCANNED, &self.whole)
-        {
-            return self.enumerate(context, rng, out);
-        }
-        let mut rejected = 0;
-        while out.len() < self.batch && rejected < REJECTED && !context.is_out_of_time() {
-            let (tag, left) = self.next_source(rng);
-            let before = out.len();
-            let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
-            let place = self.place(tag);
-            let watch = self.pace.proposes(place);
-            if tag.0 == Source::Guest {
-                let answer = self
-                    .guests
-                    .ask(tag.1, context, rng, out, self.pace.idle_cost(place));
-                self.tags.resize(out.len(), tag);
-                let cost = match answer {
-                    GuestAnswer::Worked(cost) => cost,
-                    GuestAnswer::Covered | GuestAnswer::Nothing => 1,
-                };
-                self.pace.proposed(place, watch, cost);
-                match answer {
-                    GuestAnswer::Covered => return Ask::Covered,
-                    GuestAnswer::Worked(cost) if out.len() >= wanted || out.is_empty() => {
-                        self.chosen = Some((tag, left.saturating_sub(cost.max(1))));
-                        self.pace.sends();
-                        return Ask::More;
-                    }
-                    GuestAnswer::Worked(_) => self.chosen = None,
-                    GuestAnswer::Nothing => {
-                        self.chosen = None;
-                        rejected += 1;
-                    }
-                }
-                continue;
-            }
-            self.rejections = 0;
-            let mut has_more = true;
-            for _ in 0..room {
-                has_more = self.propose(tag, context, rng, out);
-                if !has_more {
-                    break;
-                }
-            }
-            let made = (out.len() - before) as u64;
-            self.pace.proposed(place, watch, made + self.rejections);
-            // In the next batch a source that takes turns with itself goes on, where choosing costs more than F.
-            if self.is_quick && !has_more && made > 0 && left > made && out.len() >= wanted {
-                self.chosen = Some((tag, left - made));
-                break;
-            }
-            // Around hits of the model most points are known: steps go on to where they are not.
-            let goes_on = made > 0 || tag.0 == Source::Step && self.guests.modelled();
-            self.chosen = (has_more && goes_on).then_some((tag, left - made));
-            // A source with nothing left ends the batch, so that worse sources do not fill it, unless workers would wait.
-            if out.len() == before {
-                if !out.is_empty() && out.len() >= wanted {
-                    break;
-                }
-                rejected += 1;
-            }
-        }
-        if out.is_empty() && self.visited.as_ref().is_some_and(Visited::is_all) {
-            return Ask::Covered;
-        }
-        // Every draw was known. Propose uniform points, known or not.
-        let least = if self.visited.is_some() { 1 } else { wanted };
-        while out.len() < least {
-            rng.position(context.space(), &mut self.position);
-            if let Some(visited) = &mut self.visited {
-                visited.insert(context.space(), &self.position);
-            }
-            out.push(&self.position);
-            self.tags.push((Source::Uniform, 0));
-        }
-        self.pace.sends();
-        Ask::More
+        answer
     }
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         let space = context.space();
+        let is_own = match origin {
+            Origin::Engine => true,
+            Origin::Single { ask, place } => {
+                let Some(tag) = self.awaited.take((ask, place), &mut self.trials) else {
+                    return;
+                };
+                self.tags = vec![tag];
+                true
+            }
+            Origin::WarmStart | Origin::Start | Origin::Exhaustion => false,
+        };
         for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
                 // Hits are kept at the centres of their cells, so that steps between them are whole.
@@ -313,7 +232,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         if let Some(visited) = &mut self.visited {
             // Its own candidates are in it since they were proposed, but for those of whole engines.
             let own = |i: usize| {
-                let tag = self.tags.get(i).filter(|_| origin == Origin::Engine);
+                let tag = self.tags.get(i).filter(|_| is_own);
                 tag.is_some_and(|tag| tag.0 != Source::Guest)
             };
             for (i, position) in batch.points().enumerate() {
@@ -324,11 +243,9 @@ impl<S: Real> Engine<S> for Sources<S> {
         }
         if self.without != Omitted::Neighbours && context.offers_neighbours() {
             let tags = &self.tags;
-            self.neighbourhoods
-                .expand_all(context, batch, outcomes, |i| match origin {
-                    Origin::Engine => matches!(tags[i].0, Source::Neighbour | Source::NearMiss),
-                    Origin::WarmStart | Origin::Start | Origin::Exhaustion => true,
-                });
+            self.neighbourhoods.expand_all(context, batch, outcomes, |i| {
+                !is_own || matches!(tags[i].0, Source::Neighbour | Source::NearMiss)
+            });
         }
         if origin == Origin::Start {
             for (position, outcome) in batch.points().zip(outcomes) {
@@ -337,12 +254,20 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
             }
         }
-        if origin == Origin::Engine {
-            self.scan.learn(outcomes);
+        if is_own {
+            if let Some((Source::Uniform, 1)) = self.tags.first() {
+                self.scan.learn(outcomes);
+            }
             self.pace.receives(batch.len());
         }
-        self.guests.tell(context, batch, outcomes, origin, &mut self.pace);
-        if origin != Origin::Engine {
+        self.guests.tell(
+            context,
+            batch,
+            outcomes,
+            (origin, self.tags.first().copied()),
+            &mut self.pace,
+        );
+        if !is_own {
             return;
         }
         for (i, &(source, index)) in self.tags.iter().enumerate() {
@@ -363,7 +288,10 @@ impl<S: Real> Engine<S> for Sources<S> {
                         self.climbers.offer(position, fitness);
                     }
                 }
-                Source::Descent => self.descents[index].learn(position, outcome),
+                Source::Descent => {
+                    self.waiting[index] = false;
+                    self.descents[index].learn(position, outcome);
+                }
                 Source::Uniform | Source::Trial | Source::Guest => {}
             }
         }
@@ -408,12 +336,14 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.neighbourhoods.save(state);
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
+        self.awaited.save(state);
         self.position.save(state);
         (self.whole, self.patches, self.progress.clone()).save(state);
         self.drought.save(state);
         self.even.save(state);
         (self.chosen, self.planned, self.pace.is_timed()).save(state);
         (self.batch, self.block, self.next_descent).save(state);
+        self.waiting.save(state);
         self.descents.len().save(state);
         for descent in &self.descents {
             Part::save(descent, state);
@@ -431,6 +361,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.neighbourhoods.restore(from)?;
         self.near_misses = from.read()?;
         (self.tags, self.trials) = from.read()?;
+        self.awaited = from.read()?;
         self.position = from.read()?;
         (self.whole, self.patches, self.progress) = from.read()?;
         self.drought = from.read()?;
@@ -439,6 +370,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.chosen, self.planned, timed) = from.read()?;
         self.pace = Pace::new(timed);
         (self.batch, self.block, self.next_descent) = from.read()?;
+        self.waiting = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();
         for _ in 0..descents {
@@ -447,9 +379,15 @@ impl<S: Real> Engine<S> for Sources<S> {
             self.descents.push(descent);
         }
         self.guests.restore(self.position.len(), from)?;
-        let descents_fit = |&(source, index): &Tag| source != Source::Descent || index < descents;
+        let descents_fit = |(source, index): Tag| source != Source::Descent || index < descents;
         let chosen = self.chosen.map(|(tag, _)| tag);
-        if !self.tags.iter().all(descents_fit) || !self.guests.fit(&self.tags, chosen) {
+        let out = || self.tags.iter().copied().chain(self.awaited.tags());
+        let trials_fit = self.awaited.fit(self.position.len());
+        if !trials_fit
+            || self.waiting.len() != descents
+            || !out().all(descents_fit)
+            || !self.guests.fit(self.tags.len(), out(), chosen)
+        {
             return Err(Error::State("its batches do not fit its sources".to_owned()));
         }
         if !self.near_misses.fit(self.position.len()) {

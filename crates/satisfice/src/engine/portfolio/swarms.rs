@@ -27,6 +27,8 @@ struct SubSwarm<S> {
     unborn: usize,
     /// Evaluations since its last hit.
     stalled: usize,
+    /// Whether its last candidate is not told yet.
+    waits: bool,
 }
 
 /// K swarms of N particles that take turns. Each works in a region of its own until it stalls and starts anew; a shared latest
@@ -58,6 +60,7 @@ impl<S: Real> Swarms<S> {
             turn: 0,
             unborn: 0,
             stalled: 0,
+            waits: false,
         };
         Self {
             particles,
@@ -74,6 +77,7 @@ impl<S: Real> Swarms<S> {
             swarm.mean = vec![S::zero(); dimension];
             swarm.latest_hit = vec![S::zero(); dimension];
             swarm.start_anew();
+            swarm.waits = false;
         }
         self.next = 0;
     }
@@ -94,7 +98,8 @@ impl<S: Real> Swarms<S> {
         self.proposed = 0;
     }
 
-    /// Proposes a candidate of the next swarm and returns its index; `None` if every swarm has proposed in this batch.
+    /// Proposes a candidate of the next swarm that awaits no answer and returns its index; `None` if every swarm has proposed in this batch,
+    /// or waits.
     pub(super) fn propose(
         &mut self,
         space: &Space<S>,
@@ -107,10 +112,13 @@ impl<S: Real> Swarms<S> {
             return None;
         }
         self.proposed += 1;
-        let index = self.next;
-        self.next = (index + 1) % self.swarms.len();
+        let count = self.swarms.len();
+        let mut turns = (0..count).map(|k| (self.next + k) % count);
+        let index = turns.find(|&index| !self.swarms[index].waits)?;
+        self.next = (index + 1) % count;
         let swarm = &mut self.swarms[index];
         swarm.populate(self.particles, space, even, rng);
+        swarm.waits = true;
         swarm.propose(self.particles, self.alpha, space, visited, rng, out);
         Some(index)
     }
@@ -118,6 +126,7 @@ impl<S: Real> Swarms<S> {
     /// Tells swarm `index` the outcome of its particle.
     pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
         let swarm = &mut self.swarms[index];
+        swarm.waits = false;
         swarm.tell(self.particles, position, outcome);
         if swarm.stalled > self.restart {
             swarm.start_anew();

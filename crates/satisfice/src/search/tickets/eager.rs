@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use crate::accounting::Reached;
 use crate::archive::Archive;
-use crate::batch::Outcome;
+use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::engine::{Answers, Ask, Origin, WarmStart};
 use crate::identity::Identity;
@@ -24,7 +24,7 @@ use crate::seed::SearchRng;
 use crate::view::View;
 
 use super::Told;
-use super::lane::{EagerLane, Of, Open, one};
+use super::lane::{EagerLane, Of, Open};
 use super::out::PointsOut;
 
 /// So many candidates in a row that are out already: others have to be answered first.
@@ -85,10 +85,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     where
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
+        self.slice.ledger.in_any_order = lane.engine.answers() == Answers::AnyOrder;
         let view = self.slice.view(problem, previous);
         lane.engine.begin(&view);
         for (position, outcome, origin) in &self.given {
-            lane.engine.tell(&view, &one(position), &[*outcome], *origin);
+            lane.engine
+                .tell(&view, &Batch::of_one(position), &[*outcome], *origin);
         }
         self.lanes.push(EagerLane::new(lane, problem.space().dimension()));
     }
@@ -311,7 +313,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 } = &mut self.lanes[lane];
                 let any_order = engine.answers() == Answers::AnyOrder;
                 if any_order {
-                    engine.tell(&view, &one(position), &[outcome], Origin::Engine);
+                    let origin = Origin::Single { ask: batch, place };
+                    engine.tell(&view, &Batch::of_one(position), &[outcome], origin);
                 }
                 if batch == progress.number && !progress.told {
                     progress.outcomes[place] = outcome;
@@ -319,11 +322,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                         self.tell_batch(lane, problem, previous);
                     }
                 } else if !any_order && outcome != Outcome::NotEvaluated {
-                    engine.tell(&view, &one(position), &[outcome], Origin::WarmStart);
+                    engine.tell(&view, &Batch::of_one(position), &[outcome], Origin::WarmStart);
                 }
             }
             Of::Probe => {
-                let (batch, archive) = (one(position), &self.slice.ledger.archive);
+                let (batch, archive) = (Batch::of_one(position), &self.slice.ledger.archive);
                 self.slice.probes.take(problem, &batch, &[outcome], archive);
                 self.slice.ledger.counts.probes = self.slice.probes.count();
             }
@@ -348,7 +351,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         if position.is_empty() || outcome == Outcome::NotEvaluated {
             return;
         }
-        let (batch, view) = (one(position), self.slice.view(problem, previous));
+        let (batch, view) = (Batch::of_one(position), self.slice.view(problem, previous));
         for lane in &mut self.lanes {
             lane.lane.engine.tell(&view, &batch, &[outcome], origin);
         }

@@ -123,10 +123,3 @@ impl<S: Real, T> Open<S, T> {
         placed && (self.position.is_empty() || self.position.len() == dimension)
     }
 }
-
-/// A batch of one point.
-pub(super) fn one<S: Real>(position: &[S]) -> Batch<S> {
-    let mut batch = Batch::new(position.len());
-    batch.push(position);
-    batch
-}

@@ -266,7 +266,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             if position.is_empty() {
                 continue;
             }
-            let batch = super::lane::one(&position);
+            let batch = crate::batch::Batch::of_one(&position);
             for lane in &mut self.running.lanes {
                 let view = lane.slice.view(problem, previous);
                 lane.lane

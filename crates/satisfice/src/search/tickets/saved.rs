@@ -8,7 +8,7 @@ use super::lane::{EagerLane, Open};
 use super::ordered::{Ordered, Out};
 use super::{Eager, Inner, Order, Tickets, ValueBits, position_of};
 use crate::batch::Batch;
-use crate::engine::ConfiguredEngine;
+use crate::engine::{Answers, ConfiguredEngine};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
@@ -162,12 +162,15 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
 
     fn restore(
         reader: &mut Reader<'_>,
-        slice: Slice<S, T>,
+        mut slice: Slice<S, T>,
         lanes: Vec<Lane<S>>,
         open: &[(u64, T)],
         dimension: usize,
     ) -> Result<Self, Error> {
         let mut restored = Vec::with_capacity(lanes.len());
+        slice.ledger.in_any_order = lanes
+            .iter()
+            .any(|lane| lane.engine.answers() == Answers::AnyOrder);
         for lane in lanes {
             let batch = Batch::from_positions(reader.read()?, dimension).ok_or_else(misfit)?;
             let lane = EagerLane::restored(lane, batch, reader.read()?);

@@ -33,6 +33,8 @@ pub(super) struct Sizes {
     pub(super) proposals_at_once: usize,
     /// Regions that are split at once.
     pub(super) regions: usize,
+    /// Engines of a kind side by side.
+    pub(super) engines: usize,
 }
 
 impl Default for Sizes {
@@ -48,6 +50,17 @@ impl Sizes {
         let proposals = planned.map_or(MOST_PROPOSALS, |planned| {
             proposals(planned, components, context.seconds_planned())
         });
+        if context.is_in_any_order() {
+            // Each search is an engine of its own.
+            let engines = sizes.searches;
+            return Self {
+                proposals,
+                engines,
+                searches: 1,
+                proposals_at_once: 1,
+                ..sizes
+            };
+        }
         Self { proposals, ..sizes }
     }
 
@@ -73,6 +86,7 @@ impl Sizes {
                     .unwrap_or(MOST_REGIONS)
                     .clamp(1, MOST_REGIONS)
             }),
+            engines: 1,
         }
     }
 
@@ -82,6 +96,7 @@ impl Sizes {
             && self.proposals <= MOST_PROPOSALS
             && (1..=MOST_PROPOSALS_AT_ONCE).contains(&self.proposals_at_once)
             && (1..=MOST_REGIONS).contains(&self.regions)
+            && (1..=MOST_SEARCHES).contains(&self.engines)
     }
 }
 

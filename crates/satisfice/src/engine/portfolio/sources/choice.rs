@@ -22,7 +22,7 @@ impl<S: Real> Sources<S> {
     /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
     pub(super) fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
         if let Some((tag, left @ 1..)) = self.chosen
-            && !(tag.0 == Source::Guest && self.guests.has_part(tag.1))
+            && (tag.0 != Source::Guest || self.guests.is_ready(tag.1))
         {
             return (tag, left);
         }

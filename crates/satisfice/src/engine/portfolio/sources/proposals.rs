@@ -57,7 +57,10 @@ impl<S: Real> Sources<S> {
                     return false;
                 }
                 self.descended += 1;
-                let index = self.next_descent % self.block;
+                let mut turns = (0..self.block).map(|k| (self.next_descent + k) % self.block);
+                let Some(index) = turns.find(|&index| !self.waiting[index]) else {
+                    return false;
+                };
                 self.next_descent = (index + 1) % self.block;
                 // At a point that is known it goes on at once: its turn is not for other sources.
                 let mut tries = 0;
@@ -65,6 +68,7 @@ impl<S: Real> Sources<S> {
                     self.descents[index].propose(context, rng, out);
                     if !self.is_repeated(context, (source, index), out) {
                         self.tags.push((source, index));
+                        self.waiting[index] = true;
                         break;
                     }
                     tries += 1;
@@ -201,7 +205,8 @@ impl<S: Real> Sources<S> {
         while out.len() < SCANNED && self.scan_on(context, rng) {
             out.push(&self.position);
         }
-        self.tags.resize(out.len(), (Source::Uniform, 0));
+        self.tags
+            .resize(out.len(), (Source::Uniform, usize::from(self.scan.is_sample())));
         if self.scan.is_over() || self.visited.as_ref().is_some_and(Visited::is_all) {
             Ask::Covered
         } else {
