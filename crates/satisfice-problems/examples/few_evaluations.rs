@@ -121,9 +121,6 @@ impl Settings {
         } else {
             search.run(&**problem, &budget)?
         };
-        if seed == 1 {
-            eprintln!("{:?}", (&report.sources.names, report.sources.rows.last()));
-        }
         Ok(report.hits().map(|hit| hit.evaluation).collect())
     }
 
