@@ -5,7 +5,7 @@ mod choice;
 mod filling;
 mod proposals;
 
-use awaited::Awaited;
+use awaited::PointsAwaited;
 
 use super::climbers::Climbers;
 use super::credit::{Credit, Patches};
@@ -80,7 +80,7 @@ pub(super) struct Sources<S> {
     neighbourhoods: Neighbourhoods<S>,
     near_misses: NearMisses<S>,
     tags: Vec<Tag>,
-    awaited: Awaited<S>,
+    awaited: PointsAwaited<S>,
     tally: Tally,
     trials: Vec<S>,
     position: Vec<S>,
@@ -124,7 +124,7 @@ impl<S: Real> Sources<S> {
             timing: settings.neighbours,
             near_misses: NearMisses::new(),
             tags: Vec::new(),
-            awaited: Awaited::default(),
+            awaited: PointsAwaited::default(),
             tally: Tally::default(),
             trials: Vec::new(),
             position: Vec::new(),
@@ -177,7 +177,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         // The tags of the last batch name sources of the slice before.
         self.tags.clear();
         self.trials.clear();
-        self.awaited = Awaited::default();
+        self.awaited = PointsAwaited::default();
         self.planned = context.evaluations_planned();
         self.guests.begin(context, self.without == Omitted::Recombination);
         let late = match self.timing {

@@ -7,14 +7,14 @@ use crate::scalar::Real;
 
 /// Whose each point is, by the number of its batch and its place there.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(super) struct Awaited<S> {
+pub(super) struct PointsAwaited<S> {
     /// Batches since the slice began.
     batches: u64,
     /// With the step of a trial.
     points: BTreeMap<(u64, usize), (Tag, Vec<S>)>,
 }
 
-impl<S> Default for Awaited<S> {
+impl<S> Default for PointsAwaited<S> {
     fn default() -> Self {
         Self {
             batches: 0,
@@ -23,7 +23,7 @@ impl<S> Default for Awaited<S> {
     }
 }
 
-impl<S: Real> Awaited<S> {
+impl<S: Real> PointsAwaited<S> {
     /// Takes the tags of the next batch, whose trials are rows of as many numbers as there are axes.
     pub(super) fn add(&mut self, tags: &mut Vec<Tag>, trials: &[S], axes: usize) {
         self.batches += 1;
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn points_are_known_by_batch_and_place_and_trials_by_their_step() {
-        let mut awaited = Awaited::<f64>::default();
+        let mut awaited = PointsAwaited::<f64>::default();
         let mut tags = vec![(Source::Trial, 1), (Source::Descent, 2)];
         awaited.add(&mut tags, &[1.0, 2.0, 3.0, 4.0], 2);
         tags.push((Source::Uniform, 0));
