@@ -41,8 +41,7 @@ impl<S: Real> Sources<S> {
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
-        // The model proposes one point; the other workers are for the other sources.
-        let modelled = self.batch == 1 && self.guests.model_leads(&self.whole);
+        let modelled = self.guests.model_leads(&self.whole);
         let steps = self.progress.levels.are_few();
         let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
         let seekers = self.guests.seekers(&self.whole, self.planned);
