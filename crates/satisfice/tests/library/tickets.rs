@@ -471,3 +471,24 @@ fn tickets_that_are_open_are_bounded() {
         assert_eq!(tickets.ask(count).len(), 1);
     }
 }
+
+/// With one point more than workers, one of them does two while the others wait. Probes come alone.
+#[test]
+fn batches_of_the_default_are_as_large_as_the_budget_says() {
+    let ring = problem("square");
+    let mut search = Search::new();
+    let budget = Budget::evaluations(100).with_parallel(4);
+    let mut slice = search.start(&*ring, &budget).unwrap();
+    let mut sizes = Vec::new();
+    loop {
+        let values: Vec<f64> = slice.ask().unwrap().iter().map(|x| ring.fitness(x)).collect();
+        if values.is_empty() {
+            break;
+        }
+        sizes.push(values.len());
+        slice.tell(&values).unwrap();
+    }
+    let full = sizes.iter().filter(|&&size| size == 4).count();
+    let alone = sizes.iter().filter(|&&size| size == 1).count();
+    assert!(full >= 20 && full + alone >= sizes.len() - 1, "{sizes:?}");
+}

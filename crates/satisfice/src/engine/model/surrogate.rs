@@ -116,6 +116,11 @@ impl<S: Real> ModelledSearch<S> {
         }
     }
 
+    /// How many points it is to propose at once from now on.
+    pub(in crate::engine) fn set_batch(&mut self, points: usize) {
+        self.settings.batch = points.max(1);
+    }
+
     /// Whether the model predicts F better than its mean does; `None` before that is known.
     pub(in crate::engine) fn is_useful(&self) -> Option<bool> {
         self.skill.is_useful()

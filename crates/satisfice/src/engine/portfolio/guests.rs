@@ -368,16 +368,21 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// Asks an engine for its part of the batch.
+    /// Asks an engine for its share of a batch of which so many points are wanted.
     pub(super) fn ask(
         &mut self,
         index: usize,
         context: &dyn Context<S>,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
-        idle_cost: f64,
+        (wanted, idle_cost): (usize, f64),
     ) -> GuestAnswer {
         let guest = &mut self.guests[index];
+        if let Member::Model(model) = &mut guest.engine {
+            // With one point more than wanted, a worker would do two while the others wait.
+            let room = wanted.saturating_sub(out.len());
+            model.set_batch(room.min(self.sizes.proposals_at_once));
+        }
         let before = context.evaluations_left();
         if guest.kind == GuestKind::Regions && before < LAST_BOUNDS {
             return GuestAnswer::Nothing;

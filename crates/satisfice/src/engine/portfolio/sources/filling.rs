@@ -71,7 +71,7 @@ impl<S: Real> Sources<S> {
             if tag.0 == Source::Guest {
                 let answer = self
                     .guests
-                    .ask(tag.1, context, rng, out, self.pace.idle_cost(place));
+                    .ask(tag.1, context, rng, out, (wanted, self.pace.idle_cost(place)));
                 self.tags.resize(out.len(), tag);
                 let cost = match answer {
                     GuestAnswer::Worked(cost) => cost,
