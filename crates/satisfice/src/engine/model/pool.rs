@@ -38,13 +38,18 @@ impl Score {
         }
     }
 
-    /// By the components: the logarithm of the expectation of a normal weight as wide as the limits, which has a closed form.
+    /// By the components: the logarithm of the expectation of a normal weight as wide as the limits, which has a closed form. Where the
+    /// prediction is certain the weight has a tail and its limits do not: beside a known root of a few limits' width a sure miss
+    /// would seem as good as a hit. Chernoff's bound on the probability to be within the limits has no such tail, and counts where it is
+    /// lower.
     fn of_components(means: &[f64], variances: &[f64], limits: &[f64]) -> Self {
         let mut value = 0.0;
         for ((mean, variance), limit) in means.iter().zip(variances).zip(limits) {
             let square = WIDTH * limit * limit;
             let sum = variance + square;
-            value += 0.5 * (square / sum).ln() - 0.5 * mean * mean / sum;
+            let beyond = (mean.abs() - limit).max(0.0);
+            let distance = (mean * mean / sum).max(beyond * beyond / variance);
+            value += 0.5 * (square / sum).ln() - 0.5 * distance;
         }
         Self { hopeful: true, value }
     }
@@ -242,6 +247,19 @@ mod tests {
         approx::assert_relative_eq!(one.value.exp(), expected, max_relative = 1e-6);
         let two = Score::of_components(&[mean; 2], &[variance; 2], &[limit; 2]);
         approx::assert_relative_eq!(two.value, 2.0 * one.value);
+    }
+
+    /// A point that is three limits away for certain is worse than one of which little is known.
+    #[test]
+    fn a_certain_miss_beside_a_root_is_no_candidate() {
+        let limit = 0.003;
+        let certain = Score::of_components(&[0.01], &[1e-7], &[limit]);
+        let unknown = Score::of_components(&[0.5], &[0.1], &[limit]);
+        assert!(unknown.order(&certain).is_gt());
+        // Chernoff: P(|y| < limit) <= exp(-(0.01 - limit)² / 2 / variance).
+        assert!(certain.value <= -(0.007_f64.powi(2)) / 2.0 / 1e-7);
+        let within = Score::of_components(&[0.002], &[1e-7], &[limit]);
+        assert!(within.order(&unknown).is_gt() && within.value > -2.5);
     }
 
     /// By a table of the normal distribution: P(z < 1) = 0.8413, P(z < -1) = 0.1587.
