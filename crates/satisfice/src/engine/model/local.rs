@@ -4,7 +4,7 @@ use super::candidates::{CandidateSource, least};
 use super::duplicates::{is_duplicate, radius};
 use super::lanes::LANES;
 use super::likelihood::likeliest;
-use super::pool::{Place, Pool, Score};
+use super::pool::{Place, Pool, REFINED, Score};
 use super::process::Process;
 use super::reach::{reach, square};
 use super::record::Record;
@@ -24,8 +24,9 @@ const LEARNED_FROM: usize = 160;
 const STEPS: (usize, usize) = (40, 8);
 /// Blocks of candidates that are drawn again for each proposal, half of them uniform.
 const REPLACED: usize = 4;
-/// Rounds in which candidates are drawn around the best one, each time closer.
-const ROUNDS: usize = 3;
+/// Rounds in which candidates are drawn around the best one, and by how much closer each time.
+const ROUNDS: usize = 12;
+const CLOSER: f64 = 1.5;
 /// Points beyond which half as many candidates are drawn for each proposal.
 const AT_FULL_EFFORT: usize = 128;
 /// New points at which the next fit is due, at most.
@@ -131,8 +132,8 @@ impl Model {
         };
         let least = least(record, &model.region.known);
         let lengths = model.lengths();
-        while pool.len() < (candidates / LANES).max(2) && !(pool.len() >= 2 && given.context.is_out_of_time())
-        {
+        let blocks = (candidates / LANES).max(2) + REFINED;
+        while pool.len() < blocks && !(pool.len() >= 2 && given.context.is_out_of_time()) {
             let radius = model.radius;
             let source = model.source(given.units, record, &lengths);
             let mut rounded = Vec::new();
@@ -223,8 +224,8 @@ impl Model {
             let source = self.source(given.units, given.record, &lengths);
             let is_known = &mut |x: &[f64]| given.is_known(x, radius, &mut rounded);
             let around = source.around(&best.1, longest, is_known, rng);
-            longest /= 3.0;
-            let block = self.pool.replace(around);
+            longest /= CLOSER;
+            let block = self.pool.refine(around);
             let mut rated: Vec<(Score, Place)> = self.pool.rate(&self.process, block).collect();
             rated.sort_by(|(a, _), (b, _)| b.order(a));
             if let Some(better) = self.first_allowed(given, rated.into_iter(), pending, Some(best.0)) {
@@ -267,7 +268,7 @@ impl Model {
         for _ in 0..self.effort(NEWTON) {
             let block = self
                 .pool
-                .replace(steps(&self.process, given.units, &self.pool.limits, &at));
+                .refine(steps(&self.process, given.units, &self.pool.limits, &at));
             let mut rated: Vec<(Score, Place)> = self.pool.rate(&self.process, block).collect();
             rated.sort_by(|(a, _), (b, _)| b.order(a));
             let Some(&(score, place)) = rated.first() else {

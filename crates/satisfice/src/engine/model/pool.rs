@@ -8,6 +8,9 @@ const HOPE: f64 = 2.0;
 /// Square of the deviation of a normal weight with the mass of a box, in squares of half its width.
 pub(super) const WIDTH: f64 = core::f64::consts::FRAC_2_PI;
 
+/// Blocks of candidates around the best ones that are kept, beside those that are drawn anywhere: those of two proposals.
+pub(super) const REFINED: usize = 24;
+
 /// A candidate: its block and its lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Place {
@@ -89,14 +92,15 @@ impl Score {
     }
 }
 
-/// Candidates in blocks, of which the oldest are replaced.
+/// Candidates in blocks, of which the oldest are replaced: the last ones, up to [`REFINED`], by candidates around the best, the others by
+/// candidates from anywhere. In one ring, those around the best would take the place of all others within five proposals.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pool {
     blocks: Vec<Block>,
     /// Candidates that are known points or the same as a hit.
     excluded: Vec<[bool; LANES]>,
-    /// The block to be replaced next.
-    next: usize,
+    /// The block of either part to be replaced next, counted from the first of that part.
+    next: [usize; 2],
     /// Limits of the components; none where F itself is modelled.
     pub(super) limits: Vec<f64>,
 }
@@ -115,13 +119,30 @@ impl Pool {
         self.excluded.push([false; LANES]);
     }
 
-    /// Replaces the oldest block, and returns its number.
-    pub(super) fn replace(&mut self, units: Vec<Lanes>) -> usize {
-        let block = self.next % self.len();
+    /// How many blocks are from anywhere.
+    fn drawn(&self) -> usize {
+        self.len() - REFINED.min(self.len() / 2)
+    }
+
+    /// Replaces the oldest block of candidates from anywhere.
+    pub(super) fn replace(&mut self, units: Vec<Lanes>) {
+        let block = self.next[0] % self.drawn();
+        self.next[0] = (block + 1) % self.drawn();
+        self.put(block, units);
+    }
+
+    /// Replaces the oldest block of candidates around the best, and returns its number.
+    pub(super) fn refine(&mut self, units: Vec<Lanes>) -> usize {
+        let (drawn, count) = (self.drawn(), self.len() - self.drawn());
+        let place = self.next[1] % count;
+        self.next[1] = (place + 1) % count;
+        self.put(drawn + place, units);
+        drawn + place
+    }
+
+    fn put(&mut self, block: usize, units: Vec<Lanes>) {
         self.blocks[block] = Block::new(units);
         self.excluded[block] = [false; LANES];
-        self.next = (block + 1) % self.len();
-        block
     }
 
     /// Forgets what is predicted, not the candidates.
@@ -194,22 +215,22 @@ impl Pool {
         })
     }
 
-    /// Candidates, exclusions and the next block, for [`Pool::restored`].
-    pub(super) fn saved(&self) -> (Vec<f64>, Vec<bool>, usize) {
+    /// Candidates, exclusions and the next blocks, for [`Pool::restored`].
+    pub(super) fn saved(&self) -> (Vec<f64>, Vec<bool>, [usize; 2]) {
         let units = self.blocks.iter().flat_map(|block| &block.units).flatten();
         let excluded = self.excluded.iter().flatten();
         (units.copied().collect(), excluded.copied().collect(), self.next)
     }
 
     /// `None` if the lists do not fit each other.
-    pub(super) fn restored(axes: usize, units: &[f64], excluded: &[bool], next: usize) -> Option<Self> {
+    pub(super) fn restored(axes: usize, units: &[f64], excluded: &[bool], next: [usize; 2]) -> Option<Self> {
         let (lanes, []) = units.as_chunks::<LANES>() else {
             return None;
         };
         let (marks, []) = excluded.as_chunks::<LANES>() else {
             return None;
         };
-        if axes == 0 || lanes.len() != marks.len() * axes || next > marks.len() {
+        if axes == 0 || lanes.len() != marks.len() * axes || next.iter().any(|&next| next > marks.len()) {
             return None;
         }
         Some(Self {

@@ -24,7 +24,8 @@ engine_settings! {
     /// After a low-discrepancy design of `d + 2` points, each proposal is the candidate with the highest probability of
     /// `F < delta` under a Gaussian process with a Matérn 5/2 kernel and a length scale for each axis:
     ///
-    /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate.
+    /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate, closer and
+    ///   closer; these are kept for two proposals.
     /// - A candidate that is a known point, or the same as a hit, is excluded; so is one within the separation radius of a point that is
     ///   proposed and not told yet. Where such points will say more of a candidate, it waits: its probability p counts
     ///   `p (1 - (1 - s) (1 - p))`, where s is the share of its variance that their values will leave. The design goes on until as many points
