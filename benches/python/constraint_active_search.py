@@ -6,7 +6,8 @@
 Constraint active search maximises the expected coverage improvement (Malkomes et al. 2021, ICML): how much of the feasible set a
 ball around the next point is expected to cover that no ball around an earlier point covers. BoTorch publishes it as a tutorial,
 not as a function. It is written here after the paper, with the tutorial's settings: an independent Gaussian process, 512 points in a ball,
-smooth edges of 0.002, 10 restarts from 512 raw points, 5 scrambled Sobol points first. Its radius is the problem's separation.
+smooth edges of 0.002, 10 restarts from 512 raw points, 5 scrambled Sobol points first. Its radius is the problem's separation. A run of 50
+evaluations takes about 20 seconds, one of 200 about five minutes.
 
 All problems are scaled to the unit cube. Hits are counted alike for both: points below delta, in the order found, farther than the
 separation from every hit before. Coverage is the share of 2,000 random feasible points within the separation of an evaluated hit.
@@ -101,7 +102,11 @@ PROBLEMS = [
 
 
 class Coverage(AcquisitionFunction):
-    """Expected coverage improvement of one point."""
+    """Expected coverage improvement of one point.
+
+    It needs the variance of each point of a ball only. `model.posterior` also works out its covariance with the rest of the ball, which
+    takes eight times as long, so the posterior is written out here. `agrees` compares both.
+    """
 
     def __init__(self, model, problem, known):
         super().__init__(model)
@@ -109,18 +114,47 @@ class Coverage(AcquisitionFunction):
         directions = sample_hypersphere(d=problem.axes, n=BALL, qmc=True, dtype=torch.double)
         lengths = torch.rand(BALL, 1, dtype=torch.double) ** (1 / problem.axes)
         self.ball = problem.separation * lengths * directions
+        model.eval()
+        with torch.no_grad():
+            kernel = model.covar_module(known).to_dense()
+            noise = model.likelihood.noise * torch.eye(len(known), dtype=torch.double)
+            self.inverse = torch.cholesky_inverse(torch.linalg.cholesky(kernel + noise))
+            self.mean = model.mean_module(known)[0]
+            self.weights = self.inverse @ (model.train_targets - self.mean)
+            self.amplitude = kernel[0, 0]
+        # The model's values are standardised.
+        self.shift, self.scale = model.outcome_transform.means.squeeze(), model.outcome_transform.stdvs.squeeze()
+        limits = (torch.tensor(limit, dtype=torch.double) for limit in (problem.low, problem.high))
+        self.low, self.high = ((limit - self.shift) / self.scale for limit in limits)
+
+    def predict(self, points):
+        """Means and deviations of standardised values."""
+        kernel = self.model.covar_module(points, self.known).to_dense()
+        variance = self.amplitude - ((kernel @ self.inverse) * kernel).sum(dim=-1)
+        return self.mean + kernel @ self.weights, variance.clamp_min(1e-12).sqrt()
+
+    def agrees(self):
+        """Whether predictions are those of `model.posterior`."""
+        with torch.no_grad():
+            generator = torch.Generator().manual_seed(0)  # the search's random numbers stay as they are
+            points = torch.rand(64, self.problem.axes, dtype=torch.double, generator=generator)
+            mean, deviation = self.predict(points)
+            posterior = self.model.posterior(points)
+            means = torch.allclose(self.shift + self.scale * mean, posterior.mean.squeeze(-1), rtol=1e-4, atol=1e-6)
+            deviations = self.scale * deviation, posterior.variance.sqrt().squeeze(-1)
+            return means and torch.allclose(*deviations, rtol=1e-2, atol=1e-3 * float(self.scale))
 
     @t_batch_mode_transform(expected_q=1)
     def forward(self, x):
         points = self.ball + x
         inside = (torch.sigmoid(points / EDGE) - torch.sigmoid((points - 1) / EDGE)).prod(dim=-1)
         uncovered = torch.sigmoid((torch.cdist(points, self.known) - self.problem.separation) / EDGE).prod(dim=-1)
-        posterior = self.model.posterior(points)
-        normal = torch.distributions.Normal(posterior.mean, posterior.variance.sqrt())
-        feasible = normal.cdf(torch.tensor(self.problem.high, dtype=torch.double))
-        if np.isfinite(self.problem.low):
-            feasible = feasible * (1 - normal.cdf(torch.tensor(self.problem.low, dtype=torch.double)))
-        return (feasible.squeeze(-1) * inside * uncovered).sum(dim=-1) / inside.sum(dim=-1)
+        mean, deviation = self.predict(points.reshape(-1, self.problem.axes))
+        normal = torch.distributions.Normal(mean, deviation, validate_args=False)
+        feasible = normal.cdf(self.high)
+        if torch.isfinite(self.low):
+            feasible = feasible - normal.cdf(self.low)
+        return (feasible.reshape(inside.shape) * inside * uncovered).sum(dim=-1) / inside.sum(dim=-1)
 
 
 def by_botorch(problem, evaluations, seed):
@@ -133,6 +167,8 @@ def by_botorch(problem, evaluations, seed):
         model = SingleTaskGP(x, y, likelihood=likelihood, outcome_transform=Standardize(m=1))
         fit_gpytorch_mll(ExactMarginalLogLikelihood(model.likelihood, model))
         coverage = Coverage(model, problem, x)
+        if not coverage.agrees():
+            raise AssertionError("the posterior written out is not that of BoTorch")
         best, _ = optimize_acqf(coverage, bounds=bounds, q=1, num_restarts=RESTARTS, raw_samples=RAW)
         x = torch.cat((x, best.detach()))
     return x.numpy()

@@ -230,7 +230,8 @@ impl Pool {
         let (marks, []) = excluded.as_chunks::<LANES>() else {
             return None;
         };
-        if axes == 0 || lanes.len() != marks.len() * axes || next.iter().any(|&next| next > marks.len()) {
+        let fit = marks.len() >= 2 && lanes.len() == marks.len() * axes;
+        if axes == 0 || !fit || next.iter().any(|&next| next > marks.len()) {
             return None;
         }
         Some(Self {
