@@ -27,6 +27,8 @@ const REPLACED: usize = 4;
 /// Rounds in which candidates are drawn around the best one, and by how much closer each time.
 const ROUNDS: usize = 12;
 const CLOSER: f64 = 1.5;
+/// The same on a lattice, where F may jump from neighbour to neighbour, while a hit is improbable.
+const COARSE: (usize, f64) = (3, 3.0);
 /// Points beyond which half as many candidates are drawn for each proposal.
 const AT_FULL_EFFORT: usize = 128;
 /// New points at which the next fit is due, at most.
@@ -218,13 +220,19 @@ impl Model {
         let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
         let lengths = self.lengths();
         let mut longest = 0.5;
-        for _ in 0..self.effort(ROUNDS) {
+        let jumps = given.context.space().is_lattice() && self.pool.limits.is_empty();
+        let (rounds, closer) = if jumps && !best.0.is_probable(!pending.is_empty()) {
+            COARSE
+        } else {
+            (ROUNDS, CLOSER)
+        };
+        for _ in 0..self.effort(rounds) {
             let radius = self.radius;
             let mut rounded = Vec::new();
             let source = self.source(given.units, given.record, &lengths);
             let is_known = &mut |x: &[f64]| given.is_known(x, radius, &mut rounded);
             let around = source.around(&best.1, longest, is_known, rng);
-            longest /= CLOSER;
+            longest /= closer;
             let block = self.pool.refine(around);
             let mut rated: Vec<(Score, Place)> = self.pool.rate(&self.process, block).collect();
             rated.sort_by(|(a, _), (b, _)| b.order(a));

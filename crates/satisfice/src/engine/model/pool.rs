@@ -87,6 +87,11 @@ impl Score {
         }
     }
 
+    /// Whether a hit of F itself is more probable than a miss; `beside`: whether the score is one beside points that are out.
+    pub(super) fn is_probable(&self, beside: bool) -> bool {
+        self.hopeful && self.value > if beside { -core::f64::consts::LN_2 } else { 0.0 }
+    }
+
     pub(super) fn order(&self, other: &Self) -> core::cmp::Ordering {
         (self.hopeful.cmp(&other.hopeful)).then(self.value.total_cmp(&other.value))
     }
@@ -295,6 +300,15 @@ mod tests {
             (1.0, 0.5, 0.1587 * (1.0 - 0.5 * 0.8413)),
         ] {
             approx::assert_abs_diff_eq!(worth(mean, left), expected, epsilon = 3e-4);
+        }
+        for (mean, left) in [(-0.1, 1.0), (0.1, 1.0), (-0.1, 0.5), (9.0, 1.0)] {
+            let probable = mean < 0.0 && left == 1.0;
+            assert_eq!(
+                Score::beside(mean, 1.0, left).is_probable(true),
+                probable,
+                "{mean} {left}"
+            );
+            assert_eq!(Score::new(mean, 1.0).is_probable(false), mean < 0.0);
         }
         // A certain hit need not wait, nor do ranks depend on it where nothing is out.
         assert!(worth(-6.0, 0.0) > 0.999);
