@@ -23,10 +23,13 @@ def value(x):
 
 
 def test_a_model_of_the_components_finds_what_one_of_the_value_misses():
-    report = alone()
-    assert report.hits == 3 and (report.fun < 1e-3).all()
-    assert report.to_dict()["problem_parameters"]["components"] == 3
-    assert alone(value, components=None).hits == 0
+    # Of three points each, over twenty seeds: any one seed may miss the third.
+    reports = [alone(seed=seed) for seed in range(20)]
+    assert sum(report.hits for report in reports) >= 50
+    assert all((report.fun < 1e-3).all() for report in reports)
+    assert reports[0].to_dict()["problem_parameters"]["components"] == 3
+    assert all(alone(value, components=None, seed=seed).hits == 0 for seed in range(20))
+    assert alone(evaluations=60).hits == 3
     by_default = alone(engine="portfolio", evaluations=100)
     assert by_default.hits == 3
     # Engines without a model do not ask for them.
