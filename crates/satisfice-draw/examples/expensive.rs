@@ -92,7 +92,7 @@ struct Run {
     evaluated: Vec<(Vec<f64>, f64)>,
 }
 
-/// Prints medians over seeds, and checks that the model leads.
+/// Prints medians over seeds, and checks that none finds more than the model; the default, which has the same model, may find as many.
 fn compare(function: &Function) -> Result<(), Box<dyn Error>> {
     let seeds = if gallery::is_quick() { 2 } else { 16 };
     let counted = if gallery::is_quick() {
@@ -117,7 +117,7 @@ fn compare(function: &Function) -> Result<(), Box<dyn Error>> {
     }
     let (model, others) = medians.split_at(1);
     assert!(
-        others.iter().all(|row| row[1] < model[0][1]),
+        others.iter().all(|row| row[1] <= model[0][1]),
         "another engine found more in {} evaluations",
         counted[1]
     );
