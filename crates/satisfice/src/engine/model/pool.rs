@@ -41,10 +41,10 @@ impl Score {
         }
     }
 
-    /// By the components: the logarithm of the expectation of a normal weight as wide as the limits, which has a closed form. Where the
-    /// prediction is certain the weight has a tail and its limits do not: beside a known root of a few limits' width a sure miss
-    /// would seem as good as a hit. Chernoff's bound on the probability to be within the limits has no such tail, and counts where it is
-    /// lower.
+    /// By the components: the logarithm of the expectation of a normal weight as wide as the limits, which has a closed form. Where a
+    /// prediction is nearly certain, the weight has a tail that its limits do not have: a sure miss a few limits away from a known root
+    /// would seem better than a point of which little is known. Chernoff's bound on the probability to be within the limits has no such
+    /// tail, and counts where it is lower.
     fn of_components(means: &[f64], variances: &[f64], limits: &[f64]) -> Self {
         let mut value = 0.0;
         for ((mean, variance), limit) in means.iter().zip(variances).zip(limits) {
