@@ -30,7 +30,8 @@ engine_settings! {
     ///   proposed and not told yet. Where such points will say more of a candidate, it waits: its probability p counts
     ///   `p (1 - (1 - s) (1 - p))`, where s is the share of its variance that their values will leave. The design goes on until as many points
     ///   are told.
-    /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad.
+    /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad. Where F takes few values, such as a
+    ///   number of violated constraints, delta is taken to be halfway between those of hits and of misses.
     /// - Where the problem tells the [components](crate::Components) of F, each is modelled, with length scales in common, and the score
     ///   is the probability that all are within their limits. Damped Gauss-Newton steps lead from candidates to roots of the models.
     /// - Points that turn out to be the same as a hit only once they are evaluated are no part of the model; from them the

@@ -10,8 +10,13 @@ const IN_UNIT: f64 = 0.8;
 /// Largest value that is learned of a component.
 const FARTHEST: f64 = 4.0;
 
+/// Fewest values that tell whether F is a step function.
+const ENOUGH: usize = 16;
+/// Values that differ by less than this share of their range are one level: sums in another order.
+const SAME_LEVEL: f64 = 1e-9;
+
 /// `F - delta`, clipped on both sides at a quantile of the misses: how bad a bad point is does not matter, and a few huge
-/// values would flatten the rest.
+/// values would flatten the rest. Where F is a step function, delta is between the levels of hits and of misses.
 ///
 /// Where the components of F are known, their inverse hyperbolic sines in units of a quantile of their magnitudes: these keep the sign
 /// and the slope at 0, and huge values become bearable.
@@ -26,6 +31,7 @@ pub(super) struct Target {
 impl Target {
     /// The clip for these values, NaN if one is missing.
     pub(super) fn new(delta: f64, values: &[f64]) -> Self {
+        let delta = between_levels(delta, values);
         let excess = values.iter().map(|value| value - delta);
         let mut misses: Vec<f64> = excess.filter(|&e| e >= 0.0 && e.is_finite()).collect();
         let clip = at_share(&mut misses, UNCLIPPED).filter(|&clip| clip > 0.0);
@@ -77,6 +83,38 @@ impl Target {
     }
 }
 
+/// Where most values repeat others: halfway between the greatest of a hit and the least of a miss, as far as these are known or follow
+/// from the least difference of two values. Otherwise a miss whose value is `delta` itself, such as a single violated constraint where
+/// hits are below 1, would look as good as a hit. Everywhere else `delta`.
+fn between_levels(delta: f64, values: &[f64]) -> f64 {
+    let mut levels: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    levels.sort_unstable_by(f64::total_cmp);
+    let count = levels.len();
+    let (Some(&least), Some(&greatest)) = (levels.first(), levels.last()) else {
+        return delta;
+    };
+    let same = SAME_LEVEL * (greatest - least);
+    levels.dedup_by(|next, last| *next - *last <= same);
+    if count < ENOUGH || 2 * levels.len() > count {
+        return delta;
+    }
+    let hits = levels.partition_point(|&level| level < delta);
+    let gaps = levels.windows(2).map(|pair| pair[1] - pair[0]);
+    let gap = gaps.fold(f64::INFINITY, f64::min);
+    let Some(&miss) = levels.get(hits) else {
+        return delta;
+    };
+    // Levels that are a gap apart, from the least miss down to the first below delta.
+    let below = miss - gap * (((miss - delta) / gap).floor() + 1.0);
+    let hit = hits.checked_sub(1).map_or(below, |last| levels[last].max(below));
+    let between = hit + gap / 2.0;
+    if between.is_finite() {
+        between.min(delta)
+    } else {
+        delta
+    }
+}
+
 /// Sorts values and returns the one that this share of them is below; `None` if there are none.
 fn at_share(values: &mut [f64], share: f64) -> Option<f64> {
     values.sort_unstable_by(f64::total_cmp);
@@ -105,6 +143,30 @@ mod tests {
         assert_eq!(target.of(f64::NAN), 1.0);
         assert_eq!(target.of(1e9), 1.0);
         assert_eq!(target.of(0.0), -0.2);
+    }
+
+    #[test]
+    fn the_threshold_of_a_step_function_is_between_its_levels() {
+        let learned = |delta: f64, levels: &[f64]| between_levels(delta, &levels.repeat(16));
+        // A count of what is violated, with and without a hit so far.
+        assert_eq!(learned(1.0, &[1.0, 2.0, 3.0]), 0.5);
+        assert_eq!(learned(1.0, &[0.0, 1.0, 3.0]), 0.5);
+        assert_eq!(learned(0.5, &[2.0, 3.0, 7.0]), 0.5);
+        // What is known of hits counts; never is it above delta.
+        assert_eq!(learned(1.0, &[0.75, 1.0, 2.0]), 0.875);
+        assert_eq!(learned(0.6, &[1.0, 2.0]), 0.5);
+        assert_eq!(learned(0.1, &[1.0, 2.0]), 0.1);
+        // Sums whose order differs are one level.
+        assert_eq!(learned(1.0, &[1.0, 1.0 + 1e-15, 2.0, 3.0]), 0.5);
+        // One level alone says nothing, nor do hits alone, values without a limit, or a few.
+        assert_eq!(learned(1.0, &[1.0]), 1.0);
+        assert_eq!(learned(1.0, &[0.0, 0.5]), 1.0);
+        assert_eq!(learned(1.0, &[-f64::MAX, f64::MAX, f64::NAN, f64::INFINITY]), 1.0);
+        assert_eq!(learned(1.0, &[]), 1.0);
+        assert_eq!(between_levels(1.0, &[1.0, 2.0, 2.0]), 1.0);
+        // Nor where values do not repeat.
+        let slope: Vec<f64> = (0..40).map(|i| f64::from(i) / 8.0).collect();
+        assert_eq!(between_levels(1.0, &slope), 1.0);
     }
 
     #[test]
