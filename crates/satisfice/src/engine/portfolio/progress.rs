@@ -7,10 +7,10 @@ use crate::scalar::Real;
 use crate::seed::SearchRng;
 
 /// What a source is expected to gain before it was tried, in so many evaluations: descents by quadratic models more than the others.
-const EXPECTED: [f64; 3] = [1.0, 4.0, 1.0];
+const EXPECTED: [f64; 3] = [2.0, 8.0, 2.0];
 /// The same where the model knows the components of F.
-const EXPECTED_BY_COMPONENTS: [f64; 3] = [4.0, 1.0, 0.5];
-const EXPECTED_IN: f64 = 20.0;
+const EXPECTED_BY_COMPONENTS: [f64; 3] = [8.0, 2.0, 1.0];
+const EXPECTED_IN: f64 = 40.0;
 /// The most that one evaluation gains.
 const MOST: f64 = 2.0;
 
