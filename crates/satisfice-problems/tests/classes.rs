@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::{Encoding, Located, SatisficingProblem, SearchRng};
+use satisfice::{Budget, Encoding, Located, SatisficingProblem, Search, SearchRng};
 use satisfice_problems::{MixedAxes, PeriodicPoints, Shape, SmallRegions};
 
 /// The map as a newcomer would write it, in steps of one.
@@ -188,6 +188,17 @@ fn plateaus_are_whole_numbers_with_the_same_hits() {
         seen.insert(step as u32);
     }
     assert_eq!(seen.len(), 4);
+}
+
+/// Regions and search may have the same number: 64 points hit boxes of a millionth of the cube by knowing their places only.
+#[test]
+fn a_search_does_not_draw_the_places_of_an_instance() {
+    for number in 0..4 {
+        let boxes = SmallRegions::new(6, 8, Shape::Box, 0.05, 1.0, 0, number).unwrap();
+        let mut search = Search::named("random").unwrap().seed(number);
+        let report = search.run(&boxes, &Budget::evaluations(64)).unwrap();
+        assert_eq!(report.hit_count(), 0, "{number}");
+    }
 }
 
 #[test]

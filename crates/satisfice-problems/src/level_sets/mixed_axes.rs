@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use satisfice::catalogue::{Catalogued, Description, Parameter, Params};
-use satisfice::{Axis, Encoding, Error, SatisficingProblem, SearchRng, Space};
+use satisfice::{Axis, Encoding, Error, SatisficingProblem, Space};
 
 use crate::lattice::{ENUMERABLE, description};
 
@@ -64,7 +64,7 @@ impl MixedAxes {
         if cells == 0 {
             return Err(Error::parameter("cells", cells, "a whole number from 1 on"));
         }
-        let mut rng = SearchRng::new(instance);
+        let mut rng = super::instance_rng(instance);
         let windows = (0..kinds as usize).map(|kind| BestSettings {
             rate: rng.uniform(),
             angle: rng.uniform(),

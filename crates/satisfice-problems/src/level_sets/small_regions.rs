@@ -8,6 +8,8 @@ use crate::lattice::description;
 const SHAPES: &[&str] = &["box", "ball", "ellipsoid"];
 /// Draws of centres before the regions count as too large.
 const DRAWS: usize = 100_000;
+/// Draws after which all centres are drawn anew: the first ones may leave no room for the last.
+const ANEW: usize = 10_000;
 /// The separation, in radii, where regions are far from each other.
 const MOST_SEPARATION: f64 = 4.0;
 
@@ -97,7 +99,7 @@ impl SmallRegions {
             return Err(Error::parameter("aspect", aspect, "a finite number from 1 on"));
         }
         let space = Space::cube(dimension, 0.0, 1.0)?;
-        let mut rng = SearchRng::new(instance);
+        let mut rng = super::instance_rng(instance);
         let centres = places(dimension, count, shape, radius, &mut rng).ok_or_else(|| {
             Error::parameter(
                 "radius",
@@ -184,6 +186,9 @@ fn places(
     while centres.len() < count * dimension {
         if draws == DRAWS {
             return None;
+        }
+        if draws.is_multiple_of(ANEW) {
+            centres.clear();
         }
         draws += 1;
         for x in &mut centre {
