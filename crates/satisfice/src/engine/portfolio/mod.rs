@@ -91,8 +91,8 @@ engine_settings! {
     /// others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the [components](crate::Components)
     /// of F, the model comes first. Elsewhere on continuous axes the model and descents, by quadratic models and without, look for the first hit
     /// together with up to half of the evaluations: the more a source has lowered the least F, the more it is asked; not so where most values of F
-    /// repeat others: of a step function swarms and uniform points know more than descents, and more than the model until it is known to
-    /// predict F. On continuous axes, when no source has found a hit for
+    /// repeat others: of a step function swarms and uniform points know more than descents, unless the problem names neighbours, and more than the
+    /// model until it is known to predict F. On continuous axes, when no source has found a hit for
     /// 400 evaluations an axis and 2,000 more, and for 200 a hit, every other choice is niching's until one does. All sources learn the hits of the
     /// others. No parameter depends on the problem.
     ///

@@ -46,6 +46,8 @@ pub(super) struct Sources<S> {
     block: usize,
     /// Whether F takes less time than a choice of source.
     is_quick: bool,
+    /// Whether the problem names neighbours.
+    has_neighbours: bool,
     /// The source chosen last, and how many more candidates are to come from it.
     chosen: Option<(Tag, u64)>,
     timing: NeighbourTiming,
@@ -93,6 +95,7 @@ impl<S: Real> Sources<S> {
             batch: 1,
             block: 1,
             is_quick: false,
+            has_neighbours: false,
             chosen: None,
             without: settings.without,
             arms: [Credit::default(); ARMS],

@@ -15,6 +15,8 @@ const LONGEST_TURN_WHERE_QUICK: u64 = 32;
 /// Weights of uniform points and of swarms where F is a step function, which has no slope to descend.
 const BLIND: f64 = 4.0;
 const BLIND_SWARMS: f64 = 20.0;
+/// The weight of swarms if such a problem names neighbours: then descents have something to descend.
+const BLIND_SWARMS_BESIDE_NEIGHBOURS: f64 = 3.0;
 /// Share of the choices that is niching's while no source finds anything.
 const NICHING: f64 = 0.5;
 
@@ -43,7 +45,11 @@ impl<S: Real> Sources<S> {
         let price = self.whole.price();
         let modelled = self.guests.model_leads(&self.whole);
         let steps = self.progress.levels.are_few();
-        let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
+        let [uniform, swarm] = match (steps, self.has_neighbours) {
+            (false, _) => [0.3, 0.5],
+            (true, false) => [BLIND, BLIND_SWARMS],
+            (true, true) => [BLIND, BLIND_SWARMS_BESIDE_NEIGHBOURS],
+        };
         let seekers = self.guests.seekers(&self.whole, self.planned);
         if modelled
             && !steps

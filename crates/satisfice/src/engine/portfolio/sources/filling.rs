@@ -42,6 +42,7 @@ impl<S: Real> Sources<S> {
         };
         let at_once = context.parallel().max(first);
         let wanted = self.asked_for.unwrap_or(if in_any_order { 1 } else { at_once });
+        self.has_neighbours = context.offers_neighbours();
         self.is_quick =
             context.is_timed() && context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
         let slow = if self.is_quick { SLOW_WHERE_QUICK } else { SLOW };
