@@ -8,9 +8,10 @@ use crate::seed::SearchRng;
 
 /// What a source is expected to gain before it was tried, in so many evaluations: descents by quadratic models more than the others.
 const EXPECTED: [f64; 3] = [2.0, 8.0, 2.0];
-/// The same where the model knows the components of F.
-const EXPECTED_BY_COMPONENTS: [f64; 3] = [8.0, 2.0, 1.0];
 const EXPECTED_IN: f64 = 40.0;
+/// The same where the model knows the components of F.
+const EXPECTED_BY_COMPONENTS: [f64; 3] = [4.0, 1.0, 0.5];
+const EXPECTED_IN_BY_COMPONENTS: f64 = 20.0;
 /// The most that one evaluation gains.
 const MOST: f64 = 2.0;
 
@@ -64,10 +65,10 @@ impl Progress {
 
     /// Draws the next source, by Thompson sampling on what an evaluation of each gains. `components`: whether the model knows those of F.
     pub(super) fn choose(&self, components: bool, rng: &mut SearchRng) -> Seeker {
-        let expected = if components {
-            EXPECTED_BY_COMPONENTS
+        let (expected, evaluations) = if components {
+            (EXPECTED_BY_COMPONENTS, EXPECTED_IN_BY_COMPONENTS)
         } else {
-            EXPECTED
+            (EXPECTED, EXPECTED_IN)
         };
         let mut best = (f64::NEG_INFINITY, Seeker::Quadratic);
         for seeker in [Seeker::Model, Seeker::Quadratic, Seeker::Direct] {
@@ -75,7 +76,7 @@ impl Progress {
             let drawn = draw(
                 rng,
                 self.gains[i] + expected[i],
-                self.evaluations[i] + EXPECTED_IN,
+                self.evaluations[i] + evaluations,
             );
             if drawn > best.0 {
                 best = (drawn, seeker);
