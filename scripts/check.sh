@@ -31,8 +31,7 @@ RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --all-features --quie
 
 step "feature matrix: none, each alone"
 # The workspace's tests have all features. Without any, the results of every engine have to be the same; everything has to compile.
-# (Built less optimised: the build takes longer than the run.)
-cargo test -p satisfice --quiet --no-default-features --test pinned --config 'profile.dev.package.satisfice.opt-level=1'
+cargo test -p satisfice --quiet --no-default-features --test pinned
 cargo check -p satisfice --quiet --no-default-features --all-targets
 for features in rayon interval; do
   echo "-- satisfice with features: $features"
