@@ -20,6 +20,9 @@ const BARREN_SHARES: f64 = 0.18;
 /// Largest share of the evaluations that do not hit for all of them together while a model of F is at work: the model learns less from
 /// their evaluations than from its own.
 const SHARE_BESIDE_MODEL: f64 = 0.06;
+/// Share of the evaluations that do not hit for descents by components, after so many evaluations.
+const SHARE_BESIDE_COMPONENTS: f64 = 0.2;
+const FIRST_OF_COMPONENTS: f64 = 100.0;
 /// A source without a hit may begin with one evaluation for every `PLANNED` planned ones, and `BARREN_START` at most.
 const PLANNED: f64 = 50.0;
 const BARREN_START: f64 = 8.0;
@@ -68,6 +71,18 @@ impl Trial {
         Self {
             until_known: UNKNOWN * all.price(),
             ..self
+        }
+    }
+
+    /// For a source with a share of its own beside a model of the components of F: it begins when the model had the first evaluations. The
+    /// share is in proportion to what it could gain at most: `missed` of the evaluations.
+    pub(super) fn beside_components(missed: f64) -> Self {
+        let share = missed * SHARE_BESIDE_COMPONENTS;
+        Self {
+            start: -share * FIRST_OF_COMPONENTS,
+            share,
+            always: true,
+            until_known: 0.0,
         }
     }
 

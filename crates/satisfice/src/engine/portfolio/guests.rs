@@ -36,7 +36,7 @@ const MODELLED: u64 = MOST_PROPOSALS;
 const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 50;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
-/// about half as long.
+/// about half as long. Those by components always run.
 const QUADRATIC: f64 = 2e-5;
 /// Share of the planned evaluations in which the model and descents look for the first hit.
 const FIRST_SHARE: f64 = 0.5;
@@ -202,7 +202,9 @@ impl<S: Real> Guests<S> {
                     self.continuous && !without_recombination && space.dimension() <= CMA_AXES
                 }
                 GuestKind::Flood => continuous,
-                GuestKind::Quadratic => is_smooth(context) && context.evaluations_planned().is_some(),
+                GuestKind::Quadratic => {
+                    is_smooth(context) && (self.components || context.evaluations_planned().is_some())
+                }
                 GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
                 GuestKind::Model => {
                     context.evaluations_planned().is_some()
@@ -363,7 +365,11 @@ impl<S: Real> Guests<S> {
                 return None;
             }
             offered = Some(guest.kind);
-            let weight = guest.weight(all, trial, descends_first, steps);
+            let trial = match guest.kind {
+                GuestKind::Quadratic if modelled && self.components => Trial::beside_components(all.missed()),
+                _ => trial,
+            };
+            let weight = guest.weight(all, trial, descends_first, self.components, steps);
             weight.map(|weight| (index, &guest.arm, weight))
         })
     }

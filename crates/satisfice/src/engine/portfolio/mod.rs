@@ -63,8 +63,8 @@ engine_settings! {
     /// A portfolio of sources of candidates, which compete for evaluations by their yield:
     ///
     /// - restarted descents over neighbours and compass steps, and on continuous axes (1+1)-CMA-ES with recombination of hits;
-    /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where evaluations are limited or F takes more than
-    ///   20 microseconds;
+    /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where the problem tells the
+    ///   [components](crate::Components) of F, evaluations are limited or F takes more than 20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
     /// - a Gaussian process on at most 50 axes, where evaluations are limited, or where F takes more than 5 ms and only time is limited: up to
     ///   1,000 proposals, of half a millisecond to a few. Unless the problem tells the components of F, they become fewer beyond 2,000 planned
@@ -88,8 +88,8 @@ engine_settings! {
     /// for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit. Where time alone is
     /// limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000 evaluations and then competes as the
     /// others do. It has the bound of a source without a hit once it is known to predict less than a quarter of the variance of F; until then the
-    /// others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the [components](crate::Components)
-    /// of F, the model comes first. Elsewhere on continuous axes the model and descents, by quadratic models and without, look for the first hit
+    /// others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the components
+    /// of F, the model comes first, and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do not hit. Elsewhere on continuous axes the model and descents, by quadratic models and without, look for the first hit
     /// together with up to half of the evaluations: the more a source has lowered the least F, the more it is asked; not so where most values of F
     /// repeat others: of a step function swarms and uniform points know more than descents, unless the problem names neighbours, and more than the
     /// model until it is known to predict F. On continuous axes, when no source has found a hit for

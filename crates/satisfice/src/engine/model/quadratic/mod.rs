@@ -1,12 +1,17 @@
-//! Restarted local search by quadratic models: for isolated roots and minima of a smooth F.
+//! Restarted local search by quadratic models, or by linear ones of the components of F: for isolated roots and minima.
 
 mod coordinate;
 mod eigen;
 mod minimum;
+mod root;
+mod run;
 mod search;
+mod starts;
 
-use coordinate::{CoordinateSearch, Decisive, change};
-use search::{Memory, Proposal, QuadraticSearch};
+use coordinate::Decisive;
+use run::{Memories, QuadraticRun};
+use search::Proposal;
+use starts::{StartKind, Starts};
 
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -17,12 +22,11 @@ use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// Local searches, each from one point or the best of eight, that go to the minimum of a quadratic model in a trust
-    /// region. The points cover the space evenly.
+    /// Local searches, each from one point or the best of eight, whichever has yielded more, that go to the minimum of a quadratic model in
+    /// a trust region. The points cover the space evenly.
     ///
     /// - The model interpolates F at the points evaluated near the best one. Of its second derivatives those are kept that the points do not
     ///   decide (least Frobenius norm updating, Powell 2004), so that it is of use from one point more than there are axes.
@@ -31,8 +35,11 @@ engine_settings! {
     /// - Where F stays the same along most axes, as the largest of several distances does, quadratics are of no use. Then a search goes along
     ///   the one axis that changes F, to where F would be at the threshold, and looks for the next one. One look tells which it is: it moves
     ///   along all axes, along each so far that F would change by another amount.
+    /// - Where the problem tells the [components](crate::Components) of F, each has a linear model instead: Gauss-Newton steps (Levenberg 1944),
+    ///   with slopes that are looked up along the axes and then corrected by each step (Broyden 1965). A root takes a few evaluations more
+    ///   than there are axes. The components are worked out beside F, which costs as much again.
     /// - A search ends at a hit; where a model that has predicted well promises a known hit or no hit; where its steps become shorter than
-    ///   `shortest`; and after 150 evaluations and ten for each axis.
+    ///   `shortest`; and after 150 evaluations and ten for each axis, by components after 30 and five.
     ///
     /// Integer axes stay where a search starts, and so do all but 30 continuous axes, drawn anew for each search. Hits are deleted. Cost
     /// of a proposal: O(m^3) for the m points of the model, 64 at most; some 10 microseconds on six axes.
@@ -58,10 +65,8 @@ engine_settings! {
 
 impl EngineConfig for QuadraticDescent {
     const NAME: &'static str = "quadratic-descent";
-    const SUMMARY: &'static str =
-        "restarted descent by quadratic models of F, for isolated roots and minima on continuous axes";
-    const CITATION: &'static str =
-        "after Powell 2004, doi 10.1007/s10107-003-0490-7, and Powell 2006, doi 10.1007/0-387-30065-1_16";
+    const SUMMARY: &'static str = "restarted descent by quadratic models of F, or linear ones of its components, for isolated roots and minima on continuous axes";
+    const CITATION: &'static str = "after Powell 2004, doi 10.1007/s10107-003-0490-7, Powell 2006, doi 10.1007/0-387-30065-1_16, and Levenberg 1944, doi 10.1090/qam/10666";
 
     both_scalars!();
 }
@@ -72,43 +77,23 @@ impl QuadraticDescent {
             settings: self.clone(),
             axes: Vec::new(),
             periodic: Vec::new(),
-            restarts: 0,
+            components: 0,
+            starts: Starts::default(),
             even: EvenPoints::default(),
             decisive: Decisive::default(),
             descents: vec![QuadraticRun::default(); self.searches],
             given: Vec::new(),
             position: Vec::new(),
             sides: Vec::new(),
-            memory: Memory::default(),
+            memories: Memories::default(),
         })
     }
 }
 
 /// Axes of one search, at most.
 const MOST_AXES: usize = 30;
-/// Every other search starts at the best of so many points.
-const DRAWS: usize = 8;
 /// At most so many points of the user are kept, the best ones.
 const GIVEN: usize = 1024;
-
-/// One search, or the draws before it.
-#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
-struct QuadraticRun<S> {
-    /// Points still to be drawn for the start, and whether one of them is out.
-    draws: usize,
-    is_drawn: bool,
-    /// The best of them, where the search starts; on axes that it does not move along it stays there.
-    start: Vec<S>,
-    value: f64,
-    /// The axes that it moves along; none before it has started.
-    axes: Vec<usize>,
-    search: QuadraticSearch,
-    /// How steep F was along the first axes, while the search begins with looks along all of them.
-    slopes: Option<Vec<f64>>,
-    /// The search along one axis at a time, where one axis decides F.
-    coordinate: CoordinateSearch,
-    goes_along_axes: bool,
-}
 
 /// The engine of [`QuadraticDescent`].
 #[derive(Debug)]
@@ -118,8 +103,10 @@ struct QuadraticSearches<S> {
     axes: Vec<usize>,
     /// Which axes of the space are periodic.
     periodic: Vec<bool>,
-    restarts: u64,
-    /// Where searches start.
+    /// Number of components of F that the problem tells.
+    components: usize,
+    /// How searches start, and at which points.
+    starts: Starts,
     even: EvenPoints,
     /// Whether one axis decides F.
     decisive: Decisive,
@@ -129,103 +116,12 @@ struct QuadraticSearches<S> {
     /// Memory of one proposal: the position, and which axes of the search are periodic.
     position: Vec<S>,
     sides: Vec<bool>,
-    memory: Memory,
-}
-
-impl<S: Real> QuadraticRun<S> {
-    fn end(&mut self) {
-        self.axes.clear();
-        self.draws = 0;
-        self.value = f64::INFINITY;
-        self.slopes = None;
-        self.goes_along_axes = false;
-    }
-
-    /// Ends a search that went along the axes, or another one.
-    fn conclude(&mut self, is_hit: bool, decisive: &mut Decisive) {
-        if self.goes_along_axes {
-            decisive.count_end(self.axes.len(), is_hit);
-        }
-        self.end();
-    }
-
-    /// Goes on along one axis at a time, if one axis decides F.
-    fn turn_to_axes(&mut self, decisive: &Decisive) {
-        if !self.goes_along_axes && decisive.is_one_axis() {
-            let (point, value) = self.search.best();
-            self.coordinate.start(point, value);
-            self.goes_along_axes = true;
-        }
-    }
-
-    /// The next point of the search.
-    fn next(
-        &mut self,
-        (threshold, shortest): (f64, f64),
-        periodic: &[bool],
-        decisive: &Decisive,
-        memory: &mut Memory,
-    ) -> Proposal {
-        self.turn_to_axes(decisive);
-        if self.goes_along_axes {
-            self.coordinate.propose(shortest, &self.axes, periodic, decisive)
-        } else {
-            self.search.propose(threshold, shortest, periodic, memory)
-        }
-    }
-
-    /// Takes F at a point of the search.
-    fn learn_value(&mut self, value: f64, threshold: f64, decisive: &mut Decisive) {
-        if self.goes_along_axes {
-            return self.coordinate.learn(value, threshold, &self.axes, decisive);
-        }
-        if let Some(slopes) = &mut self.slopes {
-            slopes.push(change(self.search.best().1, value) / self.search.radius);
-            if slopes.len() == self.axes.len() {
-                decisive.count(&self.axes, slopes);
-                self.slopes = None;
-            }
-        }
-        self.search.learn(value);
-    }
-
-    /// Takes what became of the last proposal.
-    fn learn(&mut self, position: &[S], outcome: Outcome<S>, threshold: S, decisive: &mut Decisive) {
-        match outcome {
-            Outcome::NotEvaluated => {}
-            Outcome::Miss(_) | Outcome::NonFinite => {
-                let value = outcome.fitness().f64();
-                if !self.is_drawn {
-                    self.learn_value(value, threshold.f64(), decisive);
-                } else if value < self.value {
-                    self.value = value;
-                    self.start.clear();
-                    self.start.extend_from_slice(position);
-                }
-            }
-            // The hit of this basin is found, or was found before.
-            Outcome::Hit(_) | Outcome::Known(_) | Outcome::Deleted => self.conclude(true, decisive),
-        }
-    }
-
-    /// Writes the position that the search has proposed.
-    fn place(&self, space: &Space<S>, position: &mut [S]) {
-        position.copy_from_slice(&self.start);
-        let proposed = if self.goes_along_axes {
-            &self.coordinate.proposed
-        } else {
-            &self.search.proposed
-        };
-        for (&j, &share) in self.axes.iter().zip(proposed) {
-            let axis = &space.axes()[j];
-            position[j] = axis.start() + axis.width() * S::of(share);
-        }
-    }
+    memories: Memories<S>,
 }
 
 impl<S: Real> QuadraticSearches<S> {
     /// Starts the search of run `index` at its best point.
-    fn start(&mut self, index: usize, space: &Space<S>, rng: &mut SearchRng) {
+    fn start(&mut self, index: usize, context: &dyn Context<S>, rng: &mut SearchRng) {
         let count = self.axes.len().min(MOST_AXES);
         if count < self.axes.len() {
             for k in 0..count {
@@ -233,23 +129,11 @@ impl<S: Real> QuadraticSearches<S> {
                 self.axes.swap(k, other);
             }
         }
+        let (axes, radius) = (&self.axes[..count], self.settings.step);
         let run = &mut self.descents[index];
-        run.axes.extend_from_slice(&self.axes[..count]);
-        let share = |&j: &usize| {
-            let axis = &space.axes()[j];
-            ((run.start[j] - axis.start()) / axis.width()).f64()
-        };
-        let (looks_along_axes, mut drawn) = (self.decisive.is_open(), 0);
-        run.slopes = looks_along_axes.then(Vec::new);
-        let normal = || {
-            drawn += 1;
-            match looks_along_axes {
-                true => f64::from(u8::from((drawn - 1) % (count + 1) == 0)),
-                false => rng.normal(),
-            }
-        };
-        run.search
-            .start(run.axes.iter().map(share), run.value, self.settings.step, normal);
+        run.begin(axes, radius, context, &self.decisive, &mut self.memories, || {
+            rng.normal()
+        });
     }
 
     /// Appends the next point of run `index`.
@@ -261,22 +145,18 @@ impl<S: Real> QuadraticSearches<S> {
             run.is_drawn = false;
             if run.axes.is_empty() && run.draws == 0 {
                 if run.value.is_finite() && !self.axes.is_empty() {
-                    self.start(index, space, rng);
+                    self.start(index, context, rng);
                 } else if let Some((value, start)) = self.given.pop() {
                     (run.value, run.start) = (value, start);
+                    run.kind = StartKind::Given;
                     if self.axes.is_empty() {
                         run.end();
                     }
                     continue;
                 } else {
                     run.end();
-                    self.restarts += 1;
-                    let is_short = self.decisive.is_one_axis();
-                    run.draws = if is_short || !self.restarts.is_multiple_of(2) {
-                        1
-                    } else {
-                        DRAWS
-                    };
+                    run.kind = self.starts.next();
+                    run.draws = run.kind.draws();
                 }
             }
             let run = &mut self.descents[index];
@@ -289,7 +169,7 @@ impl<S: Real> QuadraticSearches<S> {
             self.sides.clear();
             self.sides.extend(run.axes.iter().map(|&j| self.periodic[j]));
             let limits = (context.threshold().f64(), self.settings.shortest);
-            let proposal = run.next(limits, &self.sides, &self.decisive, &mut self.memory);
+            let proposal = run.next(limits, &self.sides, &self.decisive, &mut self.memories);
             if proposal != Proposal::Ends {
                 run.place(space, &mut self.position);
                 if proposal != Proposal::Converges || !context.is_deleted(&self.position) {
@@ -312,6 +192,8 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
             .map(|(j, _)| j)
             .collect();
         self.periodic = (0..space.dimension()).map(|j| space.is_periodic(j)).collect();
+        self.components = context.component_count();
+        self.starts = Starts::default();
         self.even = EvenPoints::default();
         self.given.clear();
         self.decisive.begin(space.dimension());
@@ -332,7 +214,8 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
             Origin::Engine => {
                 for ((run, position), &outcome) in self.descents.iter_mut().zip(batch.points()).zip(outcomes)
                 {
-                    run.learn(position, outcome, context.threshold(), &mut self.decisive);
+                    let shared = (&mut self.decisive, &mut self.starts);
+                    run.learn(position, outcome, context, shared, &mut self.memories);
                 }
             }
             Origin::Start => {
@@ -363,19 +246,17 @@ impl<S: Real> Engine<S> for QuadraticSearches<S> {
             && self.decisive.fits(dimension)
             && are_axes(&self.axes)
             && self.given.iter().all(|(_, start)| start.len() == dimension)
-            && self.descents.iter().all(|run| {
-                let is_started = run.axes.is_empty()
-                    || run.search.fits(run.axes.len())
-                        && (!run.goes_along_axes || run.coordinate.fits(run.axes.len()));
-                let has_start =
-                    run.start.len() == dimension || run.axes.is_empty() && run.value.is_infinite();
-                is_started && has_start && are_axes(&run.axes)
-            });
+            && self
+                .descents
+                .iter()
+                .all(|run| run.fits(dimension, self.components));
         fits.then_some(())
             .ok_or_else(|| Error::State("its searches do not fit the space".to_owned()))
     }
 }
 
 impl<S: Real> Part for QuadraticSearches<S> {
-    crate::saved_fields!(axes, periodic, restarts, even, decisive, descents, given);
+    crate::saved_fields!(
+        axes, periodic, components, starts, even, decisive, descents, given
+    );
 }

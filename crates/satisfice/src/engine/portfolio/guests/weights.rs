@@ -10,21 +10,26 @@ const MODEL_WEIGHT: f64 = 40.0;
 /// Weight of the model after the search for a first hit, in which descents take part. Where hits are many, the model is as good as
 /// descents; of isolated hits it knows only what descents tell it.
 const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
+/// Weight of descents by quadratic models, and of those by components.
+const QUADRATIC_WEIGHT: f64 = 4.0;
+const COMPONENTS_WEIGHT: f64 = 16.0;
 
 impl<S: Real> Guest<S> {
     /// Its weight, unless it is not worth trying. `descends_first`: whether descents take part in the search for a first hit.
-    /// `steps`: whether F is a step function.
+    /// `components`: whether the problem tells them. `steps`: whether F is a step function.
     pub(super) fn weight(
         &self,
         all: &Credit,
         trial: Trial,
         descends_first: bool,
+        components: bool,
         steps: bool,
     ) -> Option<f64> {
         let is_worth_trying = self.arm.is_worth_trying(all, trial);
         match (self.kind, &self.engine) {
             (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
-            (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(4.0),
+            (GuestKind::Quadratic, _) if components => is_worth_trying.then_some(COMPONENTS_WEIGHT),
+            (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(QUADRATIC_WEIGHT),
             (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
             (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
             (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
