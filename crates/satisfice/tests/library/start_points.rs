@@ -14,11 +14,11 @@ type Problem = dyn SatisficingProblem<Scalar = f64, Solution = Located<f64>> + S
 /// All points that were evaluated, in order.
 type Evaluated = Arc<Mutex<Vec<Vec<f64>>>>;
 
-/// Hits within 0.01 of the origin of a mixed space, and the order in which points are evaluated.
+/// Hits within 0.01 of the origin of a mixed space, which is not its middle, and the order in which points are evaluated.
 fn problem() -> (Arc<Problem>, Evaluated) {
     let seen = Arc::new(Mutex::new(Vec::new()));
     let log = Arc::clone(&seen);
-    let space = Space::new([Axis::continuous(-5.0, 5.0), Axis::integer(-100, 100)]).unwrap();
+    let space = Space::new([Axis::continuous(-6.0, 5.0), Axis::integer(-100, 100)]).unwrap();
     let problem = from_fn(space, 0.01, move |x: &[f64]| {
         log.lock().unwrap().push(x.to_vec());
         x[0].hypot(x[1])

@@ -138,7 +138,7 @@ impl<S: Real> ModelledSearch<S> {
         self.record.len() - self.record.duplicates.len()
     }
 
-    /// The next point of the design that is new. Misses of others count for its points; while answers are awaited, it goes on.
+    /// The next point of the design that is new: the first one is the middle, where axes have one. Misses of others count for its points; while answers are awaited, it goes on.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let (axes, size) = (self.units.len(), self.design_size());
         let mut x = Vec::new();
@@ -148,7 +148,11 @@ impl<S: Real> ModelledSearch<S> {
                 break;
             }
             x.clear();
-            x.extend(self.design.next_point(axes, rng));
+            if self.started == 0 && self.units.are_ordered() {
+                x.resize(axes, 0.5);
+            } else {
+                x.extend(self.design.next_point(axes, rng));
+            }
             self.started += 1;
             self.units.round(&mut x);
             if self.is_new(context, &x) {

@@ -106,6 +106,11 @@ impl Units {
         }
     }
 
+    /// Whether all axes go from one end to the other, without categories and ranks.
+    pub(super) fn are_ordered(&self) -> bool {
+        self.axes.iter().all(|unit| unit.shape == Shape::Line)
+    }
+
     pub(super) fn len(&self) -> usize {
         self.axes.len()
     }
