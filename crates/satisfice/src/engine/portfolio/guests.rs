@@ -15,7 +15,7 @@ use share::Share;
 use sizes::{MOST_PROPOSALS, Sizes};
 
 use super::credit::{Credit, Trial};
-use super::progress::Seeker;
+use super::progress::{Ground, Seeker};
 use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -82,6 +82,8 @@ pub(super) struct Guests<S> {
     sizes: Sizes,
     /// Whether all axes are continuous, and F may be smooth along them.
     continuous: bool,
+    /// What the search for a first hit goes by, if anything leads down.
+    ground: Option<Ground>,
     /// Whether the problem tells the components of F, of which the model knows more than descents do.
     components: bool,
     /// Whether answers come one by one, in any order: then engines of a kind work side by side.
@@ -167,6 +169,7 @@ impl<S: Real> Guests<S> {
             guests: Vec::new(),
             sizes: Sizes::default(),
             continuous: false,
+            ground: None,
             components: false,
             in_any_order: false,
             part: Batch::new(1),
@@ -184,6 +187,13 @@ impl<S: Real> Guests<S> {
             .all(|axis| axis.kind() == AxisKind::Continuous);
         self.continuous = all && is_smooth(context);
         self.components = context.component_count() > 0;
+        self.ground = if self.continuous && self.components {
+            Some(Ground::Components)
+        } else if self.continuous {
+            Some(Ground::Smooth)
+        } else {
+            context.offers_neighbours().then_some(Ground::Neighbours)
+        };
         self.in_any_order = context.is_in_any_order();
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context);
@@ -301,11 +311,13 @@ impl<S: Real> Guests<S> {
         self.guests.iter().any(|guest| guest.kind == GuestKind::Model)
     }
 
-    /// The engines that look for the first hit while a model is at work: the model itself and the descents by quadratic models. `None`
-    /// where an axis is not continuous, after the first hit, and after their share of the evaluations.
-    pub(super) fn seekers(&self, all: &Credit, planned: Option<u64>) -> Option<[usize; 2]> {
+    /// What the search for the first hit goes by while a model is at work, and the engines that take part in it beside descents: the model
+    /// itself and, last, descents by quadratic models. `None` where nothing leads down, after the first hit, and after its share of the
+    /// evaluations.
+    pub(super) fn seekers(&self, all: &Credit, planned: Option<u64>) -> Option<(Ground, [usize; 2])> {
+        let ground = self.ground?;
         let most = FIRST_SHARE * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
-        if !self.continuous || !all.is_barren() || all.evaluations() as f64 >= most {
+        if !all.is_barren() || all.evaluations() as f64 >= most {
             return None;
         }
         let find = |kind| {
@@ -314,13 +326,10 @@ impl<S: Real> Guests<S> {
         };
         let model = find(GuestKind::Model)?;
         let quadratic = find(GuestKind::Quadratic);
-        // While all descents await answers, the model proposes.
-        let quadratic = quadratic.or(self.in_any_order.then_some(model));
-        Some([model, quadratic?])
-    }
-
-    pub(super) fn has_components(&self) -> bool {
-        self.components
+        // Without descents by quadratic models, or while all of them await answers, the model proposes.
+        let takes_over = self.in_any_order || ground == Ground::Neighbours;
+        let quadratic = quadratic.or(takes_over.then_some(model));
+        Some((ground, [model, quadratic?]))
     }
 
     /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
@@ -426,7 +435,7 @@ impl<S: Real> Guests<S> {
 
     pub(super) fn save(&self, state: &mut State) {
         (self.sizes, self.continuous, self.components, self.guests.len()).save(state);
-        self.in_any_order.save(state);
+        (self.in_any_order, self.ground).save(state);
         for guest in &self.guests {
             (guest.kind, guest.arm, guest.open).save(state);
             (guest.own.start, guest.own.end).save(state);
@@ -445,7 +454,7 @@ impl<S: Real> Guests<S> {
         }
         self.sizes = sizes;
         (self.continuous, self.components) = (continuous, components);
-        self.in_any_order = from.read()?;
+        (self.in_any_order, self.ground) = from.read()?;
         self.guests.clear();
         for _ in 0..count {
             let (kind, arm, open) = from.read()?;

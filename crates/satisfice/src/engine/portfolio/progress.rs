@@ -6,12 +6,28 @@ use crate::batch::Outcome;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// What a source is expected to gain before it was tried, in so many evaluations: descents by quadratic models more than the others.
-const EXPECTED: [f64; 3] = [2.0, 8.0, 2.0];
-const EXPECTED_IN: f64 = 40.0;
-/// The same where the model knows the components of F.
-const EXPECTED_BY_COMPONENTS: [f64; 3] = [4.0, 1.0, 0.5];
-const EXPECTED_IN_BY_COMPONENTS: f64 = 20.0;
+/// What a problem tells of F, for the search for a first hit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(super) enum Ground {
+    /// F may be smooth along continuous axes.
+    Smooth,
+    /// The same, and the model knows its components.
+    Components,
+    /// Neighbours, which descents go along.
+    Neighbours,
+}
+
+impl Ground {
+    /// What each source is expected to gain before it was tried, in so many evaluations; 0 for one that does not take part.
+    fn expected(self) -> ([f64; 3], f64) {
+        match self {
+            Self::Smooth => ([2.0, 8.0, 2.0], 40.0),
+            Self::Components => ([4.0, 1.0, 0.5], 20.0),
+            Self::Neighbours => ([2.0, 0.0, 8.0], 20.0),
+        }
+    }
+}
+
 /// The most that one evaluation gains.
 const MOST: f64 = 2.0;
 
@@ -63,16 +79,15 @@ impl Progress {
         self.least = self.least.min(excess);
     }
 
-    /// Draws the next source, by Thompson sampling on what an evaluation of each gains. `components`: whether the model knows those of F.
-    pub(super) fn choose(&self, components: bool, rng: &mut SearchRng) -> Seeker {
-        let (expected, evaluations) = if components {
-            (EXPECTED_BY_COMPONENTS, EXPECTED_IN_BY_COMPONENTS)
-        } else {
-            (EXPECTED, EXPECTED_IN)
-        };
-        let mut best = (f64::NEG_INFINITY, Seeker::Quadratic);
+    /// Draws the next source, by Thompson sampling on what an evaluation of each gains.
+    pub(super) fn choose(&self, ground: Ground, rng: &mut SearchRng) -> Seeker {
+        let (expected, evaluations) = ground.expected();
+        let mut best = (f64::NEG_INFINITY, Seeker::Model);
         for seeker in [Seeker::Model, Seeker::Quadratic, Seeker::Direct] {
             let i = seeker as usize;
+            if expected[i] == 0.0 {
+                continue;
+            }
             let drawn = draw(
                 rng,
                 self.gains[i] + expected[i],
@@ -90,11 +105,11 @@ impl Progress {
 mod tests {
     use super::*;
 
-    fn shares(progress: &Progress) -> [u32; 3] {
+    fn shares(progress: &Progress, ground: Ground) -> [u32; 3] {
         let mut rng = SearchRng::new(3);
         let mut counts = [0; 3];
         for _ in 0..3000 {
-            counts[progress.choose(false, &mut rng) as usize] += 1;
+            counts[progress.choose(ground, &mut rng) as usize] += 1;
         }
         counts
     }
@@ -102,7 +117,7 @@ mod tests {
     #[test]
     fn a_source_that_gains_comes_before_one_that_stalls() {
         let mut progress = Progress::default();
-        let [model, quadratic, direct] = shares(&progress);
+        let [model, quadratic, direct] = shares(&progress, Ground::Smooth);
         assert!(
             quadratic > 10 * model && quadratic > 3 * direct && model > 0,
             "{model} {quadratic} {direct}"
@@ -114,11 +129,22 @@ mod tests {
         for i in 0..20 {
             progress.count(Some(Seeker::Model), Outcome::Miss(1.0 + 0.5_f64.powi(i)), 1.0);
         }
-        let [model, quadratic, direct] = shares(&progress);
+        let [model, quadratic, direct] = shares(&progress, Ground::Smooth);
         assert!(
             model > 10 * quadratic && model > 10 * direct,
             "{model} {quadratic} {direct}"
         );
+    }
+
+    #[test]
+    fn descents_over_neighbours_come_before_the_model() {
+        let [model, quadratic, direct] = shares(&Progress::default(), Ground::Neighbours);
+        assert!(
+            direct > 3 * model && model > 0 && quadratic == 0,
+            "{model} {quadratic} {direct}"
+        );
+        let [model, quadratic, direct] = shares(&Progress::default(), Ground::Components);
+        assert!(model > 2 * (quadratic + direct), "{model} {quadratic} {direct}");
     }
 
     #[test]

@@ -53,9 +53,9 @@ impl<S: Real> Sources<S> {
         let seekers = self.guests.seekers(&self.whole, self.planned);
         if modelled
             && !steps
-            && let Some([model, quadratic]) = seekers
+            && let Some((ground, [model, quadratic])) = seekers
         {
-            return match self.progress.choose(self.guests.has_components(), rng) {
+            return match self.progress.choose(ground, rng) {
                 Seeker::Model => (Source::Guest, model),
                 Seeker::Quadratic => (Source::Guest, quadratic),
                 Seeker::Direct => (Source::Descent, 0),
