@@ -11,6 +11,7 @@ mod local;
 mod points;
 mod pool;
 mod process;
+mod promise;
 mod quadratic;
 mod reach;
 mod record;

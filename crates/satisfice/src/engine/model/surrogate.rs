@@ -3,6 +3,7 @@
 use super::local::{Given, Model, outputs};
 use super::pool::Pool;
 use super::process::Process;
+use super::promise::Promise;
 use super::record::{PointKind, Record};
 use super::region::TrustRegion;
 use super::scales::Scales;
@@ -97,6 +98,8 @@ pub(in crate::engine) struct ModelledSearch<S> {
     pending: Vec<Vec<f64>>,
     model: Option<Model>,
     skill: Skill,
+    /// What it expects of its proposals, where it knows the components of F.
+    promise: Promise,
     position: Vec<S>,
     /// Points of the enumeration that were looked at.
     enumerated: usize,
@@ -113,6 +116,7 @@ impl<S: Real> ModelledSearch<S> {
             pending: Vec::new(),
             model: None,
             skill: Skill::default(),
+            promise: Promise::default(),
             position: Vec::new(),
             enumerated: 0,
         }
@@ -126,6 +130,11 @@ impl<S: Real> ModelledSearch<S> {
     /// Whether the model predicts F better than its mean does; `None` before that is known.
     pub(in crate::engine) fn is_useful(&self) -> Option<bool> {
         self.skill.is_useful()
+    }
+
+    /// Whether it knows the components of F and expects no hit of its latest proposals.
+    pub(in crate::engine) fn promises_little(&self) -> bool {
+        self.promise.is_little()
     }
 
     /// How many points are told before there is a model: the values of fewer say too little about its scales.
@@ -203,7 +212,11 @@ impl<S: Real> ModelledSearch<S> {
             model.pool.truncate(&model.process, known);
         }
         self.model = Some(model);
-        chosen
+        let (x, probability) = chosen?;
+        if let Some(probability) = probability {
+            self.promise.count(probability);
+        }
+        Some(x)
     }
 
     /// A uniform point that is new, or the next new one of a small space.
@@ -253,6 +266,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         self.pending.clear();
         self.model = None;
         self.skill = Skill::default();
+        self.promise = Promise::default();
         self.enumerated = 0;
         self.position = vec![S::zero(); context.space().dimension()];
     }
@@ -316,7 +330,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         Part::save(&self.enumerated, state);
         Part::save(&self.position, state);
         Part::save(&self.units.saved(), state);
-        Part::save(&self.skill.saved(), state);
+        Part::save(&(self.skill.saved(), self.promise.saved()), state);
         Part::save(&self.model.is_some(), state);
         if let Some(model) = &self.model {
             model.save(state);
@@ -333,7 +347,8 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         self.units = Units::restored(&from.read::<Vec<f64>>()?)
             .filter(|units| units.len() == self.record.axes())
             .ok_or_else(|| Error::State("its axes do not fit".to_owned()))?;
-        self.skill = Skill::restored(from.read()?);
+        let (skill, promise) = from.read()?;
+        (self.skill, self.promise) = (Skill::restored(skill), Promise::restored(promise));
         self.model = if from.read()? {
             Some(Model::restore(&self.record, &self.units, from)?)
         } else {

@@ -301,6 +301,14 @@ impl<S: Real> Guests<S> {
         })
     }
 
+    /// Whether a model of the components of F expects no hit of its latest proposals.
+    fn promises_little(&self) -> bool {
+        self.guests.iter().any(|guest| match &guest.engine {
+            Member::Model(model) => model.promises_little(),
+            Member::Other(_) => false,
+        })
+    }
+
     /// Whether a model of F decides who proposes: while the search as a whole, `all`, is young.
     pub(super) fn model_leads(&self, all: &Credit) -> bool {
         all.evaluations() < MODELLED && self.has_model()
@@ -315,7 +323,10 @@ impl<S: Real> Guests<S> {
     /// itself and, last, descents by quadratic models. `None` where nothing leads down, after the first hit, and after its share of the
     /// evaluations.
     pub(super) fn seekers(&self, all: &Credit, planned: Option<u64>) -> Option<(Ground, [usize; 2])> {
-        let ground = self.ground?;
+        let ground = match self.ground? {
+            Ground::Components if self.promises_little() => Ground::Smooth,
+            ground => ground,
+        };
         let most = FIRST_SHARE * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
         if !all.is_barren() || all.evaluations() as f64 >= most {
             return None;
@@ -366,7 +377,8 @@ impl<S: Real> Guests<S> {
         modelled: bool,
         steps: bool,
     ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
-        let descends_first = modelled && self.continuous && !self.components && !steps;
+        let leads = self.components && !self.promises_little();
+        let descends_first = modelled && self.continuous && !leads && !steps;
         let ready = self.guests.iter().enumerate();
         let mut offered = None;
         ready.filter_map(move |(index, guest)| {

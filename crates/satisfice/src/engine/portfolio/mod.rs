@@ -89,7 +89,8 @@ engine_settings! {
     /// limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000 evaluations and then competes as the
     /// others do. It has the bound of a source without a hit once it is known to predict less than a quarter of the variance of F; until then the
     /// others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the components of F, the model comes
-    /// first, and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do not hit. Elsewhere on continuous
+    /// first, and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do not hit; while the model itself
+    /// expects no hit of its latest proposals, descents come first. Elsewhere on continuous
     /// axes the model and descents, by quadratic models and without, look for the first hit together with up to half of the evaluations, and so do
     /// the model and descents over neighbours, where the problem names some: the more a source has lowered the least F, the more it is asked; not so
     /// on continuous axes where most values of F repeat others: of a step function swarms and uniform points know more than descents, unless the

@@ -28,7 +28,9 @@ impl<S: Real> Guest<S> {
         let is_worth_trying = self.arm.is_worth_trying(all, trial);
         match (self.kind, &self.engine) {
             (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
-            (GuestKind::Quadratic, _) if components => is_worth_trying.then_some(COMPONENTS_WEIGHT),
+            (GuestKind::Quadratic, _) if components => {
+                (is_worth_trying || descends_first).then_some(COMPONENTS_WEIGHT)
+            }
             (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(QUADRATIC_WEIGHT),
             (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
             (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
