@@ -1,5 +1,6 @@
 //! Whole engines as sources: each proposes part of a batch, and is told the hits of all the others.
 
+mod first_hit;
 mod flood_alone;
 mod lessons;
 mod member;
@@ -15,7 +16,7 @@ use share::Share;
 use sizes::{MOST_PROPOSALS, Sizes};
 
 use super::credit::{Credit, Trial};
-use super::progress::{Ground, Seeker};
+use super::progress::Ground;
 use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -38,8 +39,6 @@ const MODEL_AXES: usize = 50;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
 /// about half as long. Those by components always run.
 const QUADRATIC: f64 = 2e-5;
-/// Share of the planned evaluations in which the model and descents look for the first hit.
-const FIRST_SHARE: f64 = 0.5;
 /// With fewer evaluations left none are spent on bounds: a split asks for several before there is anything to evaluate.
 const LAST_BOUNDS: u64 = 8;
 /// With at most this many axes, a matrix takes no more memory and time than a few steps.
@@ -301,14 +300,6 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// Whether a model of the components of F expects no hit of its latest proposals.
-    fn promises_little(&self) -> bool {
-        self.guests.iter().any(|guest| match &guest.engine {
-            Member::Model(model) => model.promises_little(),
-            Member::Other(_) => false,
-        })
-    }
-
     /// Whether a model of F decides who proposes: while the search as a whole, `all`, is young.
     pub(super) fn model_leads(&self, all: &Credit) -> bool {
         all.evaluations() < MODELLED && self.has_model()
@@ -319,47 +310,10 @@ impl<S: Real> Guests<S> {
         self.guests.iter().any(|guest| guest.kind == GuestKind::Model)
     }
 
-    /// What the search for the first hit goes by while a model is at work, and the engines that take part in it beside descents: the model
-    /// itself and, last, descents by quadratic models. `None` where nothing leads down, after the first hit, and after its share of the
-    /// evaluations.
-    pub(super) fn seekers(&self, all: &Credit, planned: Option<u64>) -> Option<(Ground, [usize; 2])> {
-        let ground = match self.ground? {
-            Ground::Components if self.promises_little() => Ground::Smooth,
-            ground => ground,
-        };
-        let most = FIRST_SHARE * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
-        if !all.is_barren() || all.evaluations() as f64 >= most {
-            return None;
-        }
-        let find = |kind| {
-            let mut guests = self.guests.iter();
-            guests.position(|guest| guest.kind == kind && guest.is_ready())
-        };
-        let model = find(GuestKind::Model)?;
-        let quadratic = find(GuestKind::Quadratic);
-        // Without descents by quadratic models, or while all of them await answers, the model proposes.
-        let takes_over = self.in_any_order || ground == Ground::Neighbours;
-        let quadratic = quadratic.or(takes_over.then_some(model));
-        Some((ground, [model, quadratic?]))
-    }
-
     /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
     pub(super) fn niching(&self) -> Option<usize> {
         let mut guests = self.guests.iter();
         guests.position(|guest| guest.kind == GuestKind::Niching && guest.is_ready())
-    }
-
-    /// What a source is among those that look for the first hit.
-    pub(super) fn seeker(&self, (source, index): Tag) -> Option<Seeker> {
-        match source {
-            Source::Descent => Some(Seeker::Direct),
-            Source::Guest => match self.guests[index].kind {
-                GuestKind::Model => Some(Seeker::Model),
-                GuestKind::Quadratic => Some(Seeker::Quadratic),
-                GuestKind::Cma | GuestKind::Niching | GuestKind::Flood | GuestKind::Regions => None,
-            },
-            _ => None,
-        }
     }
 
     /// The credits of the engines that are drawn by their yield.
