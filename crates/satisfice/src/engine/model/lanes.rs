@@ -3,11 +3,24 @@
 //! Every lane is computed by the same operations in the same order, without fused multiplication, so that the bits do not
 //! depend on the width of the machine's vectors.
 
+use pulp::NullaryFnOnce;
+
 /// Numbers in a block. Two vector registers of 512 bits, eight of 128 bits.
 pub(super) const LANES: usize = 16;
 
 /// One number for each candidate of a block.
 pub(super) type Lanes = [f64; LANES];
+
+/// Does a piece of work, compiled for AVX2 where the machine has it. Its `call` is `#[inline(always)]`, and so is what takes its time: the
+/// rest is compiled once for all machines.
+#[inline(always)]
+pub(super) fn on_wide_vectors<W: NullaryFnOnce>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(unit) = pulp::x86::V3::try_new() {
+        return unit.vectorize(work);
+    }
+    work.call()
+}
 
 /// `exp(-x)` for `x >= 0`, within a few units in the last place; arguments above 700 count as 700.
 ///

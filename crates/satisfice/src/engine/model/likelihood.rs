@@ -2,9 +2,10 @@
 
 use super::factor::Factor;
 use super::kernel::{Feature, covariances, matern_slope, squares};
-use super::lanes::{LANES, Lanes};
+use super::lanes::{LANES, Lanes, on_wide_vectors};
 use super::points::Points;
 use super::scales::Scales;
+use pulp::NullaryFnOnce;
 
 /// Scaled points, their factor, and the mean and variance that are likeliest given the scales.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +24,15 @@ const LEAST_VARIANCE: f64 = 1e-300;
 impl Fit {
     /// Scales the points and factors their covariance. Cost: n³ / 6.
     pub(super) fn factor(&mut self, scales: &Scales, inputs: &[&[f64]]) {
+        on_wide_vectors(Refactor {
+            fit: self,
+            scales,
+            inputs,
+        });
+    }
+
+    #[inline(always)]
+    fn refactor(&mut self, scales: &Scales, inputs: &[&[f64]]) {
         self.points.clear(scales.features());
         for input in inputs {
             self.points.push(scales.scaled_point(input).into_iter());
@@ -33,9 +43,9 @@ impl Fit {
         for b in 0..self.points.blocks() {
             let (block, count) = (self.points.block(b), self.points.count(b));
             rows.clear();
-            rows.extend(
-                (0..b * LANES + count).map(|j| covariances(&self.points.features, self.points.row(j), block)),
-            );
+            for j in 0..b * LANES + count {
+                rows.push(covariances(&self.points.features, self.points.row(j), block));
+            }
             for lane in 0..count {
                 rows[b * LANES + lane][lane] = variance;
             }
@@ -82,16 +92,23 @@ impl Fit {
             loss += inputs.len() as f64 / 2.0 * variance.ln() + self.factor.log_determinant();
         }
         let mut gradient = vec![0.0; scales.logs.len()];
-        self.slopes(scales, &weights, &mut gradient);
+        on_wide_vectors(Slopes {
+            fit: self,
+            scales,
+            weights: &weights,
+            gradient: &mut gradient,
+        });
         (loss + scales.prior(&mut gradient), gradient)
     }
 
     /// Adds `½ tr((K⁻¹ - w wᵀ) dK)` for each scale, `weights` being `w = K⁻¹ (y - mean) / σ`.
+    #[inline(always)]
     fn slopes(&self, scales: &Scales, weights: &[Vec<f64>], gradient: &mut [f64]) {
         let n = self.points.len();
-        let inverse: Vec<Vec<Lanes>> = (0..self.points.blocks())
-            .map(|b| self.factor.inverse_columns(b))
-            .collect();
+        let mut inverse: Vec<Vec<Lanes>> = Vec::with_capacity(self.points.blocks());
+        for b in 0..self.points.blocks() {
+            inverse.push(self.factor.inverse_columns(b));
+        }
         let (by_length, by_noise) = gradient.split_at_mut(scales.axes());
         let features = &self.points.features;
         let mut sums = vec![[0.0; LANES]; features.len()];
@@ -141,6 +158,39 @@ impl Fit {
             by_length[feature.axis()] += sum.iter().sum::<f64>();
         }
         by_noise[0] += scales.noise() * trace / 2.0;
+    }
+}
+
+/// [`Fit::factor`] on wide vectors.
+struct Refactor<'a> {
+    fit: &'a mut Fit,
+    scales: &'a Scales,
+    inputs: &'a [&'a [f64]],
+}
+
+impl NullaryFnOnce for Refactor<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.fit.refactor(self.scales, self.inputs);
+    }
+}
+
+/// [`Fit::slopes`] on wide vectors.
+struct Slopes<'a> {
+    fit: &'a Fit,
+    scales: &'a Scales,
+    weights: &'a [Vec<f64>],
+    gradient: &'a mut [f64],
+}
+
+impl NullaryFnOnce for Slopes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.fit.slopes(self.scales, self.weights, self.gradient);
     }
 }
 

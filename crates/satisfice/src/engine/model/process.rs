@@ -1,9 +1,10 @@
 //! Gaussian process: scales, points, values, and what they predict.
 
 use super::kernel::covariances;
-use super::lanes::{LANES, Lanes};
+use super::lanes::{LANES, Lanes, on_wide_vectors};
 use super::likelihood::Fit;
 use super::scales::Scales;
+use pulp::NullaryFnOnce;
 
 /// Least variance of a prediction, as a share of the process's.
 const LEAST_VARIANCE: f64 = 1e-9;
@@ -131,15 +132,22 @@ impl Process {
     }
 
     /// Brings what is known of a block up to date. Cost for each candidate and new point: n.
-    #[inline(always)]
     pub(super) fn update(&self, block: &mut Block) {
+        on_wide_vectors(Update(self, block));
+    }
+
+    #[inline(always)]
+    fn follow(&self, block: &mut Block) {
         let known = block.solved.len();
         if known == 0 {
             block.scaled = self.scales.scaled(&block.units);
         }
-        let rows = (known..self.len())
-            .map(|i| covariances(&self.fit.points.features, self.fit.points.row(i), &block.scaled));
-        block.solved.extend(rows);
+        let points = &self.fit.points;
+        block.solved.reserve(self.len() - known);
+        for i in known..self.len() {
+            let row = covariances(&points.features, points.row(i), &block.scaled);
+            block.solved.push(row);
+        }
         self.fit.factor.solve(&mut block.solved, known);
         self.accumulate(block, known);
     }
@@ -200,6 +208,18 @@ impl Process {
             *variance = (1.0 - *variance).max(LEAST_VARIANCE) * self.fit.variance[output];
         }
         (means, variances)
+    }
+}
+
+/// [`Process::update`] on wide vectors.
+struct Update<'a>(&'a Process, &'a mut Block);
+
+impl NullaryFnOnce for Update<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.follow(self.1);
     }
 }
 
