@@ -26,6 +26,29 @@ if [ "${TESTED:-0}" != 1 ]; then
   cargo test --workspace --quiet
 fi
 
+step "examples and benches compile ($profile)"
+# Of the whole workspace: with another choice of packages, libraries have other features and are compiled again.
+cargo build --workspace --examples --profile "$profile" --quiet
+cargo test --workspace --profile "$profile" --bench '*' --no-run --quiet
+folder=$profile
+[ "$profile" = dev ] && folder=debug
+binaries=${CARGO_TARGET_DIR:-target}/$folder/examples
+out=$(mktemp -d)
+
+# Most examples use one core: the other one does the next steps.
+run_examples() {
+  for example in examples/*.rs crates/satisfice-{bench,draw}/examples/*.rs; do
+    name=$(basename "$example" .rs)
+    echo "-- $name"
+    SATISFICE_QUICK=1 SATISFICE_OUT="$out/$name" "$binaries/$name" > "$out/$name.txt" 2>&1 \
+      || { tail -n 40 "$out/$name.txt"; return 1; }
+    tail -n 3 "$out/$name.txt"
+  done
+}
+run_examples > "$out/log" &
+examples=$!
+trap 'kill "$examples" 2> /dev/null || true; rm -rf "$out"' EXIT
+
 step "docs without warnings"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --all-features --quiet
 
@@ -47,23 +70,12 @@ step "fuzz targets compile"
 # Their bodies run as tests (satisfice-collision, fuzz_targets and continuous). Without libFuzzer itself, which is C++ and is not linked here.
 CUSTOM_LIBFUZZER_PATH=./none.a cargo check --manifest-path fuzz/Cargo.toml --target-dir "${CARGO_TARGET_DIR:-target}" --locked --quiet
 
-step "every example ($profile)"
-# Of the whole workspace: with another choice of packages, libraries have other features and are compiled again.
-cargo build --workspace --examples --profile "$profile" --quiet
-folder=$profile
-[ "$profile" = dev ] && folder=debug
-binaries=${CARGO_TARGET_DIR:-target}/$folder/examples
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-for example in examples/*.rs crates/satisfice-{bench,draw}/examples/*.rs; do
-  name=$(basename "$example" .rs)
-  echo "-- $name"
-  SATISFICE_QUICK=1 SATISFICE_OUT="$out/$name" "$binaries/$name" > "$out/$name.txt" \
-    || { tail -n 40 "$out/$name.txt"; exit 1; }
-  tail -n 3 "$out/$name.txt"
-done
-
 step "every bench, once, as a test ($profile)"
 cargo test --workspace --profile "$profile" --bench '*' --quiet
+
+step "every example ($profile)"
+wait "$examples" && status=0 || status=$?
+cat "$out/log"
+[ "$status" = 0 ] || exit "$status"
 
 step "all green"
