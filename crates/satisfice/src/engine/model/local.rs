@@ -207,14 +207,14 @@ impl Model {
         }
     }
 
-    /// The coordinates of the best candidate that is neither known nor within reach of a pending point, and how probable a hit is where
-    /// components are modelled. `None` if there is none.
+    /// The coordinates of the best candidate that is neither known nor within reach of a pending point, and how probable a hit is by the
+    /// model. `None` if there is none.
     pub(super) fn choose<S: Real>(
         &mut self,
         given: &mut Given<'_, S>,
         pending: &[Vec<f64>],
         rng: &mut SearchRng,
-    ) -> Option<(Vec<f64>, Option<f64>)> {
+    ) -> Option<(Vec<f64>, f64)> {
         let ranking = self.pool.ranking(&self.process);
         let starts = self.starts(&ranking, rng);
         let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
@@ -248,8 +248,8 @@ impl Model {
             self.descend(given, pending, start, &mut best);
         }
         let (score, x) = best;
-        let probability = (!self.pool.limits.is_empty()).then(|| score.value.exp());
-        Some((x, probability))
+        let is_logarithm = !self.pool.limits.is_empty() || !pending.is_empty();
+        Some((x, score.probability(is_logarithm)))
     }
 
     /// Some of the best candidates, from which steps towards roots start, where components are modelled.

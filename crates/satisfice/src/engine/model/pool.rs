@@ -67,9 +67,7 @@ impl Score {
                 ..score
             };
         }
-        let z = score.value;
-        // Within 2e-4 (Page 1977, doi 10.2307/2346872).
-        let miss = 1.0 / (1.0 + (0.07056 * z * z * z + 1.5976 * z).exp());
+        let miss = normal_below(-score.value);
         Self {
             value: (-miss).ln_1p(),
             ..score
@@ -87,6 +85,15 @@ impl Score {
         }
     }
 
+    /// How probable a hit is; 0 beyond [`HOPE`]. `is_logarithm`: whether the score is one of components, or beside points that are out.
+    pub(super) fn probability(&self, is_logarithm: bool) -> f64 {
+        match (self.hopeful, is_logarithm) {
+            (false, _) => 0.0,
+            (true, true) => self.value.exp(),
+            (true, false) => normal_below(self.value),
+        }
+    }
+
     /// Whether a hit of F itself is more probable than a miss; `beside`: whether the score is one beside points that are out.
     pub(super) fn is_probable(&self, beside: bool) -> bool {
         self.hopeful && self.value > if beside { -core::f64::consts::LN_2 } else { 0.0 }
@@ -95,6 +102,11 @@ impl Score {
     pub(super) fn order(&self, other: &Self) -> core::cmp::Ordering {
         (self.hopeful.cmp(&other.hopeful)).then(self.value.total_cmp(&other.value))
     }
+}
+
+/// The probability that a standard normal number is below `z`, within 2e-4 (Page 1977, doi 10.2307/2346872).
+fn normal_below(z: f64) -> f64 {
+    1.0 / (1.0 + (-(0.07056 * z * z * z + 1.5976 * z)).exp())
 }
 
 /// Candidates in blocks, of which the oldest are replaced: the last ones, up to [`REFINED`], by candidates around the best, the others by
@@ -309,6 +321,12 @@ mod tests {
                 "{mean} {left}"
             );
             assert_eq!(Score::new(mean, 1.0).is_probable(false), mean < 0.0);
+        }
+        for (mean, expected) in [(-1.0, 0.8413), (1.0, 0.1587), (2.1, 0.0)] {
+            let alone = Score::new(mean, 1.0).probability(false);
+            approx::assert_abs_diff_eq!(alone, expected, epsilon = 3e-4);
+            let beside = Score::beside(mean, 1.0, 1.0).probability(true);
+            approx::assert_abs_diff_eq!(beside, expected, epsilon = 3e-4);
         }
         // A certain hit need not wait, nor do ranks depend on it where nothing is out.
         assert!(worth(-6.0, 0.0) > 0.999);

@@ -7,17 +7,24 @@ const ENOUGH: u64 = 24;
 /// Hits for each proposal, below which the model knows of none within reach.
 const LITTLE: f64 = 0.003;
 
-/// The mean of the probabilities to hit of the latest proposals, by the model of the components of F.
+/// A proposal counts as a hit to come if it is more probable than this.
+const CREDIBLE: f64 = 0.5;
+
+/// The probabilities to hit of a model's proposals.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Promise {
     proposals: u64,
+    /// Mean of the latest ones.
     mean: f64,
+    /// Hits that it has promised in all.
+    promised: f64,
 }
 
 impl Promise {
     /// Counts a proposal that is this probable to hit.
     pub(super) fn count(&mut self, probability: f64) {
         self.proposals += 1;
+        self.promised += probability;
         let weight = (1.0 / self.proposals as f64).max(1.0 / MEMORY);
         self.mean += weight * (probability - self.mean);
     }
@@ -27,12 +34,27 @@ impl Promise {
         self.proposals >= ENOUGH && self.mean < LITTLE
     }
 
-    pub(super) fn saved(&self) -> (u64, f64) {
-        (self.proposals, self.mean)
+    /// Whether a hit of this probability is to be expected by somebody who has seen no hit of all that were promised: the probability is
+    /// divided by one more than those.
+    pub(super) fn is_credible(&self, probability: f64) -> bool {
+        probability > CREDIBLE * (1.0 + self.promised)
     }
 
-    pub(super) fn restored((proposals, mean): (u64, f64)) -> Self {
-        Self { proposals, mean }
+    /// Whether no probability is credible any more.
+    pub(super) fn is_broken(&self) -> bool {
+        !self.is_credible(1.0)
+    }
+
+    pub(super) fn saved(&self) -> (u64, f64, f64) {
+        (self.proposals, self.mean, self.promised)
+    }
+
+    pub(super) fn restored((proposals, mean, promised): (u64, f64, f64)) -> Self {
+        Self {
+            proposals,
+            mean,
+            promised,
+        }
     }
 }
 
@@ -52,5 +74,15 @@ mod tests {
         hopeless.count(0.5);
         assert!(!hopeless.is_little());
         assert_eq!(Promise::restored(hopeless.saved()), hopeless);
+    }
+    #[test]
+    fn who_promised_a_hit_and_had_none_is_believed_half_as_much() {
+        let mut promise = Promise::default();
+        assert!(promise.is_credible(0.51) && !promise.is_credible(0.49));
+        promise.count(0.6);
+        assert!(promise.is_credible(0.81) && !promise.is_credible(0.79) && !promise.is_broken());
+        promise.count(0.5);
+        assert!(promise.is_broken() && !promise.is_credible(1.0));
+        assert_eq!(Promise::restored(promise.saved()), promise);
     }
 }

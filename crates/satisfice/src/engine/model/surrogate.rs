@@ -98,8 +98,10 @@ pub(in crate::engine) struct ModelledSearch<S> {
     pending: Vec<Vec<f64>>,
     model: Option<Model>,
     skill: Skill,
-    /// What it expects of its proposals, where it knows the components of F.
+    /// What it expects of its proposals.
     promise: Promise,
+    /// The next proposal, from [`Self::expects_hit`] until it is asked for, and how probable a hit is.
+    prepared: Option<(Vec<f64>, f64)>,
     position: Vec<S>,
     /// Points of the enumeration that were looked at.
     enumerated: usize,
@@ -117,6 +119,7 @@ impl<S: Real> ModelledSearch<S> {
             model: None,
             skill: Skill::default(),
             promise: Promise::default(),
+            prepared: None,
             position: Vec::new(),
             enumerated: 0,
         }
@@ -132,9 +135,20 @@ impl<S: Real> ModelledSearch<S> {
         self.skill.is_useful()
     }
 
-    /// Whether it knows the components of F and expects no hit of its latest proposals.
+    /// Whether it expects no hit of its latest proposals.
     pub(in crate::engine) fn promises_little(&self) -> bool {
         self.promise.is_little()
+    }
+
+    /// Prepares the next proposal while there is no hit: whether it is more probable to hit than not, as far as its word can be trusted.
+    /// Where it is, the next one that is asked for is that proposal.
+    pub(in crate::engine) fn expects_hit(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
+        if self.promise.is_broken() {
+            return false;
+        }
+        let next = self.modelled(context, rng);
+        self.prepared = next.filter(|(_, probability)| self.promise.is_credible(*probability));
+        self.prepared.is_some()
     }
 
     /// How many points are told before there is a model: the values of fewer say too little about its scales.
@@ -180,8 +194,8 @@ impl<S: Real> ModelledSearch<S> {
         !pending && !self.record.has(&rounded) && !context.is_deleted(&self.position)
     }
 
-    /// The best candidate of the model.
-    fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
+    /// The best candidate of the model, and how probable a hit is.
+    fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<(Vec<f64>, f64)> {
         if self.told() < self.design_size() {
             return None;
         }
@@ -212,10 +226,14 @@ impl<S: Real> ModelledSearch<S> {
             model.pool.truncate(&model.process, known);
         }
         self.model = Some(model);
-        let (x, probability) = chosen?;
-        if let Some(probability) = probability {
-            self.promise.count(probability);
-        }
+        chosen
+    }
+
+    /// The next proposal of the model.
+    fn proposal(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
+        let prepared = self.prepared.take();
+        let (x, probability) = prepared.or_else(|| self.modelled(context, rng))?;
+        self.promise.count(probability);
         Some(x)
     }
 
@@ -267,6 +285,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         self.model = None;
         self.skill = Skill::default();
         self.promise = Promise::default();
+        self.prepared = None;
         self.enumerated = 0;
         self.position = vec![S::zero(); context.space().dimension()];
     }
@@ -281,7 +300,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             }
             let next = self
                 .first_point(context, rng)
-                .or_else(|| self.modelled(context, rng))
+                .or_else(|| self.proposal(context, rng))
                 .or_else(|| self.any_new(context, rng));
             let Some(x) = next else { break };
             let mut rounded = Vec::new();

@@ -92,7 +92,8 @@ engine_settings! {
     /// first, and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do not hit; while the model itself
     /// expects no hit of its latest proposals, descents come first. Elsewhere on continuous
     /// axes the model and descents, by quadratic models and without, look for the first hit together with up to half of the evaluations, and so do
-    /// the model and descents over neighbours, where the problem names some: the more a source has lowered the least F, the more it is asked; not so
+    /// the model and descents over neighbours, where the problem names some: the more a source has lowered the least F, the more it is asked, and
+    /// beside descents over neighbours the model comes first whenever it takes a hit to be probable and has not been wrong about that; not so
     /// on continuous axes where most values of F repeat others: of a step function swarms and uniform points know more than descents, unless the
     /// problem names neighbours, and more than the
     /// model until it is known to predict F. On continuous axes, when no source has found a hit for

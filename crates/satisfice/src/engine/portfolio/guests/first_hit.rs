@@ -1,10 +1,12 @@
 //! Who looks for the first hit beside a model of F.
 
 use super::{GuestKind, Guests, MODELLED, Member};
+use crate::context::Context;
 use crate::engine::portfolio::credit::Credit;
 use crate::engine::portfolio::progress::{Ground, Seeker};
 use crate::engine::portfolio::source::{Source, Tag};
 use crate::scalar::Real;
+use crate::seed::SearchRng;
 
 /// Share of the planned evaluations in which the model and descents look for the first hit.
 const FIRST_SHARE: f64 = 0.5;
@@ -44,6 +46,21 @@ impl<S: Real> Guests<S> {
         let takes_over = self.in_any_order || ground == Ground::Neighbours;
         let quadratic = quadratic.or(takes_over.then_some(model));
         Some((ground, [model, quadratic?]))
+    }
+
+    /// The model, if it expects its next proposal to hit while descents over neighbours look for the first hit.
+    pub(in crate::engine::portfolio) fn expects_hit(
+        &mut self,
+        (ground, [model, _]): (Ground, [usize; 2]),
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+    ) -> Option<usize> {
+        match &mut self.guests[model].engine {
+            Member::Model(engine) if ground == Ground::Neighbours => {
+                engine.expects_hit(context, rng).then_some(model)
+            }
+            _ => None,
+        }
     }
 
     /// What a source is among those that look for the first hit.

@@ -3,7 +3,7 @@
 use super::Sources;
 use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::{Trial, draw};
-use crate::engine::portfolio::progress::Seeker;
+use crate::engine::portfolio::progress::{Ground, Seeker};
 use crate::engine::portfolio::source::{CROSS, DESCENT, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -39,6 +39,15 @@ impl<S: Real> Sources<S> {
         chosen
     }
 
+    /// Who looks for the first hit beside a model, while that goes on.
+    pub(super) fn seekers(&self) -> Option<(Ground, [usize; 2])> {
+        let steps = self.progress.levels.are_few();
+        if steps || !self.guests.model_leads(&self.whole) {
+            return None;
+        }
+        self.guests.seekers(&self.whole, self.planned)
+    }
+
     /// Draws a source, with the index of the step for [`Source::Step`].
     fn choose(&self, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
@@ -50,11 +59,7 @@ impl<S: Real> Sources<S> {
             (true, false) => [BLIND, BLIND_SWARMS],
             (true, true) => [BLIND, BLIND_SWARMS_BESIDE_NEIGHBOURS],
         };
-        let seekers = self.guests.seekers(&self.whole, self.planned);
-        if modelled
-            && !steps
-            && let Some((ground, [model, quadratic])) = seekers
-        {
+        if let Some((ground, [model, quadratic])) = self.seekers() {
             return match self.progress.choose(ground, rng) {
                 Seeker::Model => (Source::Guest, model),
                 Seeker::Quadratic => (Source::Guest, quadratic),
