@@ -75,6 +75,7 @@ mod tests {
         assert!(!hopeless.is_little());
         assert_eq!(Promise::restored(hopeless.saved()), hopeless);
     }
+
     #[test]
     fn who_promised_a_hit_and_had_none_is_believed_half_as_much() {
         let mut promise = Promise::default();
