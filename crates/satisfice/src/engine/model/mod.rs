@@ -17,6 +17,7 @@ mod reach;
 mod record;
 mod region;
 mod roots;
+mod saved;
 mod scales;
 mod skill;
 mod surrogate;

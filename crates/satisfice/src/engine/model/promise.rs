@@ -7,17 +7,15 @@ const ENOUGH: u64 = 24;
 /// Hits for each proposal, below which the model knows of none within reach.
 const LITTLE: f64 = 0.003;
 
-/// A proposal counts as a hit to come if it is more probable than this.
-const CREDIBLE: f64 = 0.5;
-
 /// The probabilities to hit of a model's proposals.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Promise {
     proposals: u64,
     /// Mean of the latest ones.
     mean: f64,
-    /// Hits that it has promised in all.
+    /// Hits that it has promised in all, and those that came.
     promised: f64,
+    kept: u64,
 }
 
 impl Promise {
@@ -34,26 +32,28 @@ impl Promise {
         self.proposals >= ENOUGH && self.mean < LITTLE
     }
 
-    /// Whether a hit of this probability is to be expected by somebody who has seen no hit of all that were promised: the probability is
-    /// divided by one more than those.
-    pub(super) fn is_credible(&self, probability: f64) -> bool {
-        probability > CREDIBLE * (1.0 + self.promised)
+    /// Counts a proposal that has hit.
+    pub(super) fn keep(&mut self) {
+        self.kept += 1;
     }
 
-    /// Whether no probability is credible any more.
-    pub(super) fn is_broken(&self) -> bool {
-        !self.is_credible(1.0)
+    /// What is left of this probability for somebody who compares the hits that came with those that were promised.
+    pub(super) fn believed(&self, probability: f64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a count of evaluations")]
+        let kept = self.kept as f64;
+        probability * (1.0 + kept) / (1.0 + self.promised)
     }
 
-    pub(super) fn saved(&self) -> (u64, f64, f64) {
-        (self.proposals, self.mean, self.promised)
+    pub(super) fn saved(&self) -> (u64, f64, f64, u64) {
+        (self.proposals, self.mean, self.promised, self.kept)
     }
 
-    pub(super) fn restored((proposals, mean, promised): (u64, f64, f64)) -> Self {
+    pub(super) fn restored((proposals, mean, promised, kept): (u64, f64, f64, u64)) -> Self {
         Self {
             proposals,
             mean,
             promised,
+            kept,
         }
     }
 }
@@ -77,13 +77,16 @@ mod tests {
     }
 
     #[test]
-    fn who_promised_a_hit_and_had_none_is_believed_half_as_much() {
+    fn it_is_believed_by_the_hits_that_came() {
         let mut promise = Promise::default();
-        assert!(promise.is_credible(0.51) && !promise.is_credible(0.49));
-        promise.count(0.6);
-        assert!(promise.is_credible(0.81) && !promise.is_credible(0.79) && !promise.is_broken());
+        assert_eq!(promise.believed(0.5), 0.5);
         promise.count(0.5);
-        assert!(promise.is_broken() && !promise.is_credible(1.0));
+        promise.count(0.5);
+        assert_eq!(promise.believed(0.5), 0.25);
+        promise.keep();
+        assert_eq!(promise.believed(0.5), 0.5);
+        promise.keep();
+        assert_eq!(promise.believed(0.5), 0.75);
         assert_eq!(Promise::restored(promise.saved()), promise);
     }
 }

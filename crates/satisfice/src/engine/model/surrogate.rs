@@ -1,14 +1,9 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
-use super::local::{Given, Model, outputs};
-use super::pool::Pool;
-use super::process::Process;
+use super::local::{Given, Model};
 use super::promise::Promise;
 use super::record::{PointKind, Record};
-use super::region::TrustRegion;
-use super::scales::Scales;
 use super::skill::Skill;
-use super::target::Target;
 use super::units::Units;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -100,7 +95,7 @@ pub(in crate::engine) struct ModelledSearch<S> {
     skill: Skill,
     /// What it expects of its proposals.
     promise: Promise,
-    /// The next proposal, from [`Self::expects_hit`] until it is asked for, and how probable a hit is.
+    /// The next proposal, from [`Self::expectation`] until it is asked for or more is told, and how probable a hit is.
     prepared: Option<(Vec<f64>, f64)>,
     position: Vec<S>,
     /// Points of the enumeration that were looked at.
@@ -140,15 +135,23 @@ impl<S: Real> ModelledSearch<S> {
         self.promise.is_little()
     }
 
-    /// Prepares the next proposal while there is no hit: whether it is more probable to hit than not, as far as its word can be trusted.
-    /// Where it is, the next one that is asked for is that proposal.
-    pub(in crate::engine) fn expects_hit(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> bool {
-        if self.promise.is_broken() {
-            return false;
+    /// How probable a hit of this probability is, as far as the model's word can be trusted.
+    pub(in crate::engine) fn believed(&self, probability: f64) -> f64 {
+        self.promise.believed(probability)
+    }
+
+    /// Prepares the next proposal, unless that is done: how probable a hit is, as far as the model's word can be trusted. `None` while there
+    /// is no model.
+    pub(in crate::engine) fn expectation(
+        &mut self,
+        context: &dyn Context<S>,
+        rng: &mut SearchRng,
+    ) -> Option<f64> {
+        if self.prepared.is_none() {
+            self.prepared = self.modelled(context, rng);
         }
-        let next = self.modelled(context, rng);
-        self.prepared = next.filter(|(_, probability)| self.promise.is_credible(*probability));
-        self.prepared.is_some()
+        let (_, probability) = self.prepared.as_ref()?;
+        Some(self.believed(*probability))
     }
 
     /// How many points are told before there is a model: the values of fewer say too little about its scales.
@@ -161,7 +164,8 @@ impl<S: Real> ModelledSearch<S> {
         self.record.len() - self.record.duplicates.len()
     }
 
-    /// The next point of the design that is new: the first one is the middle, where axes have one. Misses of others count for its points; while answers are awaited, it goes on.
+    /// The next point of the design that is new: the first one is the middle, where axes have one. Misses of others count for its points;
+    /// while answers are awaited, it goes on.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let (axes, size) = (self.units.len(), self.design_size());
         let mut x = Vec::new();
@@ -313,7 +317,9 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         if out.is_empty() { Ask::Exhausted } else { Ask::More }
     }
 
-    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        self.prepared = None;
+        let is_own = matches!(origin, Origin::Engine | Origin::Single { .. });
         let mut x = Vec::new();
         let mut components = vec![S::nan(); context.component_count()];
         for (point, outcome) in batch.points().zip(outcomes) {
@@ -322,7 +328,12 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
                 self.pending.remove(place);
             }
             match *outcome {
-                Outcome::Hit(f) => self.record.add(&x, f.f64(), PointKind::Hit),
+                Outcome::Hit(f) => {
+                    self.record.add(&x, f.f64(), PointKind::Hit);
+                    if is_own && self.model.is_some() {
+                        self.promise.keep();
+                    }
+                }
                 Outcome::Miss(f) => self.record.add(&x, f.f64(), PointKind::Miss),
                 Outcome::Known(f) => self.record.add(&x, f.f64(), PointKind::Duplicate),
                 Outcome::Deleted => self.record.add(&x, f64::NAN, PointKind::Duplicate),
@@ -350,6 +361,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         Part::save(&self.position, state);
         Part::save(&self.units.saved(), state);
         Part::save(&(self.skill.saved(), self.promise.saved()), state);
+        Part::save(&self.prepared, state);
         Part::save(&self.model.is_some(), state);
         if let Some(model) = &self.model {
             model.save(state);
@@ -368,110 +380,19 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             .ok_or_else(|| Error::State("its axes do not fit".to_owned()))?;
         let (skill, promise) = from.read()?;
         (self.skill, self.promise) = (Skill::restored(skill), Promise::restored(promise));
+        self.prepared = from.read()?;
+        if self
+            .prepared
+            .as_ref()
+            .is_some_and(|(x, _)| x.len() != self.units.len())
+        {
+            return Err(Error::State("its next proposal does not fit".to_owned()));
+        }
         self.model = if from.read()? {
             Some(Model::restore(&self.record, &self.units, from)?)
         } else {
             None
         };
         Ok(())
-    }
-}
-
-impl Record {
-    fn save(&self, state: &mut State) {
-        let (axes, numbers, lists) = self.saved();
-        Part::save(&axes, state);
-        numbers.iter().for_each(|numbers| Part::save(numbers, state));
-        lists.iter().for_each(|list| Part::save(list, state));
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        let axes = from.read()?;
-        let numbers = [from.read()?, from.read()?, from.read()?];
-        *self = Self::restored(axes, numbers, [from.read()?, from.read()?])
-            .ok_or_else(|| Error::State("its points do not fit".to_owned()))?;
-        Ok(())
-    }
-}
-
-impl Model {
-    fn save(&self, state: &mut State) {
-        let (candidates, excluded, next) = self.pool.saved();
-        Part::save(&self.process.scales.logs, state);
-        Part::save(&self.target.delta, state);
-        Part::save(&self.target.clip, state);
-        Part::save(&self.target.units, state);
-        Part::save(&self.region.known, state);
-        Part::save(&self.region.lower, state);
-        Part::save(&self.region.upper, state);
-        Part::save(&self.prefix, state);
-        Part::save(&self.fitted, state);
-        Part::save(&self.taken, state);
-        Part::save(&self.reach, state);
-        Part::save(&self.radius, state);
-        Part::save(&candidates, state);
-        Part::save(&excluded, state);
-        Part::save(&next, state);
-    }
-
-    /// Factors the same points in the same order as the model that was saved, which gives the same bits.
-    fn restore(record: &Record, units: &Units, from: &mut Reader<'_>) -> Result<Self, Error> {
-        let logs: Vec<f64> = from.read()?;
-        let scales = Scales {
-            logs,
-            shapes: units.shapes(),
-        };
-        let target = Target {
-            delta: from.read()?,
-            clip: from.read()?,
-            units: from.read()?,
-        };
-        let region = TrustRegion {
-            known: from.read()?,
-            lower: from.read()?,
-            upper: from.read()?,
-        };
-        let [prefix, fitted, taken]: [usize; 3] = from.read()?;
-        let reach: Vec<f64> = from.read()?;
-        let radius = from.read()?;
-        let pool = Pool::restored(
-            record.axes(),
-            &from.read::<Vec<f64>>()?,
-            &from.read::<Vec<bool>>()?,
-            from.read()?,
-        );
-        let axes = [
-            region.lower.len(),
-            region.upper.len(),
-            reach.len(),
-            scales.logs.len().wrapping_sub(1),
-        ];
-        let fits = axes.iter().all(|&axes| axes == record.axes())
-            && prefix > 0
-            && prefix <= region.known.len()
-            && taken <= record.len()
-            && target.units.len() == record.component_count()
-            && region.known.iter().all(|&i| i < record.len());
-        let (true, Some(mut pool)) = (fits, pool) else {
-            return Err(Error::State("its model does not fit".to_owned()));
-        };
-        pool.limits = target.limits();
-        let inputs: Vec<&[f64]> = region.known[..prefix].iter().map(|&i| record.point(i)).collect();
-        let values = outputs(record, &target, &region.known[..prefix]);
-        let mut process = Process::new(scales, &inputs, &values);
-        for &i in &region.known[prefix..] {
-            process.push(record.point(i), &target.of_point(record, i));
-        }
-        Ok(Self {
-            process,
-            target,
-            region,
-            prefix,
-            fitted,
-            taken,
-            reach,
-            radius,
-            pool,
-        })
     }
 }

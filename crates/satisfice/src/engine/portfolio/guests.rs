@@ -10,6 +10,7 @@ mod weights;
 
 use core::ops::Range;
 
+pub(super) use first_hit::{Expectation, Seekers};
 use flood_alone::FloodAlone;
 use member::Member;
 use share::Share;

@@ -13,6 +13,8 @@ pub(super) enum Ground {
     Smooth,
     /// The same, and the model knows its components.
     Components,
+    /// Components, of which the model expects no hit of its latest proposals.
+    Unpromising,
     /// Neighbours, which descents go along.
     Neighbours,
 }
@@ -21,7 +23,8 @@ impl Ground {
     /// What each source is expected to gain before it was tried, in so many evaluations; 0 for one that does not take part.
     fn expected(self) -> ([f64; 3], f64) {
         match self {
-            Self::Smooth => ([2.0, 8.0, 2.0], 40.0),
+            Self::Smooth => ([16.0, 8.0, 2.0], 40.0),
+            Self::Unpromising => ([2.0, 8.0, 2.0], 40.0),
             Self::Components => ([4.0, 1.0, 0.5], 20.0),
             Self::Neighbours => ([2.0, 0.0, 8.0], 20.0),
         }
@@ -119,7 +122,15 @@ mod tests {
         let mut progress = Progress::default();
         let [model, quadratic, direct] = shares(&progress, Ground::Smooth);
         assert!(
-            quadratic > 10 * model && quadratic > 3 * direct && model > 0,
+            model > 3 * quadratic && quadratic > direct,
+            "{model} {quadratic} {direct}"
+        );
+        for _ in 0..60 {
+            progress.count(Some(Seeker::Model), Outcome::Miss(1e6), 1.0);
+        }
+        let [model, quadratic, direct] = shares(&progress, Ground::Smooth);
+        assert!(
+            quadratic > model && model > 0 && quadratic > 3 * direct,
             "{model} {quadratic} {direct}"
         );
         // 60 evaluations of quadratic descents gain nothing, 20 of the model halve the excess each.

@@ -8,8 +8,31 @@ use crate::engine::portfolio::source::{Source, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// Share of the planned evaluations in which the model and descents look for the first hit.
+/// Share of the planned evaluations in which the model and descents look for the first hit, unless F is known to be no more than smooth:
+/// then they go on until there is one.
 const FIRST_SHARE: f64 = 0.5;
+/// Evaluations of a smooth F that are the model's before descents take part in the search for the first hit.
+const MODEL_FIRST: u64 = 50;
+/// The model comes before descents if it takes a hit to be more probable than this, as far as its word can be trusted.
+const CREDIBLE: f64 = 0.5;
+
+/// What a model expects of its next proposal.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::engine::portfolio) struct Expectation {
+    /// The model's index.
+    pub(in crate::engine::portfolio) index: usize,
+    /// How probable a hit is, as far as its word can be trusted.
+    pub(in crate::engine::portfolio) hit: f64,
+}
+
+/// Who looks for the first hit.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::engine::portfolio) struct Seekers {
+    pub(in crate::engine::portfolio) ground: Ground,
+    pub(in crate::engine::portfolio) model: usize,
+    /// Descents by quadratic models; the model, where there are none.
+    pub(in crate::engine::portfolio) quadratic: usize,
+}
 
 impl<S: Real> Guests<S> {
     /// Whether a model of the components of F expects no hit of its latest proposals.
@@ -20,19 +43,23 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// What the search for the first hit goes by while a model is at work, and the engines that take part in it beside descents: the model
-    /// itself and, last, descents by quadratic models. `None` where nothing leads down, after the first hit, and after its share of the
-    /// evaluations.
+    /// Who takes part in the search for the first hit while a model is at work. `None` where nothing leads down, after the first hit, and
+    /// after its share of the evaluations.
     pub(in crate::engine::portfolio) fn seekers(
         &self,
         all: &Credit,
         planned: Option<u64>,
-    ) -> Option<(Ground, [usize; 2])> {
+    ) -> Option<Seekers> {
         let ground = match self.ground? {
-            Ground::Components if self.promises_little() => Ground::Smooth,
+            Ground::Components if self.promises_little() => Ground::Unpromising,
             ground => ground,
         };
-        let most = FIRST_SHARE * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
+        let share = if ground == Ground::Smooth {
+            1.0
+        } else {
+            FIRST_SHARE
+        };
+        let most = share * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
         if !all.is_barren() || all.evaluations() as f64 >= most {
             return None;
         }
@@ -44,23 +71,34 @@ impl<S: Real> Guests<S> {
         let quadratic = find(GuestKind::Quadratic);
         // Without descents by quadratic models, or while all of them await answers, the model proposes.
         let takes_over = self.in_any_order || ground == Ground::Neighbours;
-        let quadratic = quadratic.or(takes_over.then_some(model));
-        Some((ground, [model, quadratic?]))
+        Some(Seekers {
+            ground,
+            model,
+            quadratic: quadratic.or(takes_over.then_some(model))?,
+        })
     }
 
-    /// The model, if it expects its next proposal to hit while descents over neighbours look for the first hit.
-    pub(in crate::engine::portfolio) fn expects_hit(
+    /// What the model expects of its next proposal, where that decides whether it is next: in the search for the first hit, and on a smooth F
+    /// after it.
+    pub(in crate::engine::portfolio) fn expectation(
         &mut self,
-        (ground, [model, _]): (Ground, [usize; 2]),
+        seekers: Option<Seekers>,
         context: &dyn Context<S>,
         rng: &mut SearchRng,
-    ) -> Option<usize> {
-        match &mut self.guests[model].engine {
-            Member::Model(engine) if ground == Ground::Neighbours => {
-                engine.expects_hit(context, rng).then_some(model)
-            }
-            _ => None,
+    ) -> Option<Expectation> {
+        if seekers.is_none() && self.ground != Some(Ground::Smooth) {
+            return None;
         }
+        let mut guests = self.guests.iter();
+        let index = guests.position(|guest| guest.kind == GuestKind::Model && guest.is_ready())?;
+        let Member::Model(model) = &mut self.guests[index].engine else {
+            return None;
+        };
+        if seekers.is_some() && model.believed(1.0) <= CREDIBLE {
+            return None;
+        }
+        let hit = model.expectation(context, rng)?;
+        Some(Expectation { index, hit })
     }
 
     /// What a source is among those that look for the first hit.
@@ -73,6 +111,48 @@ impl<S: Real> Guests<S> {
                 GuestKind::Cma | GuestKind::Niching | GuestKind::Flood | GuestKind::Regions => None,
             },
             _ => None,
+        }
+    }
+}
+
+impl Seekers {
+    /// The one whose turn it is for a reason of its own, after so many evaluations.
+    pub(in crate::engine::portfolio) fn first(
+        self,
+        evaluations: u64,
+        expectation: Option<Expectation>,
+    ) -> Option<Seeker> {
+        let is_early = self.ground == Ground::Smooth && evaluations < MODEL_FIRST;
+        let is_sure = expectation.is_some_and(|expectation| expectation.hit > CREDIBLE);
+        (is_early || is_sure).then_some(Seeker::Model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_model_comes_first_where_it_expects_a_hit_and_early_on_a_smooth_function() {
+        let first = |ground, evaluations, hit: Option<f64>| {
+            let seekers = Seekers {
+                ground,
+                model: 3,
+                quadratic: 4,
+            };
+            seekers.first(evaluations, hit.map(|hit| Expectation { index: 3, hit }))
+        };
+        assert_eq!(first(Ground::Smooth, 49, None), Some(Seeker::Model));
+        assert_eq!(first(Ground::Smooth, 50, None), None);
+        assert_eq!(first(Ground::Neighbours, 10, Some(0.5)), None);
+        for ground in [
+            Ground::Smooth,
+            Ground::Components,
+            Ground::Unpromising,
+            Ground::Neighbours,
+        ] {
+            assert_eq!(first(ground, 60, Some(0.51)), Some(Seeker::Model));
+            assert_eq!(first(ground, 60, Some(0.1)), None);
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Which source is next.
 
 use super::Sources;
+use crate::context::Context;
 use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::{Trial, draw};
-use crate::engine::portfolio::progress::{Ground, Seeker};
+use crate::engine::portfolio::guests::{Expectation, Seekers};
+use crate::engine::portfolio::progress::Seeker;
 use crate::engine::portfolio::source::{CROSS, DESCENT, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -22,7 +24,7 @@ const NICHING: f64 = 0.5;
 
 impl<S: Real> Sources<S> {
     /// The source chosen last while its turn lasts, otherwise a new choice; and how many candidates are to come from it.
-    pub(super) fn next_source(&mut self, rng: &mut SearchRng) -> (Tag, u64) {
+    pub(super) fn next_source(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> (Tag, u64) {
         if let Some((tag, left @ 1..)) = self.chosen
             && (tag.0 != Source::Guest || self.guests.is_ready(tag.1))
         {
@@ -34,35 +36,49 @@ impl<S: Real> Sources<S> {
             LONGEST_TURN
         };
         let turn = (self.whole.evaluations() / TURN).min(longest);
-        let chosen = (self.choose(rng), turn.max(self.block as u64));
+        let seekers = self.seekers();
+        let expectation = if self.has_slopes() && self.guests.model_leads(&self.whole) {
+            self.guests.expectation(seekers, context, rng)
+        } else {
+            None
+        };
+        let chosen = (
+            self.choose(seekers, expectation, rng),
+            turn.max(self.block as u64),
+        );
         self.chosen = Some(chosen);
         chosen
     }
 
     /// Who looks for the first hit beside a model, while that goes on.
-    pub(super) fn seekers(&self) -> Option<(Ground, [usize; 2])> {
-        let steps = self.progress.levels.are_few();
-        if steps || !self.guests.model_leads(&self.whole) {
+    fn seekers(&self) -> Option<Seekers> {
+        if !self.has_slopes() || !self.guests.model_leads(&self.whole) {
             return None;
         }
         self.guests.seekers(&self.whole, self.planned)
     }
 
+    /// Whether F may have slopes: it is not known to be a step function.
+    fn has_slopes(&self) -> bool {
+        !self.progress.levels.are_few()
+    }
+
     /// Draws a source, with the index of the step for [`Source::Step`].
-    fn choose(&self, rng: &mut SearchRng) -> Tag {
+    fn choose(&self, seekers: Option<Seekers>, expectation: Option<Expectation>, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
         let price = self.whole.price();
         let modelled = self.guests.model_leads(&self.whole);
-        let steps = self.progress.levels.are_few();
+        let steps = !self.has_slopes();
         let [uniform, swarm] = match (steps, self.has_neighbours) {
             (false, _) => [0.3, 0.5],
             (true, false) => [BLIND, BLIND_SWARMS],
             (true, true) => [BLIND, BLIND_SWARMS_BESIDE_NEIGHBOURS],
         };
-        if let Some((ground, [model, quadratic])) = self.seekers() {
-            return match self.progress.choose(ground, rng) {
-                Seeker::Model => (Source::Guest, model),
-                Seeker::Quadratic => (Source::Guest, quadratic),
+        if let Some(seekers) = seekers {
+            let first = seekers.first(self.whole.evaluations(), expectation);
+            return match first.unwrap_or_else(|| self.progress.choose(seekers.ground, rng)) {
+                Seeker::Model => (Source::Guest, seekers.model),
+                Seeker::Quadratic => (Source::Guest, seekers.quadratic),
                 Seeker::Direct => (Source::Descent, 0),
             };
         }
@@ -119,7 +135,11 @@ impl<S: Real> Sources<S> {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
         for (index, arm, weight) in self.guests.arms(&self.whole, trial, modelled, steps) {
-            offer(arm.draw(price, weight, rng), (Source::Guest, index));
+            let yields = match expectation {
+                Some(expectation) if expectation.index == index => expectation.hit,
+                _ => arm.draw(price, weight, rng),
+            };
+            offer(yields, (Source::Guest, index));
         }
         best.1
     }

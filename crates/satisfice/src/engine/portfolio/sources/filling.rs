@@ -64,12 +64,7 @@ impl<S: Real> Sources<S> {
         }
         let mut rejected = 0;
         while out.len() < self.batch && rejected < REJECTED && !context.is_out_of_time() {
-            let (mut tag, mut left) = self.next_source(rng);
-            if let Some(seekers) = self.seekers()
-                && let Some(model) = self.guests.expects_hit(seekers, context, rng)
-            {
-                (tag, left) = ((Source::Guest, model), 1);
-            }
+            let (tag, left) = self.next_source(context, rng);
             let before = out.len();
             let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
             let place = self.place(tag);
