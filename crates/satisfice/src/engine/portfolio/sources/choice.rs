@@ -37,7 +37,7 @@ impl<S: Real> Sources<S> {
         };
         let turn = (self.whole.evaluations() / TURN).min(longest);
         let seekers = self.seekers();
-        let expectation = if self.has_slopes() && self.guests.model_leads(&self.whole) {
+        let expectation = if seekers.is_some() || self.has_slopes() && self.guests.model_leads(&self.whole) {
             self.guests.expectation(seekers, context, rng)
         } else {
             None
@@ -52,7 +52,7 @@ impl<S: Real> Sources<S> {
 
     /// Who looks for the first hit beside a model, while that goes on.
     fn seekers(&self) -> Option<Seekers> {
-        if !self.has_slopes() || !self.guests.model_leads(&self.whole) {
+        if !self.has_slopes() {
             return None;
         }
         self.guests.seekers(&self.whole, self.planned)
