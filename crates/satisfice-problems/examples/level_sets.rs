@@ -25,6 +25,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             _ => return Err(format!("`{argument}` is not evaluations=, seeds= or only=").into()),
         }
     }
+    if seeds == 0 {
+        return Err("seeds=0: at least one is needed".into());
+    }
     println!("{evaluations} evaluations, seeds 0 to {}\n", seeds - 1);
     println!("| function | axes | default | best other | ratio |\n|---|---|---|---|---|");
     let mut ratios = Vec::new();
@@ -50,8 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mean = |hits: usize| hits as f64 / seeds as f64;
         let axes = problem.space().dimension();
         println!(
-            "| {} | {axes} | {:.1} | {:.1} ({}) | {ratio:.2} |",
-            name,
+            "| {name} | {axes} | {:.1} | {:.1} ({}) | {ratio:.2} |",
             mean(default),
             mean(best.0),
             best.1

@@ -154,7 +154,7 @@ fn a_model_that_predicts_nothing_is_not_asked_for_long() {
     assert!(asked(2.5, bowl) > 120, "{}", asked(2.5, bowl));
 }
 
-/// A valley, turned against the axes, in which a tenth of a thousandth of the space hits: descents by themselves find none of it in 100 evaluations.
+/// A valley, turned against the axes, of which descents by themselves find next to nothing in 100 evaluations.
 #[test]
 fn the_default_is_nearly_as_good_as_its_model_on_a_smooth_level_set() {
     let hits = |engine: &str| -> usize {
