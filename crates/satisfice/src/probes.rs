@@ -22,6 +22,9 @@ const STREAM: u64 = 0x7072_6f62_6573_0000;
 /// Probes come in batches that grow with their number, so that a short run has some and a long one keeps threads busy.
 const GROWTH: u64 = 16;
 const LARGEST_BATCH: u64 = 64;
+/// An engine's own share makes as many probes or none: of nine that all miss, the interval for the share of the space that is hit and
+/// unknown still reaches to 28 %.
+const FEWEST: f64 = 10.0;
 /// The largest share.
 const MOST: f64 = 0.5;
 
@@ -71,6 +74,12 @@ impl Probes {
             let planned = planned as f64;
             points <= planned && points > planned * (1.0 - share) - 1.0
         })
+    }
+
+    /// Whether this share of so many planned evaluations is too small a sample to say anything. A probe is due once so many evaluations
+    /// have been made that it is its share of them, so that the tenth takes one more than ten shares.
+    pub(crate) fn are_too_few(share: f64, planned: Option<u64>) -> bool {
+        planned.is_some_and(|planned| share * (planned as f64) <= FEWEST)
     }
 
     pub(crate) fn share(&self) -> f64 {
@@ -228,4 +237,27 @@ impl Probes {
 /// The solution that represents a hit.
 fn represents<P: SatisficingProblem + ?Sized>(problem: &P, hit: &P::Solution) -> P::Solution {
     problem.canonical(hit).unwrap_or_else(|| hit.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Axis, Budget, Search, Space, from_fn};
+
+    #[test]
+    fn a_default_of_fewer_than_ten_probes_is_none() {
+        let space = Space::new([Axis::continuous(0.0, 1.0), Axis::continuous(0.0, 1.0)]).unwrap();
+        let problem = from_fn(space, 0.01, |x: &[f64]| (x[0] - 0.3).abs() + x[1]).boxed();
+        let probes = |evaluations, share: Option<f64>| {
+            let mut search = Search::named("portfolio").unwrap();
+            if let Some(share) = share {
+                search = search.probes(share);
+            }
+            let report = search.run(&problem, &Budget::evaluations(evaluations)).unwrap();
+            assert_eq!(report.unseen.is_some(), report.counts.probes > 0);
+            report.counts.probes
+        };
+        assert_eq!(probes(500, None), 0);
+        assert_eq!(probes(501, None), 10);
+        assert_eq!(probes(500, Some(0.02)), 9);
+    }
 }

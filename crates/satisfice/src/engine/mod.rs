@@ -122,7 +122,8 @@ pub trait Engine<S: Real>: Send {
         WarmStart::default()
     }
 
-    /// The share of the evaluations that this engine wants spent on [uniform probes](crate::Search::probes), 0 to 0.5.
+    /// The share of the evaluations that this engine wants spent on [uniform probes](crate::Search::probes), 0 to 0.5. None are made of a budget
+    /// that leaves fewer than ten.
     fn probes(&self) -> f64 {
         0.0
     }

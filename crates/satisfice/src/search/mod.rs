@@ -261,7 +261,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     }
 
     /// The share of the evaluations to spend on uniform probes, from 0 (none) to 0.5; by default as the engine prefers,
-    /// which is 0 for every engine from the literature.
+    /// which is 0 for every engine from the literature and 0.02 for the default, but none if that makes fewer than ten.
     ///
     /// From the probes the report [estimates the hits not seen](crate::Report::unseen), with an interval. Their hits are
     /// listed, but the engine is not told of them: its own sequence of points is the same as without probes.
@@ -344,10 +344,11 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         let first = &self.lanes[0].engine;
         let rule = self.warm_start.unwrap_or_else(|| first.warm_start());
         let share = self.probes.unwrap_or_else(|| {
+            let (share, planned) = (first.probes(), budget.evaluations);
             // A proof needs no estimate.
-            let share = first.probes();
-            let only = Probes::leave_no_room(problem.space(), share, budget.evaluations);
-            if only && self.islands == 1 { 0.0 } else { share }
+            let is_proof = self.islands == 1 && Probes::leave_no_room(problem.space(), share, planned);
+            let is_unprobed = is_proof || Probes::are_too_few(share, planned);
+            if is_unprobed { 0.0 } else { share }
         });
         let probes = Probes::new(share, self.seed, self.slices)?;
         if rule == WarmStart::Cold {
