@@ -1,6 +1,7 @@
 //! The command as a process with limits, and what it must never do.
 
 use std::io::Read;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread;
@@ -10,8 +11,10 @@ use serde_json::Value;
 
 /// Longest time that a process may take on a damaged file.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// When a process is interrupted: a damaged budget may ask for hours.
+/// When a process is interrupted: a damaged budget may ask for hours. Twice as late if it has not come to take interrupts by then.
 const INTERRUPT: Duration = Duration::from_millis(400);
+/// The signal of an interrupt.
+const SIGINT: i32 = 2;
 /// Limit of the address space, in kB. Threads reserve some of it without using it.
 const MEMORY_KB: u64 = 1_500_000;
 /// Longest error line, in bytes.
@@ -49,7 +52,21 @@ pub(crate) fn limited(folder: &Path, prefix: &str, arguments: &[&str]) -> Comman
 }
 
 /// Runs the command with a limit of memory and of time. A long run is interrupted, as a user would.
+///
+/// On a busy machine the interrupt may come before the process can take it: it has done nothing then, and is run again.
 pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Outcome {
+    let mut interrupt = INTERRUPT;
+    loop {
+        let (outcome, signal) = run_once(folder, arguments, interrupt);
+        if signal != Some(SIGINT) || interrupt > PATIENCE {
+            return outcome;
+        }
+        interrupt *= 2;
+    }
+}
+
+/// Runs the command once; also returns the signal that ended it.
+fn run_once(folder: &Path, arguments: &[&str], interrupt: Duration) -> (Outcome, Option<i32>) {
     let prefix = format!("ulimit -v {MEMORY_KB};");
     let mut child = limited(folder, &prefix, arguments)
         .stdout(Stdio::piped())
@@ -67,29 +84,28 @@ pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Outcome {
         err.read_to_end(&mut bytes).unwrap();
         String::from_utf8_lossy(&bytes).into_owned()
     });
-    let hung = !ends_within(&mut child, PATIENCE, true);
-    let code = child.wait().unwrap().code();
-    Outcome {
-        code,
+    let hung = !ends_within(&mut child, PATIENCE, Some(interrupt));
+    let status = child.wait().unwrap();
+    let outcome = Outcome {
+        code: status.code(),
         stdout: stdout.join().unwrap(),
         stderr: stderr.join().unwrap(),
         hung,
-    }
+    };
+    (outcome, status.signal())
 }
 
-/// Waits for the end; interrupts after a while if asked to, and kills at the end of the time.
+/// Waits for the end; interrupts after a while if given, and kills at the end of the time.
 #[expect(clippy::disallowed_methods, reason = "a process is watched from outside")]
-pub(crate) fn ends_within(child: &mut Child, patience: Duration, interrupt: bool) -> bool {
+pub(crate) fn ends_within(child: &mut Child, patience: Duration, mut interrupt: Option<Duration>) -> bool {
     let begun = Instant::now();
-    let mut interrupted = !interrupt;
     while child.try_wait().unwrap().is_none() {
         if begun.elapsed() > patience {
             child.kill().unwrap();
             return false;
         }
-        if !interrupted && begun.elapsed() > INTERRUPT {
+        if interrupt.take_if(|after| begun.elapsed() > *after).is_some() {
             signal(child, "INT");
-            interrupted = true;
         }
         thread::sleep(Duration::from_millis(2));
     }

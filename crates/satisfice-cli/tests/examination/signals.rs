@@ -71,7 +71,7 @@ fn interrupted(name: &str, signals: &[&str]) {
             thread::sleep(Duration::from_millis(rng.below(20) as u64));
         }
         assert!(
-            ends_within(&mut child, END, false),
+            ends_within(&mut child, END, None),
             "case {case}: deaf to {signals:?}"
         );
         let code = child.wait().unwrap().code();
@@ -232,7 +232,7 @@ fn a_killed_or_interrupted_collision_leaves_no_half_file() {
             .unwrap();
         pause(&mut SearchRng::new(case));
         signal(&child, name);
-        assert!(ends_within(&mut child, END, false), "case {case}: deaf to {name}");
+        assert!(ends_within(&mut child, END, None), "case {case}: deaf to {name}");
         let code = child.wait().unwrap().code();
         match fs::read_to_string(&csv) {
             // A list that ended early is a list: its last line is one, and the exit code is that of an answer.
@@ -283,6 +283,6 @@ fn two_processes_do_not_share_a_folder() {
     let said = String::from_utf8_lossy(&second.stderr).into_owned();
     assert_eq!(second.status.code(), Some(2), "{said}");
     assert!(said.contains("out"), "{said}");
-    assert!(ends_within(&mut first, Duration::from_secs(30), false));
+    assert!(ends_within(&mut first, Duration::from_secs(30), None));
     assert_eq!(first.wait().unwrap().code(), Some(0));
 }
