@@ -5,6 +5,9 @@ use serde::de::DeserializeOwned;
 
 use crate::error::Error;
 
+mod rows;
+pub(crate) use self::rows::{read_rows, write_rows};
+
 /// A saved state: bytes in the [postcard](https://docs.rs/postcard) format. Floats keep their bits, so that nothing is
 /// rounded and infinities survive.
 ///

@@ -1,6 +1,6 @@
 //! How large a checkpoint is.
 
-use satisfice::{Budget, Search, Space, from_fn};
+use satisfice::{Budget, Encoding, Neighbourhood, SatisficingProblem, Search, Space, from_fn};
 
 use super::quick;
 
@@ -29,4 +29,79 @@ fn a_checkpoint_takes_few_bytes_a_hit() {
     }
     // With so many hits the rest is the smaller part.
     assert!(most > 8_000, "{most}");
+}
+
+/// Queens on a board: a row for each column. Neighbours move one of them.
+struct Queens {
+    space: Space<f64>,
+}
+
+const QUEENS: usize = 8;
+
+impl SatisficingProblem for Queens {
+    type Scalar = f64;
+    type Solution = Vec<u8>;
+    fn space(&self) -> &Space<f64> {
+        &self.space
+    }
+    fn decode(&self, values: &[f64]) -> Vec<u8> {
+        values.iter().map(|&x| x as u8).collect()
+    }
+    fn fitness(&self, rows: &Vec<u8>) -> f64 {
+        let attack = |i: usize, j: usize| {
+            let apart = rows[i].abs_diff(rows[j]);
+            apart == 0 || usize::from(apart) == j - i
+        };
+        let pairs = (0..QUEENS).flat_map(|j| (0..j).map(move |i| (i, j)));
+        pairs.filter(|&(i, j)| attack(i, j)).count() as f64
+    }
+    fn threshold(&self) -> f64 {
+        0.5
+    }
+    fn encoding(&self) -> Option<&dyn Encoding<f64, Vec<u8>>> {
+        Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<Vec<u8>>> {
+        Some(self)
+    }
+}
+
+impl Encoding<f64, Vec<u8>> for Queens {
+    fn encode(&self, rows: &Vec<u8>, values: &mut [f64]) -> bool {
+        values
+            .iter_mut()
+            .zip(rows)
+            .for_each(|(x, &row)| *x = f64::from(row));
+        true
+    }
+}
+
+impl Neighbourhood<Vec<u8>> for Queens {
+    fn count(&self, _: &Vec<u8>) -> usize {
+        QUEENS * QUEENS
+    }
+    fn neighbour(&self, of: &Vec<u8>, index: usize) -> Option<Vec<u8>> {
+        let mut moved = of.clone();
+        *moved.get_mut(index / QUEENS)? = (index % QUEENS) as u8;
+        (moved != *of).then_some(moved)
+    }
+}
+
+/// A million neighbours may be known, of which a checkpoint need not say more than how they came about.
+#[test]
+fn neighbours_take_no_room_in_a_checkpoint() {
+    let queens = Queens {
+        space: Space::lattice(QUEENS, 8).unwrap(),
+    };
+    for entry in quick() {
+        let mut search = Search::with(entry.configure([]).unwrap()).seed(5);
+        let report = search.run(&queens, &Budget::evaluations(30_000)).unwrap();
+        let bytes = serde_json::to_vec(&search.checkpoint()).unwrap().len();
+        let hits = report.hit_count();
+        assert!(
+            bytes <= A_HIT * hits + BESIDE,
+            "{}: {bytes} bytes for {hits} hits",
+            entry.name
+        );
+    }
 }

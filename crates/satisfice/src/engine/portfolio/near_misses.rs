@@ -1,6 +1,8 @@
 //! Near misses of the slice before: where a problem moves, most new hits were near misses.
 
+use crate::error::Error;
 use crate::scalar::Real;
+use crate::state::{Part, Reader, State, read_rows, write_rows};
 
 /// Most near misses that are handed on to the next slice; a running slice keeps up to twice as many.
 const MOST: usize = 8192;
@@ -8,7 +10,7 @@ const MOST: usize = 8192;
 const MEMORY: f64 = 128.0;
 
 /// Points that were evaluated and missed, with their fitness.
-#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Default)]
 struct Misses<S> {
     fitness: Vec<f64>,
     positions: Vec<S>,
@@ -67,10 +69,26 @@ impl<S: Real> Misses<S> {
         self.positions.truncate(order.len() * dimension);
         worst
     }
+
+    fn save(&self, state: &mut State) {
+        write_rows(state, &self.fitness, 1);
+        write_rows(
+            state,
+            &self.positions,
+            self.positions.len() / self.fitness.len().max(1),
+        );
+    }
+
+    fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
+        Ok(Self {
+            fitness: read_rows(from)?,
+            positions: read_rows(from)?,
+        })
+    }
 }
 
 /// The near misses of the slice before, best first, and those of this one.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone)]
 pub(super) struct NearMisses<S> {
     before: Misses<S>,
     /// The next one of these.
@@ -153,6 +171,26 @@ impl<S: Real> NearMisses<S> {
                 self.bound = self.now.keep_best(MOST, position.len());
             }
         }
+    }
+}
+
+impl<S: Real> Part for NearMisses<S> {
+    /// Of those of this slice, only what may still be among the best.
+    fn save(&self, state: &mut State) {
+        self.before.save(state);
+        let dimension = self.now.positions.len() / self.now.fitness.len().max(1);
+        let mut now = self.now.clone();
+        now.keep_best(MOST, dimension);
+        now.save(state);
+        state.write(&(self.cursor, self.trials, self.hits));
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
+        self.before = Misses::restore(from)?;
+        self.now = Misses::restore(from)?;
+        (self.cursor, self.trials, self.hits) = from.read()?;
+        self.bound = f64::INFINITY;
+        Ok(())
     }
 }
 

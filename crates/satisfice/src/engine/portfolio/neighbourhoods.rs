@@ -1,15 +1,18 @@
 //! Best-first exhaustion of the neighbourhoods that the problem itself names.
 
+mod candidates;
+mod journal;
+
 use std::collections::BinaryHeap;
 
-use hashbrown::HashTable;
-
+use self::candidates::{Candidates, MOST_PARTS, key};
+use self::journal::{Entry, Journal};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
 use crate::scalar::{Real, ordered};
 use crate::state::{Reader, Saved, State};
 
-/// Once this many candidates are known, only hits are expanded: some 60 MB at two axes.
+/// Once this many candidates are known, only hits are expanded: some 110 MB at two axes.
 const MOST: usize = 1 << 20;
 
 /// Most coordinates of candidates, which bounds the memory of many axes: 128 MB in double precision.
@@ -19,19 +22,9 @@ const MOST_COORDINATES: usize = 1 << 24;
 /// [parts](points_at_once) of them are.
 const UNEXPANDED: u32 = 1 << 31;
 
-/// A neighbour of evaluated points.
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
-struct Candidate {
-    key: u64,
-    /// Sum of the fitness of its expanded neighbours, and how many they are; once it is evaluated, its own fitness.
-    sum: f64,
-    count: u32,
-    proposed: bool,
-}
-
 /// An entry of the queue, best first: predicted fitness as ordered bits, then the order of entry.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-struct Entry {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Queued {
     /// Complemented, because the heap gives its greatest.
     unfitness: u64,
     unage: u64,
@@ -49,17 +42,23 @@ struct Entry {
 /// Lazily, the neighbours of an evaluated point are entered when it is their turn, as predicted from this point alone. Most
 /// points that miss never come to that, which saves dozens of entries an evaluation; but then they do not tell against the
 /// candidates that they share with hits, either.
+///
+/// A checkpoint holds the [journal](Journal) and which candidates were proposed; the rest is [made again](Self::make_again).
 #[derive(Debug, Default)]
 pub(super) struct Neighbourhoods<S> {
     lazy: bool,
-    candidates: Vec<Candidate>,
-    positions: Vec<S>,
-    table: HashTable<u32>,
-    heap: BinaryHeap<Entry>,
-    entries: u64,
+    candidates: Candidates<S>,
+    heap: BinaryHeap<Queued>,
+    queued: u64,
     /// Sum and number of the fitness of evaluated candidates.
     sum: f64,
     count: f64,
+    journal: Journal<S>,
+    /// What was restored, and which candidates were proposed and not entered as evaluated by then.
+    restored: Option<(Journal<S>, Vec<u32>)>,
+    /// The neighbours of a point, and their keys. Not saved: filled anew each time.
+    listed: Vec<S>,
+    keys: Vec<u64>,
 }
 
 impl<S: Real> Neighbourhoods<S> {
@@ -76,6 +75,23 @@ impl<S: Real> Neighbourhoods<S> {
         !self.heap.is_empty()
     }
 
+    /// Takes entries that others have replaced from the top of the queue. How many there are depends on whether the candidates were
+    /// [made again](Self::make_again), so that they must not count as candidates to try.
+    fn pass_over(&mut self, dimension: usize) {
+        while let Some(&Queued { candidate, count, .. }) = self.heap.peek() {
+            let candidate = self.candidates.get(candidate, dimension);
+            let waits = if count & UNEXPANDED == 0 {
+                candidate.waits(count)
+            } else {
+                candidate.waits_to_expand(count & !UNEXPANDED)
+            };
+            if waits {
+                return;
+            }
+            self.heap.pop();
+        }
+    }
+
     /// Takes note of the hits of a batch, and of the misses that are near to a hit, by their place in the batch.
     pub(super) fn expand_all(
         &mut self,
@@ -85,41 +101,80 @@ impl<S: Real> Neighbourhoods<S> {
         is_near: impl Fn(usize) -> bool,
     ) {
         for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
-            match *outcome {
-                Outcome::Hit(fitness) => self.expand(context, position, fitness, true),
-                Outcome::Miss(fitness) if is_near(i) => self.expand(context, position, fitness, false),
-                _ => {}
+            let (fitness, is_hit) = match *outcome {
+                Outcome::Hit(fitness) => (fitness, true),
+                Outcome::Miss(fitness) if is_near(i) => (fitness, false),
+                _ => continue,
+            };
+            let room = self.candidates.coordinates() < MOST_COORDINATES;
+            if room && (is_hit || self.candidates.len() < MOST) {
+                self.expand(context, position, fitness.f64(), Visit::First);
             }
         }
+        self.pass_over(context.space().dimension());
     }
 
     /// Takes note of an evaluated point, whose neighbours become candidates.
-    fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: S, is_hit: bool) {
-        if self.positions.len() >= MOST_COORDINATES || !is_hit && self.candidates.len() >= MOST {
+    fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: f64, visit: Visit) {
+        let known = self.candidates.len();
+        self.candidates.reserve(1);
+        let candidate = self.candidates.enter(key(position), position);
+        if candidate.is_evaluated() {
+            // It says nothing new.
             return;
         }
-        let fitness = fitness.f64();
-        let index = self.index_of(position);
-        let candidate = &mut self.candidates[index as usize];
-        (candidate.proposed, candidate.sum) = (true, fitness);
+        candidate.evaluate(fitness);
+        let index = candidate.index;
+        self.journal
+            .point(index, fitness, (index as usize == known).then_some(position));
         if self.lazy {
-            self.enter(index, f64::midpoint(fitness, self.prior(fitness)), UNEXPANDED);
+            let predicted = f64::midpoint(fitness, self.prior(fitness));
+            self.queue(index, predicted, UNEXPANDED);
         } else {
-            self.expand_part(context, index, position, 0);
+            self.expand_part(context, index, 0, visit);
         }
     }
 
     /// Makes candidates of a part of the neighbours of an evaluated point, and enters it once more if more are left.
-    fn expand_part(&mut self, context: &dyn Context<S>, index: u32, position: &[S], part: u32) {
-        let fitness = self.candidates[index as usize].sum;
+    fn expand_part(&mut self, context: &dyn Context<S>, index: u32, part: u32, visit: Visit) {
+        let dimension = context.space().dimension();
+        let candidate = self.candidates.get(index, dimension);
+        candidate.expand(part);
+        let fitness = candidate.sum;
+        if self.lazy || part > 0 {
+            self.journal.part(index, part);
+        }
         let prior = self.prior(fitness);
-        let size = points_at_once(position.len());
+        let size = points_at_once(dimension);
         let start = part as usize * size;
-        context.neighbours(position, start..start + size, &mut |_, neighbour| {
-            self.meet(neighbour, fitness, prior);
-        });
-        if part + 1 < UNEXPANDED && context.neighbour_count(position) > start + size {
-            self.enter(index, f64::midpoint(fitness, prior), UNEXPANDED | (part + 1));
+        let position = self.candidates.position(index, dimension);
+        let (listed, keys) = (&mut self.listed, &mut self.keys);
+        listed.clear();
+        keys.clear();
+        let mut list = |_, neighbour: &[S]| {
+            listed.extend_from_slice(neighbour);
+            keys.push(key(neighbour));
+        };
+        match visit {
+            Visit::First => context.neighbours(position, start..start + size, &mut list),
+            Visit::Again => context.neighbours_again(position, start..start + size, &mut list),
+        }
+        let has_more =
+            part + 1 < MOST_PARTS && context.neighbour_count(position) > start.saturating_add(size);
+        self.candidates.reserve(self.keys.len());
+        self.candidates.fetch(&self.keys);
+        for (&key, neighbour) in self.keys.iter().zip(self.listed.chunks_exact(dimension)) {
+            let candidate = self.candidates.enter(key, neighbour);
+            if !candidate.is_proposed() {
+                let count = candidate.meet(fitness);
+                let predicted = (candidate.sum + prior) / (f64::from(count) + 1.0);
+                self.queued += 1;
+                self.heap
+                    .push(Queued::new(candidate.index, predicted, count, self.queued));
+            }
+        }
+        if has_more {
+            self.queue(index, f64::midpoint(fitness, prior), UNEXPANDED | (part + 1));
         }
     }
 
@@ -132,65 +187,26 @@ impl<S: Real> Neighbourhoods<S> {
         }
     }
 
-    fn enter(&mut self, candidate: u32, predicted: f64, count: u32) {
-        self.entries += 1;
-        self.heap.push(Entry {
-            unfitness: !ordered(predicted),
-            unage: !self.entries,
-            candidate,
-            count,
-        });
+    fn queue(&mut self, candidate: u32, predicted: f64, count: u32) {
+        self.queued += 1;
+        self.heap
+            .push(Queued::new(candidate, predicted, count, self.queued));
     }
 
-    fn meet(&mut self, position: &[S], fitness: f64, prior: f64) {
-        let index = self.index_of(position);
-        let candidate = &mut self.candidates[index as usize];
-        if candidate.proposed {
-            return;
-        }
-        candidate.sum += fitness;
-        candidate.count += 1;
-        let (sum, count) = (candidate.sum, candidate.count);
-        self.enter(index, (sum + prior) / (f64::from(count) + 1.0), count);
-    }
-
-    /// The candidate at a position, new or known.
-    fn index_of(&mut self, position: &[S]) -> u32 {
-        let key = key(position);
-        let known = self.table.find(key, |&i| self.candidates[i as usize].key == key);
-        if let Some(&index) = known {
-            return index;
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "2^32 candidates do not fit in memory"
-        )]
-        let index = self.candidates.len() as u32;
-        self.candidates.push(Candidate {
-            key,
-            sum: 0.0,
-            count: 0,
-            proposed: false,
-        });
-        self.positions.extend_from_slice(position);
-        self.table
-            .insert_unique(key, index, |&i| self.candidates[i as usize].key);
-        index
-    }
-
-    /// Writes the best candidate; `false` when there is none.
+    /// Writes the best candidate; `false` when there is none. The first of the queue is never one that another has replaced.
     pub(super) fn propose(&mut self, context: &dyn Context<S>, position: &mut [S]) -> bool {
         let dimension = position.len();
-        while let Some(entry) = self.heap.pop() {
-            let index = entry.candidate as usize;
-            let candidate = &mut self.candidates[index];
-            let at = index * dimension..(index + 1) * dimension;
-            if entry.count & UNEXPANDED != 0 {
-                position.copy_from_slice(&self.positions[at]);
-                self.expand_part(context, entry.candidate, position, entry.count & !UNEXPANDED);
-            } else if !candidate.proposed && candidate.count == entry.count {
-                candidate.proposed = true;
-                position.copy_from_slice(&self.positions[at]);
+        while let Some(queued) = self.heap.pop() {
+            let index = queued.candidate;
+            let is_point = queued.count & UNEXPANDED == 0;
+            if is_point {
+                self.candidates.get(index, dimension).propose();
+                position.copy_from_slice(self.candidates.position(index, dimension));
+            } else {
+                self.expand_part(context, index, queued.count & !UNEXPANDED, Visit::First);
+            }
+            self.pass_over(dimension);
+            if is_point {
                 return true;
             }
         }
@@ -200,59 +216,234 @@ impl<S: Real> Neighbourhoods<S> {
     /// Counts a candidate and its fitness.
     pub(super) fn count(&mut self, fitness: S) {
         if fitness.is_finite() {
-            self.sum += fitness.f64();
-            self.count += 1.0;
+            self.count_finite(fitness.f64());
         }
     }
-}
 
-impl<S: Real> Neighbourhoods<S> {
-    pub(super) fn save(&self, state: &mut State) {
-        self.candidates.save(state);
-        self.positions.save(state);
-        // The order inside a heap does not matter: equal entries do not occur.
-        self.heap.clone().into_sorted_vec().save(state);
-        self.entries.save(state);
-        [self.sum, self.count].save(state);
+    fn count_finite(&mut self, fitness: f64) {
+        self.sum += fitness;
+        self.count += 1.0;
+        self.journal.count(fitness);
     }
-    pub(super) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), crate::Error> {
-        self.candidates = from.read()?;
-        self.positions = from.read()?;
-        self.heap = from.read::<Vec<Entry>>()?.into();
-        self.entries = from.read()?;
-        [self.sum, self.count] = from.read()?;
-        self.table = HashTable::new();
-        let candidates = &self.candidates;
-        for (index, candidate) in (0..).zip(candidates) {
-            self.table
-                .insert_unique(candidate.key, index, |&i: &u32| candidates[i as usize].key);
+
+    /// Makes the candidates of a restored search again, by the same steps. What is then queued besides, because it was proposed or
+    /// entered by then, is passed over.
+    pub(super) fn make_again(&mut self, context: &dyn Context<S>) {
+        let Some((journal, proposed)) = self.restored.take() else {
+            return;
+        };
+        let dimension = context.space().dimension();
+        journal.replay(dimension, |entry| {
+            match entry {
+                Entry::Point(Ok(index), fitness) => {
+                    let position = self.candidates.position(index, dimension).to_vec();
+                    self.expand(context, &position, fitness, Visit::Again);
+                }
+                Entry::Point(Err(position), fitness) => {
+                    self.expand(context, position, fitness, Visit::Again);
+                }
+                Entry::Part(index, part) => self.expand_part(context, index, part, Visit::Again),
+                Entry::Count(fitness) => self.count_finite(fitness),
+            }
+            self.candidates.len()
+        });
+        for index in proposed {
+            if (index as usize) < self.candidates.len() {
+                self.candidates.get(index, dimension).propose();
+            }
         }
+        self.pass_over(dimension);
+    }
+
+    pub(super) fn save(&self, state: &mut State) {
+        self.lazy.save(state);
+        if let Some((journal, proposed)) = &self.restored {
+            journal.save(state);
+            proposed.save(state);
+        } else {
+            self.journal.save(state);
+            self.candidates.only_proposed().save(state);
+        }
+    }
+
+    pub(super) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), crate::Error> {
+        self.begin(from.read()?);
+        self.restored = Some((Journal::restore(from)?, from.read()?));
         Ok(())
     }
 
     /// Whether restored parts fit each other and the space.
     pub(super) fn fit(&self, dimension: usize) -> bool {
-        let count = self.candidates.len();
-        self.positions.len() == count * dimension
-            && self.heap.iter().all(|entry| (entry.candidate as usize) < count)
+        self.restored
+            .as_ref()
+            .is_none_or(|(journal, _)| journal.fits(dimension))
     }
 }
 
-/// A hash of a position; two that share one are taken for the same, at odds of 2^-64. In four lanes, so that many axes do not wait for
-/// each other.
-fn key<S: Real>(position: &[S]) -> u64 {
-    let mix = |hash: u64, word: u64| {
-        let hash = (hash.rotate_left(23) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        hash ^ (hash >> 32)
-    };
-    let mut lanes = [0, 1, 2, 3];
-    let groups = position.chunks_exact(lanes.len());
-    let rest = groups.remainder();
-    for group in groups {
-        for (lane, x) in lanes.iter_mut().zip(group) {
-            *lane = mix(*lane, x.to_word());
+/// Whether neighbours are visited for the first time, or to make candidates again.
+#[derive(Debug, Clone, Copy)]
+enum Visit {
+    First,
+    Again,
+}
+
+impl Queued {
+    fn new(candidate: u32, predicted: f64, count: u32, order: u64) -> Self {
+        Self {
+            unfitness: !ordered(predicted),
+            unage: !order,
+            candidate,
+            count,
         }
     }
-    let words = rest.iter().map(|x| x.to_word());
-    lanes.into_iter().chain(words).fold(0, mix)
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+    use core::ops::Range;
+
+    use rand::RngExt;
+
+    use super::*;
+    use crate::space::{Region, Space};
+    use crate::{Axis, SearchRng};
+
+    /// Two axes; neighbours share one of both coordinates: more than [`points_at_once`].
+    struct Rooks {
+        space: Space<f64>,
+        calls: Cell<u64>,
+    }
+
+    const SIDE: usize = 200;
+
+    impl Context<f64> for Rooks {
+        fn space(&self) -> &Space<f64> {
+            &self.space
+        }
+        fn threshold(&self) -> f64 {
+            0.0
+        }
+        fn elapsed_share(&self) -> f64 {
+            0.0
+        }
+        fn evaluations(&self) -> u64 {
+            0
+        }
+        fn hits(&self) -> usize {
+            0
+        }
+        fn is_deleted(&self, _: &[f64]) -> bool {
+            false
+        }
+        fn neighbour_count(&self, _: &[f64]) -> usize {
+            2 * SIDE
+        }
+        fn neighbours(&self, of: &[f64], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[f64])) {
+            self.calls.set(self.calls.get() + 1);
+            self.neighbours_again(of, indices, visit);
+        }
+        fn neighbours_again(&self, of: &[f64], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[f64])) {
+            for index in indices.start..indices.end.min(2 * SIDE) {
+                let mut neighbour = [of[0], of[1]];
+                neighbour[index / SIDE] = (index % SIDE) as f64;
+                if neighbour != [of[0], of[1]] {
+                    visit(index, &neighbour);
+                }
+            }
+        }
+        fn offers_neighbours(&self) -> bool {
+            true
+        }
+        fn lower_bound(&self, _: &Region<f64>) -> Option<f64> {
+            None
+        }
+        fn previous_hits(&self) -> usize {
+            0
+        }
+        fn previous_hit(&self, _: usize, _: &mut [f64]) -> bool {
+            false
+        }
+    }
+
+    fn rooks() -> Rooks {
+        Rooks {
+            space: Space::new([
+                Axis::integer(0, SIDE as i64 - 1),
+                Axis::integer(0, SIDE as i64 - 1),
+            ])
+            .unwrap(),
+            calls: Cell::new(0),
+        }
+    }
+
+    /// Proposes a point, evaluates it or not, counts it or not; now and then a point of others.
+    fn step(all: &mut Neighbourhoods<f64>, context: &Rooks, rng: &mut SearchRng) -> Option<[f64; 2]> {
+        let mut position = [0.0; 2];
+        let is_own = all.propose(context, &mut position);
+        if !is_own || rng.random_bool(0.1) {
+            position = [0, 1].map(|_| f64::from(rng.random_range(0..SIDE as u32)));
+        }
+        let fitness = ((7.0 * position[0]).sin() * (3.0 * position[1]).cos() * 100.0).round() / 100.0;
+        let mut batch = Batch::new(2);
+        batch.push(&position);
+        if rng.random_bool(0.8) {
+            all.expand_all(context, &batch, &[Outcome::Miss(fitness)], |_| true);
+        }
+        if rng.random_bool(0.8) {
+            all.count(fitness);
+        }
+        is_own.then_some(position)
+    }
+
+    #[test]
+    fn what_is_made_again_goes_on_as_it_would_have() {
+        for lazy in [false, true] {
+            let context = rooks();
+            let mut all = Neighbourhoods::default();
+            all.begin(lazy);
+            let mut rng = SearchRng::new(8);
+            for _ in 0..60 {
+                step(&mut all, &context, &mut rng);
+            }
+            let mut state = State::default();
+            all.save(&mut state);
+            let calls = context.calls.get();
+            let mut again = Neighbourhoods::default();
+            again.restore(&mut Reader::new(&state)).unwrap();
+            assert!(again.fit(2));
+            // Saved once more before anything is made again.
+            let mut same = State::default();
+            again.save(&mut same);
+            assert!(same == state);
+            again.make_again(&context);
+            assert_eq!(context.calls.get(), calls, "calls are not counted twice");
+            let mut same = State::default();
+            again.save(&mut same);
+            assert!(same == state);
+            let mut rng_again = rng.clone();
+            for i in 0..60 {
+                let (one, other) = (
+                    step(&mut all, &context, &mut rng),
+                    step(&mut again, &context, &mut rng_again),
+                );
+                assert_eq!(one, other, "{i} {lazy}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_checkpoint_takes_few_bytes_for_each_evaluated_point() {
+        let context = rooks();
+        let mut all = Neighbourhoods::default();
+        all.begin(false);
+        let mut rng = SearchRng::new(3);
+        for _ in 0..100 {
+            step(&mut all, &context, &mut rng);
+        }
+        assert!(all.candidates.len() > 10_000, "{}", all.candidates.len());
+        let mut state = State::default();
+        all.save(&mut state);
+        assert!(state.0.len() < 3000, "{}", state.0.len());
+    }
 }

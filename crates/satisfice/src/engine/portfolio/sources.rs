@@ -196,6 +196,7 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        self.neighbourhoods.make_again(context);
         self.tags.clear();
         self.trials.clear();
         let answer = self.fill(context, rng, out);
@@ -207,6 +208,7 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        self.neighbourhoods.make_again(context);
         let space = context.space();
         let is_own = match origin {
             Origin::Engine => true,
@@ -362,7 +364,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.climbers.restore(from)?;
         self.steps = from.read()?;
         self.neighbourhoods.restore(from)?;
-        self.near_misses = from.read()?;
+        self.near_misses.restore(from)?;
         (self.tags, self.trials) = from.read()?;
         self.awaited = from.read()?;
         self.position = from.read()?;

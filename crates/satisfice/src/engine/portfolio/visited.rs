@@ -9,7 +9,7 @@ const SHARDS: usize = 16;
 /// Slots of a table at first, and at most: half of them are used, so 2^21 points are remembered exactly, in 32 MiB.
 const FIRST: usize = 1 << 6;
 const MOST: usize = 1 << 18;
-/// An empty slot; no point has this key.
+/// An empty slot; every key of a point is less.
 const EMPTY: u64 = u64::MAX;
 /// A lattice of at most this many points has a bit for each: at most 1 MiB, of which only the parts in use take memory.
 const BITS: u64 = 1 << 23;
@@ -20,6 +20,7 @@ const BITS: u64 = 1 << 23;
 ///
 /// Cost: a multiplication an axis and a cache line or two. Memory: about 16 to 32 bytes a point, 8 KiB at least.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+#[serde(from = "Keys", into = "Keys")]
 pub(super) struct Visited {
     /// A bit for each point, or none and tables instead.
     bits: Vec<u64>,
@@ -32,8 +33,10 @@ pub(super) struct Visited {
     cardinality: Option<u64>,
 }
 
-/// A table with open addressing and linear probing, at most half full.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+/// A table with open addressing and linear probing, at most half full. On the way from a key's first slot to its own there are only
+/// smaller keys: the place of each follows from which keys there are, not from the order in which they came (Amble, Knuth 1974, Ordered
+/// hash tables, The Computer Journal 17), so that a checkpoint need only say which.
+#[derive(Debug, Clone)]
 struct Shard {
     slots: Vec<u64>,
     points: usize,
@@ -49,13 +52,20 @@ enum Entered {
 }
 
 impl Shard {
-    /// The slot of a key, or the empty one where it would be.
+    fn new() -> Self {
+        Self {
+            slots: vec![EMPTY; FIRST],
+            points: 0,
+        }
+    }
+
+    /// The slot of a key, or the one where it would be.
     #[inline]
     fn slot(&self, hash: u64, key: u64) -> usize {
         let last = self.slots.len() - 1;
         #[expect(clippy::cast_possible_truncation, reason = "the lowest bits are wanted")]
         let mut slot = hash as usize & last;
-        while self.slots[slot] != key && self.slots[slot] != EMPTY {
+        while self.slots[slot] < key {
             slot = (slot + 1) & last;
         }
         slot
@@ -67,31 +77,96 @@ impl Shard {
             return Entered::Known;
         }
         if 2 * self.points < self.slots.len() {
-            self.slots[slot] = key;
+            self.put(slot, key);
             self.points += 1;
             return Entered::New;
         }
         if self.slots.len() < MOST {
-            self.grow();
+            let twice = vec![EMPTY; 2 * self.slots.len()];
+            for key in core::mem::replace(&mut self.slots, twice) {
+                if key != EMPTY {
+                    self.put(self.slot(spread(key), key), key);
+                }
+            }
             return self.insert(hash, key);
         }
-        // Replace the key in the first slot, which keeps every probe sequence intact. An empty slot stays empty, so that every
+        // Replace the key that is there, which keeps every probe sequence in order. An empty slot stays empty, so that every
         // search ends; the point is then forgotten at once.
-        #[expect(clippy::cast_possible_truncation, reason = "the lowest bits are wanted")]
-        let first = hash as usize & (MOST - 1);
-        if self.slots[first] != EMPTY {
-            self.slots[first] = key;
+        if self.slots[slot] != EMPTY {
+            self.slots[slot] = key;
         }
         Entered::Replacing
     }
 
-    fn grow(&mut self) {
-        let twice = vec![EMPTY; 2 * self.slots.len()];
-        for key in core::mem::replace(&mut self.slots, twice) {
-            if key != EMPTY {
-                let slot = self.slot(spread(key), key);
-                self.slots[slot] = key;
+    /// Puts a key into the slot where it belongs, and moves larger ones on.
+    fn put(&mut self, mut slot: usize, mut key: u64) {
+        let last = self.slots.len() - 1;
+        while key != EMPTY {
+            if key < self.slots[slot] {
+                core::mem::swap(&mut key, &mut self.slots[slot]);
             }
+            slot = (slot + 1) & last;
+        }
+    }
+}
+
+/// What is saved of [`Visited`]: of tables, the keys of each in order, as differences.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Keys {
+    bits: Vec<u64>,
+    tables: Vec<Vec<u64>>,
+    cells: Vec<u64>,
+    points: usize,
+    forgot: bool,
+    cardinality: Option<u64>,
+}
+
+impl From<Visited> for Keys {
+    fn from(visited: Visited) -> Self {
+        let differences = |shard: Shard| {
+            let mut keys = shard.slots;
+            keys.retain(|&key| key != EMPTY);
+            keys.sort_unstable();
+            let mut before = 0;
+            for key in &mut keys {
+                *key -= core::mem::replace(&mut before, *key);
+            }
+            keys
+        };
+        Self {
+            bits: visited.bits,
+            tables: visited.shards.into_iter().map(differences).collect(),
+            cells: visited.cells,
+            points: visited.points,
+            forgot: visited.forgot,
+            cardinality: visited.cardinality,
+        }
+    }
+}
+
+impl From<Keys> for Visited {
+    fn from(keys: Keys) -> Self {
+        let table = |differences: Vec<u64>| {
+            let mut shard = Shard::new();
+            let mut key = 0_u64;
+            for difference in differences {
+                key = key.saturating_add(difference).min(EMPTY - 1);
+                shard.insert(spread(key), key);
+            }
+            shard
+        };
+        let mut shards: Vec<Shard> = keys.tables.into_iter().map(table).collect();
+        if keys.bits.is_empty() {
+            // A damaged state may have fewer.
+            shards.resize(SHARDS, Shard::new());
+        }
+        Self {
+            bits: keys.bits,
+            shards,
+            cells: keys.cells,
+            points: keys.points,
+            forgot: keys.forgot,
+            cardinality: keys.cardinality,
         }
     }
 }
@@ -99,10 +174,6 @@ impl Shard {
 impl Visited {
     pub(super) fn new<S: Real>(space: &Space<S>) -> Self {
         let count = space.cardinality().filter(|&count| count < 9.2e18);
-        let shard = Shard {
-            slots: vec![EMPTY; FIRST],
-            points: 0,
-        };
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -117,7 +188,7 @@ impl Visited {
         )]
         Self {
             bits: vec![0; few.map_or(0, |count| count.div_ceil(64) as usize)],
-            shards: vec![shard; if few.is_some() { 0 } else { SHARDS }],
+            shards: vec![Shard::new(); if few.is_some() { 0 } else { SHARDS }],
             cells: space.axes().iter().map(|axis| axis.choices() as u64).collect(),
             points: 0,
             forgot: false,
