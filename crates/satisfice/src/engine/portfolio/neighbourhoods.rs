@@ -5,7 +5,7 @@ mod journal;
 
 use std::collections::BinaryHeap;
 
-use self::candidates::{Candidates, MOST_PARTS, key};
+use self::candidates::{CandidateTable, MOST_PARTS, key};
 use self::journal::{Entry, Journal};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
@@ -47,7 +47,7 @@ struct Queued {
 #[derive(Debug, Default)]
 pub(super) struct Neighbourhoods<S> {
     lazy: bool,
-    candidates: Candidates<S>,
+    candidates: CandidateTable<S>,
     heap: BinaryHeap<Queued>,
     queued: u64,
     /// Sum and number of the fitness of evaluated candidates.

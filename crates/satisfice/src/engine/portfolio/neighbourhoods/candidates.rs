@@ -76,13 +76,13 @@ impl Candidate {
 /// The table holds all that is asked for beside each key, so that a look-up among a million candidates waits for one line of
 /// memory; and whoever looks up many has these lines fetched together, by [`fetch`](Self::fetch).
 #[derive(Debug, Default)]
-pub(super) struct Candidates<S> {
+pub(super) struct CandidateTable<S> {
     slots: Vec<Candidate>,
     positions: Vec<S>,
     count: usize,
 }
 
-impl<S: Real> Candidates<S> {
+impl<S: Real> CandidateTable<S> {
     pub(super) fn len(&self) -> usize {
         self.count
     }

@@ -9,7 +9,7 @@ const POINT: u32 = u32::MAX;
 
 /// A point that is entered, or a part of its neighbours.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
-struct Step {
+struct JournalStep {
     /// Its index, or of a point that was not met before the next free one.
     candidate: u32,
     part: u32,
@@ -31,7 +31,7 @@ pub(super) enum Entry<'a, S> {
 /// candidates are saved in some hundred kilobytes.
 #[derive(Debug, Default)]
 pub(super) struct Journal<S> {
-    steps: Vec<Step>,
+    steps: Vec<JournalStep>,
     /// The fitness of points, in the order of their steps.
     fitness: Vec<f64>,
     /// The positions of points that were not met before.
@@ -49,7 +49,7 @@ impl<S: Real> Journal<S> {
 
     /// Adds a part of the neighbours of a point.
     pub(super) fn part(&mut self, candidate: u32, part: u32) {
-        self.steps.push(Step {
+        self.steps.push(JournalStep {
             candidate,
             part,
             counted: self.counted.len(),
@@ -97,7 +97,7 @@ impl<S: Real> Journal<S> {
     /// Most points are counted right after they are entered: their fitness is written once.
     pub(super) fn save(&self, state: &mut State) {
         let mut next = 0;
-        let mut counted_next = |step: &Step, fitness: f64| {
+        let mut counted_next = |step: &JournalStep, fitness: f64| {
             next = step.counted.max(next);
             let same = self
                 .counted
@@ -118,12 +118,12 @@ impl<S: Real> Journal<S> {
             .filter(|(_, counted)| !**counted);
         let others: Vec<f64> = others.map(|(&fitness, _)| fitness).collect();
         let mut before = 0;
-        let steps: Vec<Step> = self
+        let steps: Vec<JournalStep> = self
             .steps
             .iter()
             .map(|&step| {
                 let counted = step.counted - core::mem::replace(&mut before, step.counted);
-                Step { counted, ..step }
+                JournalStep { counted, ..step }
             })
             .collect();
         (steps, is_counted).save(state);
@@ -133,7 +133,7 @@ impl<S: Real> Journal<S> {
     }
 
     pub(super) fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
-        let (mut steps, is_counted): (Vec<Step>, Vec<bool>) = from.read()?;
+        let (mut steps, is_counted): (Vec<JournalStep>, Vec<bool>) = from.read()?;
         let others: Vec<f64> = read_rows(from)?;
         let counted: Vec<f64> = read_rows(from)?;
         let positions = from.read()?;
