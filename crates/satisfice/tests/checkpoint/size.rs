@@ -14,10 +14,19 @@ fn a_checkpoint_takes_few_bytes_a_hit() {
         let square: f64 = x.iter().map(|x| (x - 29.5) * (x - 29.5)).sum();
         (square.sqrt() - 20.0).abs()
     });
-    let mut most = 0;
-    for entry in quick() {
+    // With so many hits the rest is the smaller part.
+    let most = most_hits(&shell);
+    assert!(most > 8_000, "{most}");
+}
+
+/// Runs every engine and looks at the size of its checkpoint; the most hits of any.
+fn most_hits<P>(problem: &P) -> usize
+where
+    P: SatisficingProblem<Scalar = f64, Solution: serde::Serialize>,
+{
+    let hits = quick().map(|entry| {
         let mut search = Search::with(entry.configure([]).unwrap()).seed(5);
-        let report = search.run(&shell, &Budget::evaluations(30_000)).unwrap();
+        let report = search.run(problem, &Budget::evaluations(30_000)).unwrap();
         let bytes = serde_json::to_vec(&search.checkpoint()).unwrap().len();
         let hits = report.hit_count();
         assert!(
@@ -25,10 +34,9 @@ fn a_checkpoint_takes_few_bytes_a_hit() {
             "{}: {bytes} bytes for {hits} hits",
             entry.name
         );
-        most = most.max(hits);
-    }
-    // With so many hits the rest is the smaller part.
-    assert!(most > 8_000, "{most}");
+        hits
+    });
+    hits.max().unwrap()
 }
 
 /// Queens on a board: a row for each column. Neighbours move one of them.
@@ -93,15 +101,6 @@ fn neighbours_take_no_room_in_a_checkpoint() {
     let queens = Queens {
         space: Space::lattice(QUEENS, 8).unwrap(),
     };
-    for entry in quick() {
-        let mut search = Search::with(entry.configure([]).unwrap()).seed(5);
-        let report = search.run(&queens, &Budget::evaluations(30_000)).unwrap();
-        let bytes = serde_json::to_vec(&search.checkpoint()).unwrap().len();
-        let hits = report.hit_count();
-        assert!(
-            bytes <= A_HIT * hits + BESIDE,
-            "{}: {bytes} bytes for {hits} hits",
-            entry.name
-        );
-    }
+    let most = most_hits(&queens);
+    assert!(most > 20, "{most}");
 }
