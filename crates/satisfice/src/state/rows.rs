@@ -14,10 +14,8 @@ enum Column<S> {
     Many(Vec<S>),
 }
 
-/// Appends rows of `width` numbers column by column: a byte for each number where a column has at most 256 different ones.
-///
-/// # Panics
-/// If `width` is zero.
+/// Appends rows of `width` numbers column by column: a byte for each number where a column has at most 256 different ones. A width of
+/// zero is for no rows.
 pub(crate) fn write_rows<S: Real>(state: &mut State, rows: &[S], width: usize) {
     let columns: Vec<Column<S>> = (0..width)
         .map(|column| of(rows.iter().skip(column).step_by(width)))
@@ -90,12 +88,15 @@ mod tests {
         let mut state = State::default();
         write_rows(&mut state, &rows, 3);
         write_rows::<f64>(&mut state, &[], 2);
+        write_rows::<f64>(&mut state, &[], 0);
         assert!(state.0.len() < 3000 * 11, "{}", state.0.len());
         let mut reader = Reader::new(&state);
         let back: Vec<f64> = read_rows(&mut reader).unwrap();
         let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&back), bits(&rows));
-        assert!(read_rows::<f64>(&mut reader).unwrap().is_empty());
+        for _ in 0..2 {
+            assert!(read_rows::<f64>(&mut reader).unwrap().is_empty());
+        }
         reader.finish().unwrap();
     }
 

@@ -33,6 +33,14 @@ struct Queued {
     count: u32,
 }
 
+/// What waits to be proposed or expanded, best first.
+#[derive(Debug, Default)]
+struct Queue {
+    heap: BinaryHeap<Queued>,
+    /// How many have been entered.
+    entries: u64,
+}
+
 /// The graph that the problem's neighbours span, explored from the hits, the candidate with the least predicted fitness
 /// first.
 ///
@@ -48,8 +56,7 @@ struct Queued {
 pub(super) struct Neighbourhoods<S> {
     lazy: bool,
     candidates: CandidateTable<S>,
-    heap: BinaryHeap<Queued>,
-    queued: u64,
+    queue: Queue,
     /// Sum and number of the fitness of evaluated candidates.
     sum: f64,
     count: f64,
@@ -72,13 +79,13 @@ impl<S: Real> Neighbourhoods<S> {
 
     /// Whether there is a candidate to try.
     pub(super) fn has_more(&self) -> bool {
-        !self.heap.is_empty()
+        !self.queue.heap.is_empty()
     }
 
     /// Takes entries that others have replaced from the top of the queue. How many there are depends on whether the candidates were
     /// [made again](Self::make_again), so that they must not count as candidates to try.
     fn pass_over(&mut self, dimension: usize) {
-        while let Some(&Queued { candidate, count, .. }) = self.heap.peek() {
+        while let Some(&Queued { candidate, count, .. }) = self.queue.heap.peek() {
             let candidate = self.candidates.get(candidate, dimension);
             let waits = if count & UNEXPANDED == 0 {
                 candidate.waits(count)
@@ -88,7 +95,7 @@ impl<S: Real> Neighbourhoods<S> {
             if waits {
                 return;
             }
-            self.heap.pop();
+            self.queue.heap.pop();
         }
     }
 
@@ -129,7 +136,7 @@ impl<S: Real> Neighbourhoods<S> {
             .point(index, fitness, (index as usize == known).then_some(position));
         if self.lazy {
             let predicted = f64::midpoint(fitness, self.prior(fitness));
-            self.queue(index, predicted, UNEXPANDED);
+            self.queue.push(index, predicted, UNEXPANDED);
         } else {
             self.expand_part(context, index, 0, visit);
         }
@@ -168,13 +175,12 @@ impl<S: Real> Neighbourhoods<S> {
             if !candidate.is_proposed() {
                 let count = candidate.meet(fitness);
                 let predicted = (candidate.sum + prior) / (f64::from(count) + 1.0);
-                self.queued += 1;
-                self.heap
-                    .push(Queued::new(candidate.index, predicted, count, self.queued));
+                self.queue.push(candidate.index, predicted, count);
             }
         }
         if has_more {
-            self.queue(index, f64::midpoint(fitness, prior), UNEXPANDED | (part + 1));
+            self.queue
+                .push(index, f64::midpoint(fitness, prior), UNEXPANDED | (part + 1));
         }
     }
 
@@ -187,16 +193,10 @@ impl<S: Real> Neighbourhoods<S> {
         }
     }
 
-    fn queue(&mut self, candidate: u32, predicted: f64, count: u32) {
-        self.queued += 1;
-        self.heap
-            .push(Queued::new(candidate, predicted, count, self.queued));
-    }
-
     /// Writes the best candidate; `false` when there is none. The first of the queue is never one that another has replaced.
     pub(super) fn propose(&mut self, context: &dyn Context<S>, position: &mut [S]) -> bool {
         let dimension = position.len();
-        while let Some(queued) = self.heap.pop() {
+        while let Some(queued) = self.queue.heap.pop() {
             let index = queued.candidate;
             let is_point = queued.count & UNEXPANDED == 0;
             if is_point {
@@ -287,14 +287,15 @@ enum Visit {
     Again,
 }
 
-impl Queued {
-    fn new(candidate: u32, predicted: f64, count: u32, order: u64) -> Self {
-        Self {
+impl Queue {
+    fn push(&mut self, candidate: u32, predicted: f64, count: u32) {
+        self.entries += 1;
+        self.heap.push(Queued {
             unfitness: !ordered(predicted),
-            unage: !order,
+            unage: !self.entries,
             candidate,
             count,
-        }
+        });
     }
 }
 
