@@ -12,8 +12,8 @@ use crate::spec::RunSpec;
 /// A checkpoint of a run: its specification, the reports of the slices that have ended, and the state of the search.
 #[derive(Serialize, Deserialize)]
 #[serde(bound(
-    serialize = "T: Serialize",
-    deserialize = "T: Serialize + serde::de::DeserializeOwned + satisfice::Identity"
+    serialize = "T: Serialize + DeserializeOwned + satisfice::Identity",
+    deserialize = "T: Serialize + DeserializeOwned + satisfice::Identity"
 ))]
 pub(crate) struct SavedRun<T> {
     #[serde(flatten)]
@@ -24,7 +24,7 @@ pub(crate) struct SavedRun<T> {
 
 /// The same, written from where its parts are.
 #[derive(Serialize)]
-#[serde(bound(serialize = "T: Serialize"))]
+#[serde(bound(serialize = "T: Serialize + DeserializeOwned + satisfice::Identity"))]
 pub(crate) struct Saved<'a, T> {
     #[serde(flatten)]
     pub(crate) spec: &'a RunSpec,
@@ -33,7 +33,9 @@ pub(crate) struct Saved<'a, T> {
 }
 
 /// The bytes of a checkpoint.
-pub(crate) fn write<T: Serialize>(saved: &Saved<'_, T>) -> serde_json::Result<Vec<u8>> {
+pub(crate) fn write<T: Serialize + DeserializeOwned + satisfice::Identity>(
+    saved: &Saved<'_, T>,
+) -> serde_json::Result<Vec<u8>> {
     Ok(sealed::seal(&serde_json::to_string(saved)?).into_bytes())
 }
 

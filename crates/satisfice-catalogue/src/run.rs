@@ -5,7 +5,7 @@ use core::time::Duration;
 use std::time::Instant;
 
 use satisfice::{
-    Checkpoint, Observer, Report, RunOptions, SatisficingProblem, Search, StopReason, TracePoint,
+    Checkpoint, Identity, Observer, Report, RunOptions, SatisficingProblem, Search, StopReason, TracePoint,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -114,7 +114,7 @@ where
     failed.map_or(Ok(reports), |error| Err(error.into()))
 }
 
-fn write<T: Serialize>(
+fn write<T: Serialize + DeserializeOwned + Identity>(
     spec: &RunSpec,
     reports: &[Report<T>],
     search: &Checkpoint<T>,

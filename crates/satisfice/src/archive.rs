@@ -1,6 +1,7 @@
 //! The archive: the distinct hits, in the order found.
 
 mod as_list;
+pub(crate) mod packed;
 #[cfg(test)]
 mod tests;
 

@@ -8,7 +8,8 @@ use super::lanes::LanesProgress;
 use super::running::Running;
 use super::slice::Slice;
 use super::tickets::SavedTickets;
-use crate::archive::Archive;
+use crate::archive::packed::Packable;
+use crate::archive::{Archive, packed};
 use crate::best::Best;
 use crate::budget::{Budget, StopReason};
 use crate::catalogue::Description;
@@ -36,8 +37,8 @@ pub struct Checkpoint<T> {
 /// What a [`Checkpoint`] holds.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 #[serde(bound(
-    serialize = "T: serde::Serialize",
-    deserialize = "T: serde::Deserialize<'de> + Identity"
+    serialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity",
+    deserialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity"
 ))]
 pub struct Contents<T> {
     /// The version of this crate; another version is refused, since its results may differ.
@@ -61,6 +62,7 @@ pub struct Contents<T> {
     /// Number of axes, once a slice has begun.
     pub dimension: Option<usize>,
     /// The hits of the slice that ended last.
+    #[serde(with = "packed")]
     pub previous: Arc<Archive<T>>,
     /// The slice that has begun and not ended: the one that will be reported.
     pub unfinished: Option<Unfinished<T>>,
@@ -76,8 +78,8 @@ pub struct Contents<T> {
 /// A slice that has begun and not ended.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 #[serde(bound(
-    serialize = "T: serde::Serialize",
-    deserialize = "T: serde::Deserialize<'de> + Identity"
+    serialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity",
+    deserialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity"
 ))]
 pub struct Unfinished<T> {
     /// Its budget, without the cancellation.
@@ -91,6 +93,7 @@ pub struct Unfinished<T> {
     /// Why it has ended, if it has only to be reported. Never a cancellation: that is what is resumed from.
     pub stop: Option<StopReason>,
     /// The hits so far.
+    #[serde(with = "packed")]
     pub archive: Archive<T>,
     /// The least fitness so far, and where.
     pub best: Option<Best<T>>,
@@ -268,19 +271,20 @@ mod sealed {
     //! A checkpoint is written with a checksum over all of it, and refused if that does not fit.
 
     use postcard::ser_flavors::Flavor;
+    use serde::de::DeserializeOwned;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
 
-    use super::{Checkpoint, Contents, Identity};
+    use super::{Checkpoint, Contents, Identity, Packable};
     use crate::checksum::Checksum;
 
     #[derive(Serialize)]
-    struct Written<'a, T: Serialize> {
+    struct Written<'a, T: Packable> {
         checksum: u64,
         contents: &'a Contents<T>,
     }
 
     #[derive(Deserialize)]
-    #[serde(bound(deserialize = "T: Deserialize<'de> + Identity"))]
+    #[serde(bound(deserialize = "T: Packable"))]
     struct Read<T> {
         checksum: u64,
         contents: Contents<T>,
@@ -298,11 +302,11 @@ mod sealed {
         }
     }
 
-    fn checksum<T: Serialize>(contents: &Contents<T>) -> postcard::Result<u64> {
+    fn checksum<T: Packable>(contents: &Contents<T>) -> postcard::Result<u64> {
         postcard::serialize_with_flavor(contents, Checksum::default())
     }
 
-    impl<T: Serialize> Serialize for Checkpoint<T> {
+    impl<T: Serialize + DeserializeOwned + Identity> Serialize for Checkpoint<T> {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
             let contents = &self.contents;
             let checksum = checksum(contents).map_err(ser::Error::custom)?;
@@ -310,7 +314,7 @@ mod sealed {
         }
     }
 
-    impl<'de, T: Serialize + Deserialize<'de> + Identity> Deserialize<'de> for Checkpoint<T> {
+    impl<'de, T: Serialize + DeserializeOwned + Identity> Deserialize<'de> for Checkpoint<T> {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
             let Read {
                 checksum: written,

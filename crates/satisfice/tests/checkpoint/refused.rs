@@ -1,6 +1,7 @@
 //! A checkpoint of another search is refused, and damage is detected.
 
 use satisfice::Boundary;
+use satisfice::state::State;
 
 use super::*;
 
@@ -186,10 +187,26 @@ fn damage_is_found() {
     }
     assert!(refused > 500, "{refused}");
     let mut value: serde_json::Value = serde_json::from_str(&saved).unwrap();
-    let hits = value["contents"]["unfinished"]["archive"].as_array_mut().unwrap();
-    hits[0]["fitness"] = serde_json::json!(30.0);
+    let packed = &mut value["contents"]["unfinished"]["archive"]["packed"];
+    let State(mut hits) = serde_json::from_value(packed.clone()).unwrap();
+    let fitness = slice
+        .checkpoint()
+        .contents
+        .unfinished
+        .unwrap()
+        .archive
+        .get(0)
+        .unwrap()
+        .fitness;
+    let place = hits
+        .windows(8)
+        .position(|bytes| bytes == fitness.to_le_bytes())
+        .unwrap();
+    hits[place..place + 8].copy_from_slice(&30.0_f64.to_le_bytes());
+    *packed = serde_json::to_value(State(hits)).unwrap();
+    let error = serde_json::from_value::<Saved>(value).unwrap_err();
     assert!(
-        serde_json::from_value::<Saved>(value).is_err(),
-        "a hit with another fitness"
+        error.to_string().contains("damaged"),
+        "a hit with another fitness: {error}"
     );
 }

@@ -1,6 +1,9 @@
 //! How large a checkpoint is.
 
+use satisfice::engine::{self, EngineSpec};
 use satisfice::{Budget, Encoding, Neighbourhood, SatisficingProblem, Search, Space, from_fn};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::quick;
 
@@ -19,24 +22,46 @@ fn a_checkpoint_takes_few_bytes_a_hit() {
     assert!(most > 8_000, "{most}");
 }
 
+#[test]
+fn coordinates_of_many_digits_do_not_make_it_longer() {
+    let ball = from_fn(Space::cube(6, -1.0, 1.0).unwrap(), 0.5, |x: &[f64]| {
+        x.iter().map(|x| (x - 0.1) * (x - 0.1)).sum()
+    });
+    let most = most_hits(&ball);
+    assert!(most > 20_000, "{most}");
+}
+
+#[test]
+fn many_axes_do_not_make_that_of_the_default_longer() {
+    let sphere = from_fn(Space::cube(20, -1.0, 1.0).unwrap(), 0.1, |x: &[f64]| {
+        x.iter().map(|x| (x - 0.1) * (x - 0.1)).sum()
+    });
+    assert!(hits_of(engine::find("portfolio").unwrap(), &sphere) > 0);
+}
+
 /// Runs every engine and looks at the size of its checkpoint; the most hits of any.
 fn most_hits<P>(problem: &P) -> usize
 where
-    P: SatisficingProblem<Scalar = f64, Solution: serde::Serialize>,
+    P: SatisficingProblem<Scalar = f64, Solution: Serialize + DeserializeOwned>,
 {
-    let hits = quick().map(|entry| {
-        let mut search = Search::with(entry.configure([]).unwrap()).seed(5);
-        let report = search.run(problem, &Budget::evaluations(30_000)).unwrap();
-        let bytes = serde_json::to_vec(&search.checkpoint()).unwrap().len();
-        let hits = report.hit_count();
-        assert!(
-            bytes <= A_HIT * hits + BESIDE,
-            "{}: {bytes} bytes for {hits} hits",
-            entry.name
-        );
-        hits
-    });
-    hits.max().unwrap()
+    quick().map(|entry| hits_of(entry, problem)).max().unwrap()
+}
+
+/// Runs an engine and looks at the size of its checkpoint; its hits.
+fn hits_of<P>(entry: &EngineSpec, problem: &P) -> usize
+where
+    P: SatisficingProblem<Scalar = f64, Solution: Serialize + DeserializeOwned>,
+{
+    let mut search = Search::with(entry.configure([]).unwrap()).seed(5);
+    let report = search.run(problem, &Budget::evaluations(30_000)).unwrap();
+    let bytes = serde_json::to_vec(&search.checkpoint()).unwrap().len();
+    let hits = report.hit_count();
+    assert!(
+        bytes <= A_HIT * hits + BESIDE,
+        "{}: {bytes} bytes for {hits} hits",
+        entry.name
+    );
+    hits
 }
 
 /// Queens on a board: a row for each column. Neighbours move one of them.

@@ -111,6 +111,13 @@ impl Ends {
         self.ends[index] = end;
     }
 
+    /// How many that are no hits have less fitness than this one. Cost: O(n).
+    pub(super) fn better(&self, index: usize) -> usize {
+        let limit = self.ends[index].fitness;
+        let others = self.ends.iter().filter(|end| !end.is_hit && end.fitness < limit);
+        others.count()
+    }
+
     /// The nearest one, and how far away it is.
     pub(super) fn nearest(&self, point: &[f64]) -> Option<(usize, f64)> {
         let distances = self
@@ -205,6 +212,7 @@ mod tests {
         ends.add(&[0.9], 3.0, false);
         ends.add(&[0.91], 0.0, true);
         assert_eq!(ends.nearest(&[0.6]).map(|(index, _)| index), Some(1));
+        assert_eq!([0, 1, 2].map(|index| ends.better(index)), [1, 2, 0]);
         let mut tries = [0; 4];
         for _ in 0..12 {
             tries[ends.promising(0.2).unwrap()] += 1;

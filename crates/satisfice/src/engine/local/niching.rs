@@ -31,7 +31,8 @@ engine_settings! {
     ///   one within it: good ends more often. A search that will not come below its origin ends early.
     ///
     /// A search ends at a hit, when it hardly comes nearer to delta any more, or when a known end is near in terms of the spread of its
-    /// samples and no hill lies between (Ursem 1999), so that it costs little to be on the way to a known optimum.
+    /// samples and no hill lies between (Ursem 1999), so that it costs little to be on the way to a known optimum. An end that was no
+    /// hit may be beside one all the same: the better it is among those, the more often a search passes it.
     ///
     /// Steps on integer axes are rounded, so this engine suits continuous axes. Hits are deleted.
     ///
@@ -206,8 +207,8 @@ impl<S: Real> NichingSearch<S> {
         }
     }
 
-    /// A known end that the search seems to be on its way to, if it is time to look.
-    fn approached(&self) -> Option<usize> {
+    /// A known end that the search seems to be on its way to, if it is time to look and the search is not to pass it.
+    fn approached(&mut self, rng: &mut SearchRng) -> Option<usize> {
         let spread = self.distribution.spread();
         if spread > 0.5 * self.run.looked || !self.run.fitness.is_finite() {
             return None;
@@ -218,7 +219,12 @@ impl<S: Real> NichingSearch<S> {
             true if spread < SETTLED.0 * self.run.first_spread => SETTLED.1,
             true => SCOPE.0,
         };
-        (distance < scope * spread && self.ends.fitness(index) < self.run.fitness).then_some(index)
+        if distance >= scope * spread || self.ends.fitness(index) >= self.run.fitness {
+            return None;
+        }
+        self.run.looked = spread;
+        let passes = !self.ends.is_hit(index) && rng.uniform() < 1.0 / (1.0 + self.ends.better(index) as f64);
+        (!passes).then_some(index)
     }
 
     /// Takes what became of samples.
@@ -327,8 +333,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
             }
             if !self.run.running {
                 self.begin_run(space, rng);
-            } else if let Some(index) = self.approached() {
-                self.run.looked = self.distribution.spread();
+            } else if let Some(index) = self.approached(rng) {
                 self.approaching = Some(index);
                 for probe in 1..=PROBES.min(points_between_looks(dimension)) {
                     let share = probe as f64 / (PROBES as f64 + 1.0);

@@ -4,8 +4,15 @@ use crate::error::Error;
 use crate::scalar::Real;
 use crate::state::{Part, Reader, State, read_rows, write_rows};
 
-/// Most near misses that are handed on to the next slice; a running slice keeps up to twice as many.
+/// Most near misses that are handed on to the next slice, and most numbers of them; a running slice keeps up to twice as many. So
+/// they take half a megabyte of a checkpoint at most.
 const MOST: usize = 8192;
+const NUMBERS: usize = 48 << 10;
+
+fn most(dimension: usize) -> usize {
+    MOST.min(NUMBERS / (dimension + 1)).max(1)
+}
+
 /// Past trials are halved at this number: the best are tried first, so the yield falls steadily.
 const MEMORY: f64 = 128.0;
 
@@ -120,7 +127,7 @@ impl<S: Real> NearMisses<S> {
             for index in self.cursor..self.before.fitness.len() {
                 left.push(self.before.fitness[index], self.before.row(index, dimension));
             }
-            self.before = left.best(MOST, dimension);
+            self.before = left.best(most(dimension), dimension);
         } else {
             self.before = Misses::default();
         }
@@ -167,8 +174,9 @@ impl<S: Real> NearMisses<S> {
         let fitness = fitness.f64();
         if fitness < self.bound {
             self.now.push(fitness, position);
-            if self.now.fitness.len() >= 2 * MOST {
-                self.bound = self.now.keep_best(MOST, position.len());
+            let most = most(position.len());
+            if self.now.fitness.len() >= 2 * most {
+                self.bound = self.now.keep_best(most, position.len());
             }
         }
     }
@@ -180,7 +188,7 @@ impl<S: Real> Part for NearMisses<S> {
         self.before.save(state);
         let dimension = self.now.positions.len() / self.now.fitness.len().max(1);
         let mut now = self.now.clone();
-        now.keep_best(MOST, dimension);
+        now.keep_best(most(dimension), dimension);
         now.save(state);
         state.write(&(self.cursor, self.trials, self.hits));
     }
