@@ -21,7 +21,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput};
 use loops::{latest_hit_loop, random_loop};
 use problems::{Lattice, Slow};
 use satisfice::catalogue::{Catalogued, Params};
-use satisfice::{Archive, Budget, SatisficingProblem, Search, SearchRng, engine};
+use satisfice::{Archive, Budget, Located, SatisficingProblem, Search, SearchRng, engine};
 use satisfice_collision::problem::Teapots;
 
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
@@ -108,6 +108,37 @@ fn archive(c: &mut Criterion) {
     group.finish();
 }
 
+/// Look-ups and entries where hits are steps along axes from each other, little longer than the separation: keys say little there.
+fn crowded(c: &mut Criterion) {
+    let mut group = c.benchmark_group("crowded");
+    for (axes, hits) in [
+        (6, 10_000),
+        (6, 100_000),
+        (20, 1_000),
+        (20, 10_000),
+        (20, 100_000),
+    ] {
+        let mut rng = SearchRng::new(1);
+        let mut points = vec![Located::new(&vec![0.0; axes], 1.0)];
+        while points.len() < hits {
+            let mut point = points[rng.below(points.len())].clone();
+            point.coordinates[rng.below(axes)] += if rng.uniform() < 0.5 { 1.1 } else { -1.1 };
+            points.push(point);
+        }
+        settings(&mut group, hits);
+        group.bench_function(format!("insert/{axes}-axes/{hits}"), |b| {
+            b.iter(|| {
+                let mut archive = Archive::default();
+                for (n, point) in points.iter().enumerate() {
+                    archive.insert(point.clone(), -1.0, n as u64, 0.0);
+                }
+                archive
+            });
+        });
+    }
+    group.finish();
+}
+
 fn peers(c: &mut Criterion) {
     let mut group = c.benchmark_group("peers");
     settings(&mut group, peers::EVALUATIONS);
@@ -124,6 +155,7 @@ fn main() {
         let mut criterion = Criterion::default().configure_from_args();
         engines(&mut criterion);
         archive(&mut criterion);
+        crowded(&mut criterion);
         peers(&mut criterion);
         criterion.final_summary();
     }

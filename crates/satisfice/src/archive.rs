@@ -1,12 +1,14 @@
 //! The archive: the distinct hits, in the order found.
 
 mod as_list;
+mod near;
 pub(crate) mod packed;
 #[cfg(test)]
 mod tests;
 
 use hashbrown::HashTable;
 
+use self::near::NearIndex;
 use crate::identity::Identity;
 
 /// Up to this many hits, a filter of bits saves most look-ups in the table; a larger one would not stay in the cache.
@@ -31,8 +33,8 @@ pub struct Archive<T> {
     /// Hits of probes that the engine has not found itself: [`Archive::contains`] skips them.
     probe_only: HashTable<u32>,
     filter: Vec<u64>,
-    /// Whether solutions are filed by their fine keys.
-    fine: bool,
+    /// Solutions by their places, once many of them share a key. The tables are of the numbers of hits then.
+    near: Option<NearIndex>,
 }
 
 /// At most so many hits that were entered since a look-up are compared one by one.
@@ -67,7 +69,7 @@ impl<T> Default for Archive<T> {
             table: HashTable::new(),
             probe_only: HashTable::new(),
             filter: Vec::new(),
-            fine: false,
+            near: None,
         }
     }
 }
@@ -152,14 +154,19 @@ impl<T> Archive<T> {
             + self.table.allocation_size()
             + self.probe_only.allocation_size()
             + self.filter.capacity() * 8
+            + self.near.as_ref().map_or(0, NearIndex::bytes)
             + (self.solutions.capacity() - self.solutions.len()) * size_of::<T>()
     }
 }
 
-/// The key of a solution, fine or not.
+/// The key under which hit `index` is in a table: of its solution, or of its number.
 #[inline]
-fn key_of<T: Identity>(solution: &T, fine: bool) -> u64 {
-    if fine { solution.fine_key() } else { solution.key() }
+fn key_of<T: Identity>(solutions: &[T], index: u32, by_number: bool) -> u64 {
+    if by_number {
+        index.key()
+    } else {
+        solutions[index as usize].key()
+    }
 }
 
 impl<T: Identity> Archive<T> {
@@ -167,12 +174,7 @@ impl<T: Identity> Archive<T> {
     #[inline]
     #[must_use]
     pub fn contains(&self, solution: &T) -> bool {
-        if self.solutions.is_empty() {
-            return false;
-        }
-        self.visit_keys(solution, &mut |key| {
-            self.may_hold(key) && self.find(key, solution).is_some()
-        })
+        !self.solutions.is_empty() && self.find(solution).is_some()
     }
 
     /// Whether a solution is the same as the hit at `recent`: a hit that is found again is often found many times in a row.
@@ -201,13 +203,7 @@ impl<T: Identity> Archive<T> {
             }
             return found.is_some();
         }
-        let mut found = None;
-        self.visit_keys(solution, &mut |key| {
-            if self.may_hold(key) {
-                found = self.find(key, solution);
-            }
-            found.is_some()
-        });
+        let found = self.find(solution);
         if let Some(index) = found {
             *recent = index as usize;
         }
@@ -221,16 +217,43 @@ impl<T: Identity> Archive<T> {
         (are_seen && latest.len() <= LATEST).then_some(latest)
     }
 
+    /// A hit that is the same, but for those of probes alone.
     #[inline]
-    fn find(&self, key: u64, solution: &T) -> Option<u32> {
-        self.table
-            .find(key, |&i| self.solutions[i as usize].same(solution))
-            .copied()
+    fn find(&self, solution: &T) -> Option<u32> {
+        if self.near.is_some() {
+            return self.find_near(solution, |index| !self.is_probe_only(index as usize));
+        }
+        let mut found = None;
+        solution.visit_keys(&mut |key| {
+            if self.may_hold(key) {
+                let is_same = |&index: &u32| self.solutions[index as usize].same(solution);
+                found = self.table.find(key, is_same).copied();
+            }
+            found.is_some()
+        });
+        found
+    }
+
+    /// A hit that is the same and passes `test`, by its place.
+    fn find_near(&self, solution: &T, mut test: impl FnMut(u32) -> bool) -> Option<u32> {
+        let mut found = None;
+        self.near.as_ref()?.any(solution, |index| {
+            let passes = self.solutions[index as usize].same(solution) && test(index);
+            found = passes.then_some(index);
+            passes
+        });
+        found
     }
 
     /// Whether a hit that is the same as `solution` passes `test`.
     pub(crate) fn any_same(&self, solution: &T, mut test: impl FnMut(&T) -> bool) -> bool {
-        self.visit_keys(solution, &mut |key| {
+        if self.near.is_some() {
+            let found = self.find_near(solution, |index| {
+                !self.is_probe_only(index as usize) && test(&self.solutions[index as usize])
+            });
+            return found.is_some();
+        }
+        solution.visit_keys(&mut |key| {
             self.table
                 .iter_hash(key)
                 .map(|&i| &self.solutions[i as usize])
@@ -275,14 +298,17 @@ impl<T: Identity> Archive<T> {
         let Ok(index) = u32::try_from(self.solutions.len()) else {
             return Insertion::Known;
         };
-        let key = self.key_of(&solution);
         self.solutions.push(solution);
+        let key = self.key_of(index);
+        if let Some(near) = &mut self.near {
+            near.insert(&self.solutions[index as usize], index);
+        }
         self.fitness.push(fitness);
         self.evaluations.push(evaluation);
         #[expect(clippy::cast_possible_truncation, reason = "7 digits of a time are plenty")]
         self.seconds.push(seconds as f32);
-        let (solutions, fine) = (&self.solutions, self.fine);
-        let rehash = |&i: &u32| key_of(&solutions[i as usize], fine);
+        let (solutions, by_number) = (&self.solutions, self.near.is_some());
+        let rehash = |&i: &u32| key_of(solutions, i, by_number);
         if probe {
             self.probe_only.insert_unique(key, index, rehash);
         } else {
@@ -290,18 +316,14 @@ impl<T: Identity> Archive<T> {
             self.note(key);
         }
         if self.is_crowded(key, index as usize) {
-            self.file_finely();
+            self.file_by_places();
         }
         Insertion::New
     }
 
     /// The index of a solution that is the same, probe-only or not.
     pub(crate) fn position(&self, solution: &T) -> Option<usize> {
-        let mut found = None;
-        self.visit_keys(solution, &mut |key| {
-            found = self.find(key, solution);
-            found.is_some()
-        });
+        let found = self.find(solution);
         found
             .or_else(|| self.position_probe_only(solution))
             .map(|index| index as usize)
@@ -311,8 +333,11 @@ impl<T: Identity> Archive<T> {
         if self.probe_only.is_empty() {
             return None;
         }
+        if self.near.is_some() {
+            return self.find_near(solution, |index| self.is_probe_only(index as usize));
+        }
         let mut found = None;
-        self.visit_keys(solution, &mut |key| {
+        solution.visit_keys(&mut |key| {
             found = self
                 .probe_only
                 .find(key, |&i| self.solutions[i as usize].same(solution))
@@ -324,12 +349,15 @@ impl<T: Identity> Archive<T> {
 
     /// Whether hit `index` is probe-only.
     pub(crate) fn is_probe_only(&self, index: usize) -> bool {
-        !self.probe_only.is_empty()
-            && self.solutions.get(index).is_some_and(|solution| {
-                self.probe_only
-                    .find(self.key_of(solution), |&i| i as usize == index)
+        let number = u32::try_from(index);
+        number.is_ok_and(|number| {
+            !self.probe_only.is_empty()
+                && index < self.solutions.len()
+                && self
+                    .probe_only
+                    .find(self.key_of(number), |&i| i == number)
                     .is_some()
-            })
+        })
     }
 
     /// Indices of the hits that only probes have found, ascending.
@@ -341,27 +369,27 @@ impl<T: Identity> Archive<T> {
 
     /// Marks hit `index` as probe-only; `false` if there is no such hit.
     pub(crate) fn set_probe_only(&mut self, index: u32) -> bool {
-        let Some(solution) = self.solutions.get(index as usize) else {
+        if index as usize >= self.solutions.len() {
             return false;
-        };
-        let key = self.key_of(solution);
+        }
+        let key = self.key_of(index);
         if let Ok(entry) = self.table.find_entry(key, |&i| i == index) {
             entry.remove();
-            let (solutions, fine) = (&self.solutions, self.fine);
+            let (solutions, by_number) = (&self.solutions, self.near.is_some());
             self.probe_only
-                .insert_unique(key, index, |&i| key_of(&solutions[i as usize], fine));
+                .insert_unique(key, index, |&i| key_of(solutions, i, by_number));
         }
         true
     }
 
     fn promote(&mut self, index: u32) {
-        let key = self.key_of(&self.solutions[index as usize]);
+        let key = self.key_of(index);
         if let Ok(entry) = self.probe_only.find_entry(key, |&i| i == index) {
             entry.remove();
         }
-        let (solutions, fine) = (&self.solutions, self.fine);
+        let (solutions, by_number) = (&self.solutions, self.near.is_some());
         self.table
-            .insert_unique(key, index, |&i| key_of(&solutions[i as usize], fine));
+            .insert_unique(key, index, |&i| key_of(solutions, i, by_number));
         self.note(key);
     }
 
@@ -373,52 +401,40 @@ impl<T: Identity> Archive<T> {
         self.fitness.shrink_to_fit();
         self.evaluations.shrink_to_fit();
         self.seconds.shrink_to_fit();
-        let (solutions, fine) = (&self.solutions, self.fine);
-        self.table
-            .shrink_to_fit(|&i| key_of(&solutions[i as usize], fine));
+        let (solutions, by_number) = (&self.solutions, self.near.is_some());
+        self.table.shrink_to_fit(|&i| key_of(solutions, i, by_number));
         self.filter = Vec::new();
     }
 
     #[inline]
-    fn key_of(&self, solution: &T) -> u64 {
-        key_of(solution, self.fine)
+    fn key_of(&self, index: u32) -> u64 {
+        key_of(&self.solutions, index, self.near.is_some())
     }
 
-    #[inline]
-    fn visit_keys(&self, solution: &T, visit: &mut impl FnMut(u64) -> bool) -> bool {
-        if self.fine {
-            solution.visit_fine_keys(visit)
-        } else {
-            solution.visit_keys(visit)
-        }
-    }
-
-    /// Whether the solution at `index`, the last one, shares its key with so many that fine keys cost less; looked at seldom.
+    /// Whether the solution at `index`, the last one, shares its key with so many that a look-up by its place costs less; looked at
+    /// seldom.
     #[inline]
     fn is_crowded(&self, key: u64, index: usize) -> bool {
         index.is_multiple_of(LOOK_EVERY)
-            && !self.fine
-            && self.solutions[index].has_fine_keys()
+            && self.near.is_none()
             && self.table.iter_hash(key).count() > CROWDED
+            && self.solutions[index].visit_place(&mut |_, _| ()).is_some()
     }
 
-    /// Files all solutions by their fine keys from now on.
-    fn file_finely(&mut self) {
-        self.fine = true;
-        let solutions = &self.solutions;
-        let rehash = |&i: &u32| solutions[i as usize].fine_key();
+    /// Files all solutions by their places from now on.
+    fn file_by_places(&mut self) {
+        let mut near = NearIndex::default();
+        for (solution, index) in self.solutions.iter().zip(0..) {
+            near.insert(solution, index);
+        }
+        self.near = Some(near);
+        let rehash = |&i: &u32| i.key();
         for table in [&mut self.table, &mut self.probe_only] {
             for index in core::mem::take(table) {
-                table.insert_unique(solutions[index as usize].fine_key(), index, rehash);
+                table.insert_unique(index.key(), index, rehash);
             }
         }
-        self.filter.fill(0);
-        if !self.filter.is_empty() {
-            for i in 0..self.solutions.len() {
-                let key = self.key_of(&self.solutions[i]);
-                self.set(key);
-            }
-        }
+        self.filter = Vec::new();
     }
 
     #[inline]
@@ -434,7 +450,7 @@ impl<T: Identity> Archive<T> {
 
     fn note(&mut self, key: u64) {
         let hits = self.solutions.len();
-        if hits > FILTERED {
+        if hits > FILTERED || self.near.is_some() {
             self.filter = Vec::new();
             return;
         }
@@ -444,7 +460,7 @@ impl<T: Identity> Archive<T> {
             self.filter
                 .resize((2 * hits * BITS).next_power_of_two().max(1024) / 64, 0);
             for i in 0..hits {
-                let key = self.key_of(&self.solutions[i]);
+                let key = self.solutions[i].key();
                 self.set(key);
             }
         } else {

@@ -12,7 +12,7 @@ use foldhash::fast::FixedState;
 use crate::scalar::{Real, copy_row};
 use crate::space::Region;
 
-use cells::{EDGE, FINE_EDGE, FineCells, cells_near, next_cell, own_cell, part_of_key};
+use cells::{cells_near, next_cell, own_cell};
 pub use separation::{AxisSeparation, Separation};
 
 /// The seed of every key; fixed, so that a run is the same on every machine.
@@ -41,20 +41,12 @@ pub trait Identity {
     fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
         visit(self.key())
     }
-    /// Whether it has keys that tell more solutions apart, for an archive where one key has come to stand for many.
+    /// For an archive where one key has come to stand for many: visits the coordinates that are told apart by a radius, each with it, and
+    /// returns a key of all the rest. Solutions that are the same have the same key here, the same radii and coordinates at most one
+    /// apart: the Euclidean distance, in radii. `None`, the default, if keys alone tell them apart.
     #[inline]
-    fn has_fine_keys(&self) -> bool {
-        false
-    }
-    /// The fine key under which it is filed then.
-    #[inline]
-    fn fine_key(&self) -> u64 {
-        self.key()
-    }
-    /// Visits the fine keys under which a solution that is the same may be filed.
-    #[inline]
-    fn visit_fine_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
-        self.visit_keys(visit)
+    fn visit_place(&self, _visit: &mut impl FnMut(f64, f64)) -> Option<u64> {
+        None
     }
 }
 
@@ -93,8 +85,6 @@ pub struct Located<S> {
 /// At most this many coordinates with a radius are hashed, by cells; the true distance decides, so more would only cost more
 /// look-ups. Exact coordinates are all hashed.
 const HASHED: usize = 3;
-/// At most this many in an archive where many points are in one cell.
-const FINELY_HASHED: usize = 6;
 
 /// Two points are not the same where one coordinate alone differs by so many radii: by more than rounding could hide.
 const FAR: f64 = 1.01;
@@ -215,9 +205,9 @@ impl<S: Real> Located<S> {
 
     /// Their cells.
     #[inline]
-    fn own_cells<const AXES: usize>(&self, edge: f64) -> [S; AXES] {
-        let mut cells = [S::zero(); AXES];
-        self.visit_blurred(AXES, |j, x, radius| cells[j] = own_cell(x, radius, edge));
+    fn own_cells(&self) -> [S; HASHED] {
+        let mut cells = [S::zero(); HASHED];
+        self.visit_blurred(HASHED, |j, x, radius| cells[j] = own_cell(x, radius));
         cells
     }
 }
@@ -250,7 +240,7 @@ impl<S: Real> Identity for Located<S> {
         if self.is_exact() {
             exact
         } else {
-            hash_cells(exact, self.own_cells(EDGE))
+            hash_cells(exact, self.own_cells())
         }
     }
 
@@ -266,7 +256,7 @@ impl<S: Real> Identity for Located<S> {
         }
         // For each coordinate its own cell, and the first and the last one that a solution within the radius may be in.
         let mut near = [[S::zero(); 3]; HASHED];
-        self.visit_blurred(HASHED, |j, x, radius| near[j] = cells_near(x, radius, EDGE));
+        self.visit_blurred(HASHED, |j, x, radius| near[j] = cells_near(x, radius));
         let own = near.map(|[own, _, _]| own);
         let ends = near.map(|[_, first, last]| [first, last]);
         let mut cells = ends.map(|[first, _]| first);
@@ -289,25 +279,31 @@ impl<S: Real> Identity for Located<S> {
         }
     }
 
-    fn has_fine_keys(&self) -> bool {
-        let blurred = match &self.separation {
-            Separation::Radius(radius) => usize::from(*radius > S::zero()) * self.coordinates.len(),
-            Separation::Axes(axes) => axes.iter().filter(|axis| axis.is_hashed_by_cells()).count(),
-        };
-        blurred > HASHED
-    }
-
-    fn fine_key(&self) -> u64 {
-        let cells = self.own_cells::<FINELY_HASHED>(FINE_EDGE);
-        let parts = cells.iter().enumerate();
-        parts.fold(self.exact_key(), |key, (axis, &cell)| {
-            key ^ part_of_key(axis, cell)
-        })
-    }
-
-    fn visit_fine_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
-        let mut cells = FineCells::new();
-        self.visit_blurred(FINELY_HASHED, |_, x, radius| cells.add(x, radius));
-        cells.visit(self.exact_key(), visit)
+    fn visit_place(&self, visit: &mut impl FnMut(f64, f64)) -> Option<u64> {
+        let (mut by_cells, mut around) = (0, 0);
+        match &self.separation {
+            Separation::Radius(radius) if *radius > S::zero() => {
+                by_cells = self.coordinates.len();
+                for x in &self.coordinates {
+                    visit(x.f64(), radius.f64());
+                }
+            }
+            Separation::Radius(_) => {}
+            Separation::Axes(axes) => {
+                for (&x, axis) in self.coordinates.iter().zip(axes.iter()) {
+                    if axis.is_hashed_by_cells() {
+                        by_cells += 1;
+                        visit(axis.measured(x).f64(), axis.radius().f64());
+                    } else if let Some(ends) = axis.on_circle(x) {
+                        around += 1;
+                        for end in ends {
+                            visit(end, axis.radius().f64());
+                        }
+                    }
+                }
+            }
+        }
+        // Otherwise keys say as much.
+        (around > 0 || by_cells > HASHED).then(|| self.exact_key())
     }
 }

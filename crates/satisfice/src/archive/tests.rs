@@ -36,28 +36,128 @@ fn located_solutions_agree_with_all_pairs() {
     }
 }
 
-/// Hits are crowded in a part of six dimensions, so that fine keys come into use on the way.
+/// Enters points, some of them as probes, and compares every look-up with all pairs.
+fn agrees_with_all_pairs<S: crate::Real>(
+    points: impl IntoIterator<Item = Located<S>>,
+) -> Archive<Located<S>> {
+    let mut archive = Archive::default();
+    let (mut most_probes, mut found) = (0, 0);
+    for (n, located) in points.into_iter().enumerate() {
+        let same = |archive: &Archive<Located<S>>| -> Vec<usize> {
+            let all = archive.solutions().iter().enumerate();
+            let same = all.filter(|(_, other)| other.same(&located));
+            same.map(|(i, _)| i).collect()
+        };
+        let (seen, probes): (Vec<usize>, Vec<usize>) = same(&archive)
+            .into_iter()
+            .partition(|&i| !archive.is_probe_only(i));
+        assert_eq!(archive.contains(&located), !seen.is_empty(), "{located:?}");
+        assert_eq!(archive.any_same(&located, |_| true), !seen.is_empty());
+        found += usize::from(!seen.is_empty());
+        match archive.position(&located) {
+            Some(index) => assert!(seen.contains(&index) || (seen.is_empty() && probes.contains(&index))),
+            None => assert!(seen.is_empty() && probes.is_empty()),
+        }
+        if seen.is_empty() {
+            let probing = n % 7 == 0;
+            let entered = archive.enter(located, -1.0, n as u64, 0.0, probing);
+            let expected = match (probes.is_empty(), probing) {
+                (true, _) => Insertion::New,
+                (false, true) => Insertion::Known,
+                (false, false) => Insertion::Promoted,
+            };
+            assert_eq!(entered, expected);
+        }
+        most_probes = most_probes.max(archive.probe_only());
+    }
+    assert!(
+        archive.near.is_some(),
+        "hits are filed by their places on the way"
+    );
+    assert!(most_probes > 10 && found > 10, "{most_probes} {found}");
+    assert!(archive.set_probe_only(0) && archive.is_probe_only(0));
+    archive.rest();
+    assert!(archive.iter().all(|hit| archive.contains(hit.solution)));
+    archive
+}
+
 #[test]
 fn crowded_solutions_agree_with_all_pairs() {
     let mut rng = crate::SearchRng::new(5);
-    let mut archive = Archive::default();
-    for n in 0..3000 {
+    agrees_with_all_pairs((0..3000).map(|_| {
         let point: Vec<f64> = (0..6).map(|_| 0.3 * rng.uniform()).collect();
-        let located = Located::new(&point, 0.05);
-        let near = |all: bool| {
-            let mut others = archive.solutions().iter().enumerate();
-            others.any(|(i, other)| (all || !archive.is_probe_only(i)) && located.same(other))
-        };
-        let (known, probe) = (near(false), n % 50 == 0 && !near(true));
-        assert_eq!(archive.contains(&located), known);
-        let is_new = !known && archive.enter(located, -1.0, n, 0.0, probe) != Insertion::Known;
-        assert_eq!(is_new, !known);
+        Located::new(&point, 0.1)
+    }));
+}
+
+/// Steps along single axes from known points, half a radius to two radii long, so that many coordinates are equal.
+#[test]
+fn steps_along_axes_agree_with_all_pairs() {
+    let mut rng = crate::SearchRng::new(6);
+    let mut points = vec![[0.0_f32; 20]];
+    for _ in 0..3000 {
+        let mut point = points[rng.below(points.len())];
+        point[rng.below(20)] += 0.05 * (rng.below(4) as f32 + 1.0) * (rng.below(3) as f32 - 1.0);
+        points.push(point);
     }
-    assert!(archive.fine && archive.probe_only() > 10);
-    let found = (0..archive.len()).filter(|&i| archive.position(&archive.solutions()[i]) == Some(i));
-    assert_eq!(found.count(), archive.len());
-    archive.rest();
-    assert!(archive.iter().all(|hit| archive.contains(hit.solution)));
+    agrees_with_all_pairs(points.iter().map(|point| Located::new(point, 0.1_f32)));
+}
+
+#[test]
+fn crowded_solutions_on_mixed_axes_agree_with_all_pairs() {
+    use crate::{AxisSeparation, Separation};
+    let mut rng = crate::SearchRng::new(7);
+    let apart = Separation::axes([
+        AxisSeparation::exact(),
+        AxisSeparation::within(0.3),
+        AxisSeparation::within(0.5).periodic(1.0),
+        AxisSeparation::within(0.2),
+        AxisSeparation::within(0.2).logarithmic(),
+        AxisSeparation::within(0.1),
+    ]);
+    agrees_with_all_pairs((0..3000).map(|_| {
+        let point = [
+            rng.below(2) as f64,
+            rng.uniform(),
+            rng.uniform(),
+            rng.uniform(),
+            rng.uniform().exp(),
+            0.3 * rng.uniform(),
+        ];
+        Located::new(&point, apart.clone())
+    }));
+}
+
+/// No axis has cells, so that all hits share one key.
+#[test]
+fn angles_agree_with_all_pairs() {
+    use crate::{AxisSeparation, Separation};
+    let mut rng = crate::SearchRng::new(9);
+    let angle = AxisSeparation::within(0.4_f32).periodic(core::f32::consts::TAU);
+    let apart = Separation::axes([angle; 3]);
+    agrees_with_all_pairs((0..3000).map(|_| {
+        let point = [0; 3].map(|_| core::f32::consts::TAU * (rng.uniform() as f32 - 0.5));
+        Located::new(&point, apart.clone())
+    }));
+}
+
+/// Beyond what a leaf holds.
+#[test]
+fn points_in_one_place_are_told_apart_by_the_rest() {
+    use crate::{AxisSeparation, Separation};
+    let apart = Separation::axes([
+        AxisSeparation::within(1e-10).periodic(1000.0),
+        AxisSeparation::within(0.1),
+        AxisSeparation::within(0.1),
+        AxisSeparation::within(0.1),
+        AxisSeparation::within(0.1),
+    ]);
+    let mut rng = crate::SearchRng::new(8);
+    let archive = agrees_with_all_pairs((0..2000).map(|_| {
+        let around = rng.below(600) as f64;
+        Located::new(&[around, 1.0, 1.0, 1.0, 1.0], apart.clone())
+    }));
+    assert!(archive.len() > 500);
 }
 
 /// Batches whose solutions are looked up together and entered one by one, probes among them, of which some are promoted.

@@ -101,6 +101,18 @@ impl<S: Real> AxisSeparation<S> {
         self.radius > S::zero() && self.period == S::zero()
     }
 
+    /// Where a periodic coordinate is on a circle of its period: a chord is no longer than the arc. `None` on other axes, and where
+    /// rounding is not small beside the radius.
+    pub(super) fn on_circle(&self, x: S) -> Option<[f64; 2]> {
+        let (period, radius) = (self.period.f64(), self.radius.f64());
+        if period <= 0.0 || radius <= 1e4 * S::epsilon().f64() * period {
+            return None;
+        }
+        let turn = core::f64::consts::TAU / period;
+        let (sine, cosine) = (self.measured(x).f64() % period * turn).sin_cos();
+        Some([cosine / turn, sine / turn])
+    }
+
     /// The coordinate that distances are measured by.
     #[inline]
     pub(super) fn measured(&self, x: S) -> S {
