@@ -1,7 +1,8 @@
 //! Hits by their places: a k-d tree (Bentley 1975) with the bounding box of every node.
 //!
 //! Cells of a grid say little in many dimensions: where hits are a separation apart, thousands share the cells of a few coordinates, and a
-//! ball meets too many cells of all of them. A box is passed by as soon as it is farther away than a radius.
+//! ball meets too many cells of all of them. A box is passed by as soon as it is farther away than a radius. Where hits come in one
+//! direction, a part of the tree that has become deep is built again (Galperin, Rivest 1993).
 
 use core::cell::RefCell;
 
@@ -13,6 +14,10 @@ use crate::identity::Identity;
 const LEAF: usize = 32;
 /// Squared distances, in radii, of what may be the same are at most this, by what distances are rounded.
 const FARTHEST: f64 = 1.001;
+/// Where a path is longer than in a tree whose parts have at most `LOPSIDED` of their points on one side, a part is built again that has more
+/// there and `MORE` times the share that it had when it was built: so it has grown by a third at least, and helps.
+const LOPSIDED: f64 = 0.7;
+const MORE: f64 = 1.2;
 /// So many coordinates are looked at together: each point has a multiple of them.
 const LANES: usize = 4;
 
@@ -27,6 +32,8 @@ pub(super) struct NearIndex {
 struct Point {
     coordinates: Vec<f64>,
     radii: Vec<f64>,
+    /// Nodes that are left to look at.
+    left: Vec<usize>,
 }
 
 thread_local! {
@@ -35,7 +42,7 @@ thread_local! {
 }
 
 /// Calls `use_point` with the place of a solution and the key of the rest of it; `None` if it has no place.
-fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(u64, &Point) -> R) -> Option<R> {
+fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(u64, &mut Point) -> R) -> Option<R> {
     let mut point = POINT.take();
     point.coordinates.clear();
     point.radii.clear();
@@ -46,7 +53,7 @@ fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(u64, &Point) 
     let count = point.radii.len().next_multiple_of(LANES);
     point.coordinates.resize(count, 0.0);
     point.radii.resize(count, 1.0);
-    let result = key.map(|key| use_point(key, &point));
+    let result = key.map(|key| use_point(key, &mut point));
     POINT.set(point);
     result
 }
@@ -87,7 +94,7 @@ impl NearIndex {
         let found = with_point(solution, |key, point| {
             let trees = self.trees.get(&key).map_or(&[][..], Vec::as_slice);
             let mut trees = trees.iter().filter(|tree| tree.radii == point.radii);
-            trees.any(|tree| tree.any(&point.coordinates, &mut test))
+            trees.any(|tree| tree.any(&point.coordinates, &mut point.left, &mut test))
         });
         found.unwrap_or(false)
     }
@@ -105,10 +112,23 @@ struct Tree {
     nodes: Vec<Node>,
     /// Lower and upper ends of the box of each node.
     boxes: Vec<f64>,
+    /// Pairs of nodes, by the first, that are not in use.
+    free: Vec<usize>,
+    /// Memory of one way down.
+    path: Vec<usize>,
 }
 
 #[derive(Debug, Clone)]
-enum Node {
+struct Node {
+    /// Points below.
+    count: usize,
+    /// The share of them on the larger side, when it was split.
+    share: f64,
+    kind: NodeKind,
+}
+
+#[derive(Debug, Clone)]
+enum NodeKind {
     Leaf {
         numbers: Vec<u32>,
         /// Their coordinates, one point after the other.
@@ -120,36 +140,65 @@ enum Node {
 
 impl Tree {
     fn new(radii: &[f64]) -> Self {
-        Self {
+        let mut tree = Self {
             radii: radii.to_vec(),
             // No distance may come out too large, and none is no number where points are equal.
             scales: radii.iter().map(|radius| radius.recip().min(f64::MAX)).collect(),
             nodes: Vec::new(),
             boxes: Vec::new(),
-        }
+            free: Vec::new(),
+            path: Vec::new(),
+        };
+        tree.add_node();
+        tree
     }
 
     fn dimension(&self) -> usize {
         self.radii.len()
     }
 
-    /// Adds a leaf of these points.
-    fn push_leaf(&mut self, numbers: Vec<u32>, points: Vec<f64>) {
+    /// Adds a node that is an empty leaf.
+    fn add_node(&mut self) {
+        self.nodes.push(Node {
+            count: 0,
+            share: 1.0,
+            kind: NodeKind::Leaf {
+                numbers: Vec::new(),
+                points: Vec::new(),
+            },
+        });
+        self.boxes.resize(2 * self.dimension() * self.nodes.len(), 0.0);
+    }
+
+    /// Makes a node a leaf of these points.
+    fn set_leaf(&mut self, node: usize, numbers: Vec<u32>, points: Vec<f64>) {
         let dimension = self.dimension();
-        let start = self.boxes.len();
-        self.boxes.resize(start + dimension, f64::INFINITY);
-        self.boxes.resize(start + 2 * dimension, f64::NEG_INFINITY);
+        let (lower, upper) = self.box_of_mut(node);
+        lower.fill(f64::INFINITY);
+        upper.fill(f64::NEG_INFINITY);
         for point in points.chunks_exact(dimension) {
-            self.extend(self.nodes.len(), point);
+            self.extend(node, point);
         }
-        self.nodes.push(Node::Leaf { numbers, points });
+        self.nodes[node] = Node {
+            count: numbers.len(),
+            share: 1.0,
+            kind: NodeKind::Leaf { numbers, points },
+        };
+    }
+
+    fn box_of(&self, node: usize) -> (&[f64], &[f64]) {
+        let dimension = self.dimension();
+        self.boxes[2 * dimension * node..2 * dimension * (node + 1)].split_at(dimension)
+    }
+
+    fn box_of_mut(&mut self, node: usize) -> (&mut [f64], &mut [f64]) {
+        let dimension = self.dimension();
+        self.boxes[2 * dimension * node..2 * dimension * (node + 1)].split_at_mut(dimension)
     }
 
     /// Makes the box of a node hold a point.
     fn extend(&mut self, node: usize, point: &[f64]) {
-        let dimension = self.dimension();
-        let (lower, upper) =
-            self.boxes[2 * dimension * node..2 * dimension * (node + 1)].split_at_mut(dimension);
+        let (lower, upper) = self.box_of_mut(node);
         for ((lower, upper), &x) in lower.iter_mut().zip(upper).zip(point) {
             *lower = lower.min(x);
             *upper = upper.max(x);
@@ -157,45 +206,54 @@ impl Tree {
     }
 
     fn insert(&mut self, point: &[f64], number: u32) {
-        if self.nodes.is_empty() {
-            self.push_leaf(Vec::new(), Vec::new());
+        if self.nodes[0].count == 0 {
+            self.set_leaf(0, Vec::new(), Vec::new());
         }
+        self.path.clear();
         let mut at = 0;
         loop {
             self.extend(at, point);
-            match &mut self.nodes[at] {
-                Node::Split { axis, value, first } => at = *first + usize::from(point[*axis] >= *value),
-                Node::Leaf { numbers, points } => {
+            self.path.push(at);
+            let node = &mut self.nodes[at];
+            node.count += 1;
+            match &mut node.kind {
+                NodeKind::Split { axis, value, first } => {
+                    at = *first + usize::from(point[*axis] >= *value);
+                }
+                NodeKind::Leaf { numbers, points } => {
                     numbers.push(number);
                     points.extend_from_slice(point);
                     if numbers.len().is_multiple_of(LEAF + 1) {
                         self.split(at);
                     }
-                    return;
+                    break;
                 }
             }
         }
+        let leaves = 1.0 + self.nodes[0].count as f64 / (LEAF / 2) as f64;
+        if self.path.len() as f64 > 2.0 + leaves.ln() / -LOPSIDED.ln() {
+            self.balance();
+        }
     }
 
-    /// Splits a leaf across its widest axis, in the middle of its points; not if all of them are in one place.
-    fn split(&mut self, leaf: usize) {
+    /// Splits a leaf across its widest axis, in the middle of its points; not if all of them are in one place. Returns the first
+    /// part.
+    fn split(&mut self, leaf: usize) -> Option<usize> {
         let dimension = self.dimension();
-        let (lower, upper) = self.boxes[2 * dimension * leaf..2 * dimension * (leaf + 1)].split_at(dimension);
+        let (lower, upper) = self.box_of(leaf);
         let widths = lower.iter().zip(upper).zip(&self.scales);
         let widest = widths
             .map(|((lower, upper), scale)| (upper - lower) * scale)
             .enumerate()
             .max_by(|a, b| a.1.total_cmp(&b.1));
-        let (Some((axis, _)), Node::Leaf { numbers, points }) = (widest, &self.nodes[leaf]) else {
-            return;
+        let (Some((axis, _)), NodeKind::Leaf { numbers, points }) = (widest, &self.nodes[leaf].kind) else {
+            return None;
         };
         let mut order: Vec<f64> = points.iter().skip(axis).step_by(dimension).copied().collect();
         order.sort_unstable_by(f64::total_cmp);
         let middle = order.len() / 2;
         let steps = (1..order.len()).filter(|&i| order[i - 1] < order[i]);
-        let Some(step) = steps.min_by_key(|&i| i.abs_diff(middle)) else {
-            return;
-        };
+        let step = steps.min_by_key(|&i| i.abs_diff(middle))?;
         let value = order[step];
         let mut parts = [(Vec::new(), Vec::new()), (Vec::new(), Vec::new())];
         for (point, &number) in points.chunks_exact(dimension).zip(numbers) {
@@ -203,31 +261,87 @@ impl Tree {
             numbers.push(number);
             points.extend_from_slice(point);
         }
-        let first = self.nodes.len();
-        self.nodes[leaf] = Node::Split { axis, value, first };
-        for (numbers, points) in parts {
-            self.push_leaf(numbers, points);
+        let first = self.free.pop().unwrap_or_else(|| {
+            self.add_node();
+            self.add_node();
+            self.nodes.len() - 2
+        });
+        let larger = step.max(order.len() - step);
+        self.nodes[leaf].share = larger as f64 / order.len() as f64;
+        self.nodes[leaf].kind = NodeKind::Split { axis, value, first };
+        for (node, (numbers, points)) in (first..).zip(parts) {
+            self.set_leaf(node, numbers, points);
+        }
+        Some(first)
+    }
+
+    /// Builds the lowest lopsided part on the last way down again.
+    fn balance(&mut self) {
+        let is_lopsided = |node: &Node| match node.kind {
+            NodeKind::Split { first, .. } => {
+                let larger = self.nodes[first].count.max(self.nodes[first + 1].count);
+                larger as f64 > LOPSIDED.max(MORE * node.share) * node.count as f64
+            }
+            NodeKind::Leaf { .. } => false,
+        };
+        let lowest = self
+            .path
+            .iter()
+            .rev()
+            .find(|&&node| is_lopsided(&self.nodes[node]));
+        if let Some(&node) = lowest {
+            self.rebuild(node);
         }
     }
 
-    fn any(&self, point: &[f64], test: &mut impl FnMut(u32) -> bool) -> bool {
-        !self.nodes.is_empty() && self.any_below(0, point, test)
+    /// Builds the part below a node again. Cost: O(n log^2 n) for its n points.
+    fn rebuild(&mut self, top: usize) {
+        let (mut all, mut places) = (Vec::new(), Vec::new());
+        let mut left = vec![top];
+        while let Some(node) = left.pop() {
+            match &mut self.nodes[node].kind {
+                NodeKind::Leaf { numbers, points } => {
+                    all.append(numbers);
+                    places.append(points);
+                }
+                NodeKind::Split { first, .. } => {
+                    left.extend([*first, *first + 1]);
+                    self.free.push(*first);
+                }
+            }
+        }
+        self.set_leaf(top, all, places);
+        left.push(top);
+        while let Some(node) = left.pop() {
+            if self.nodes[node].count > LEAF
+                && let Some(first) = self.split(node)
+            {
+                left.extend([first, first + 1]);
+            }
+        }
     }
 
-    fn any_below(&self, node: usize, point: &[f64], test: &mut impl FnMut(u32) -> bool) -> bool {
-        if !self.is_box_near(node, point) {
-            return false;
-        }
-        match &self.nodes[node] {
-            Node::Split { axis, value, first } => {
-                let own = usize::from(point[*axis] >= *value);
-                self.any_below(first + own, point, test) || self.any_below(first + 1 - own, point, test)
+    fn any(&self, point: &[f64], left: &mut Vec<usize>, test: &mut impl FnMut(u32) -> bool) -> bool {
+        left.clear();
+        left.push(0);
+        while let Some(at) = left.pop() {
+            if !self.is_box_near(at, point) {
+                continue;
             }
-            Node::Leaf { numbers, points } => {
-                let mut points = points.chunks_exact(self.dimension()).zip(numbers);
-                points.any(|(other, &number)| self.is_near(point, other) && test(number))
+            match &self.nodes[at].kind {
+                NodeKind::Split { axis, value, first } => {
+                    let own = usize::from(point[*axis] >= *value);
+                    left.extend([first + 1 - own, first + own]);
+                }
+                NodeKind::Leaf { numbers, points } => {
+                    let mut points = points.chunks_exact(self.dimension()).zip(numbers);
+                    if points.any(|(other, &number)| self.is_near(point, other) && test(number)) {
+                        return true;
+                    }
+                }
             }
         }
+        false
     }
 
     fn is_near(&self, a: &[f64], b: &[f64]) -> bool {
@@ -239,8 +353,7 @@ impl Tree {
     }
 
     fn is_box_near(&self, node: usize, point: &[f64]) -> bool {
-        let dimension = self.dimension();
-        let (lower, upper) = self.boxes[2 * dimension * node..2 * dimension * (node + 1)].split_at(dimension);
+        let (lower, upper) = self.box_of(node);
         let ends = lower.chunks_exact(LANES).zip(upper.chunks_exact(LANES));
         let lanes = point.chunks_exact(LANES).zip(ends);
         is_within(
@@ -252,10 +365,77 @@ impl Tree {
     }
 
     fn bytes(&self) -> usize {
-        let leaves = self.nodes.iter().map(|node| match node {
-            Node::Leaf { numbers, points } => numbers.capacity() * 4 + points.capacity() * 8,
-            Node::Split { .. } => 0,
+        let leaves = self.nodes.iter().map(|node| match &node.kind {
+            NodeKind::Leaf { numbers, points } => numbers.capacity() * 4 + points.capacity() * 8,
+            NodeKind::Split { .. } => 0,
         });
         leaves.sum::<usize>() + self.nodes.capacity() * size_of::<Node>() + self.boxes.capacity() * 8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Located;
+
+    /// The longest way down.
+    fn depth(index: &NearIndex) -> usize {
+        let tree = &index.trees.values().next().unwrap()[0];
+        let (mut deepest, mut left) = (0, vec![(0, 1)]);
+        while let Some((node, depth)) = left.pop() {
+            deepest = deepest.max(depth);
+            if let NodeKind::Split { first, .. } = tree.nodes[node].kind {
+                left.extend([(first, depth + 1), (first + 1, depth + 1)]);
+            }
+        }
+        let used = tree.nodes.len() - 2 * tree.free.len();
+        assert_eq!(tree.nodes[0].count, index.count());
+        assert!(used < index.count() / 4 + 2, "{used} nodes");
+        deepest
+    }
+
+    impl NearIndex {
+        /// Hits, counted leaf by leaf.
+        fn count(&self) -> usize {
+            let nodes = self.trees.values().flatten().flat_map(|tree| &tree.nodes);
+            let leaves = nodes.map(|node| match &node.kind {
+                NodeKind::Leaf { numbers, .. } => numbers.len(),
+                NodeKind::Split { .. } => 0,
+            });
+            leaves.sum()
+        }
+    }
+
+    #[test]
+    fn hits_in_one_direction_do_not_make_it_deep() {
+        let mut index = NearIndex::default();
+        let at = |x: f64| Located::new(&[x, 2.0 * x, 0.0, 1.0, 0.0], 0.5);
+        for number in 0..20_000 {
+            index.insert(&at(f64::from(number)), number);
+        }
+        assert!(depth(&index) < 30, "{}", depth(&index));
+        for number in (0..20_000).step_by(7) {
+            assert!(index.any(&at(f64::from(number) + 0.1), |found| found == number));
+            assert!(!index.any(&at(f64::from(number) + 0.5), |_| true));
+        }
+    }
+
+    /// Along each of many axes: most points are zero on each.
+    #[test]
+    fn a_star_is_searched_without_recursion() {
+        let mut index = NearIndex::default();
+        let at = |number: u32| {
+            let mut x = vec![0.0; 200];
+            x[number as usize % 200] = f64::from(1 + number / 200);
+            Located::new(&x, 0.5)
+        };
+        for number in 0..8000 {
+            index.insert(&at(number), number);
+        }
+        assert!(depth(&index) < 2000, "{}", depth(&index));
+        for number in (0..8000).step_by(31) {
+            assert!(index.any(&at(number), |found| found == number));
+            assert!(!index.any(&at(number), |found| found != number));
+        }
     }
 }
