@@ -41,12 +41,12 @@ pub trait Identity {
     fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {
         visit(self.key())
     }
-    /// For an archive where one key has come to stand for many: visits the coordinates that are told apart by a radius, each with it, and
-    /// returns a key of all the rest. Solutions that are the same have the same key here, the same radii and coordinates at most one
-    /// apart: the Euclidean distance, in radii. `None`, the default, if keys alone tell them apart.
+    /// For an archive where one key has come to stand for many: visits coordinates, each with a radius, and returns whether they tell
+    /// more apart than keys do. Solutions that are the same have the same radii, and coordinates at most one apart: the Euclidean
+    /// distance, in radii. Where a radius is zero they are equal. The default has no coordinates.
     #[inline]
-    fn visit_place(&self, _visit: &mut impl FnMut(f64, f64)) -> Option<u64> {
-        None
+    fn visit_place(&self, _visit: &mut impl FnMut(f64, f64)) -> bool {
+        false
     }
 }
 
@@ -279,20 +279,19 @@ impl<S: Real> Identity for Located<S> {
         }
     }
 
-    fn visit_place(&self, visit: &mut impl FnMut(f64, f64)) -> Option<u64> {
+    fn visit_place(&self, visit: &mut impl FnMut(f64, f64)) -> bool {
         let (mut by_cells, mut around) = (0, 0);
         match &self.separation {
-            Separation::Radius(radius) if *radius > S::zero() => {
-                by_cells = self.coordinates.len();
+            Separation::Radius(radius) => {
+                by_cells = usize::from(*radius > S::zero()) * self.coordinates.len();
                 for x in &self.coordinates {
                     visit(x.f64(), radius.f64());
                 }
             }
-            Separation::Radius(_) => {}
             Separation::Axes(axes) => {
                 for (&x, axis) in self.coordinates.iter().zip(axes.iter()) {
-                    if axis.is_hashed_by_cells() {
-                        by_cells += 1;
+                    if axis.is_hashed_by_cells() || axis.is_hashed_exactly() {
+                        by_cells += usize::from(axis.is_hashed_by_cells());
                         visit(axis.measured(x).f64(), axis.radius().f64());
                     } else if let Some(ends) = axis.on_circle(x) {
                         around += 1;
@@ -303,7 +302,6 @@ impl<S: Real> Identity for Located<S> {
                 }
             }
         }
-        // Otherwise keys say as much.
-        (around > 0 || by_cells > HASHED).then(|| self.exact_key())
+        around > 0 || by_cells > HASHED
     }
 }

@@ -6,8 +6,6 @@
 
 use core::cell::RefCell;
 
-use hashbrown::HashMap;
-
 use crate::identity::Identity;
 
 /// Points of a leaf, at most, unless all are in one place.
@@ -21,10 +19,10 @@ const MORE: f64 = 1.2;
 /// So many coordinates are looked at together: each point has a multiple of them.
 const LANES: usize = 4;
 
-/// The hits of an archive: a tree for each key of what is not told apart by a radius.
+/// The hits of an archive: a tree, and another one for each further list of radii, of which there should be none.
 #[derive(Debug, Clone, Default)]
 pub(super) struct NearIndex {
-    trees: HashMap<u64, Vec<Tree>, foldhash::fast::FixedState>,
+    trees: Vec<Tree>,
 }
 
 /// A place: coordinates, and the radius of each.
@@ -41,19 +39,19 @@ thread_local! {
     static POINT: RefCell<Point> = RefCell::default();
 }
 
-/// Calls `use_point` with the place of a solution and the key of the rest of it; `None` if it has no place.
-fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(u64, &mut Point) -> R) -> Option<R> {
+/// Calls `use_point` with the place of a solution.
+fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(&mut Point) -> R) -> R {
     let mut point = POINT.take();
     point.coordinates.clear();
     point.radii.clear();
-    let key = solution.visit_place(&mut |coordinate, radius| {
+    solution.visit_place(&mut |coordinate, radius| {
         point.coordinates.push(coordinate);
         point.radii.push(radius);
     });
     let count = point.radii.len().next_multiple_of(LANES);
     point.coordinates.resize(count, 0.0);
     point.radii.resize(count, 1.0);
-    let result = key.map(|key| use_point(key, &mut point));
+    let result = use_point(&mut point);
     POINT.set(point);
     result
 }
@@ -78,29 +76,26 @@ fn is_within<T>(chunks: impl Iterator<Item = T>, distance: impl Fn(&T, usize) ->
 impl NearIndex {
     /// Adds hit `number`. Cost: O(D log n), amortised.
     pub(super) fn insert<T: Identity>(&mut self, solution: &T, number: u32) {
-        with_point(solution, |key, point| {
-            let trees = self.trees.entry(key).or_default();
-            let known = trees.iter().position(|tree| tree.radii == point.radii);
+        with_point(solution, |point| {
+            let known = self.trees.iter().position(|tree| tree.radii == point.radii);
             let index = known.unwrap_or_else(|| {
-                trees.push(Tree::new(&point.radii));
-                trees.len() - 1
+                self.trees.push(Tree::new(&point.radii));
+                self.trees.len() - 1
             });
-            trees[index].insert(&point.coordinates, number);
+            self.trees[index].insert(&point.coordinates, number);
         });
     }
 
     /// Whether one of the hits that may be the same as `solution` passes `test`.
     pub(super) fn any<T: Identity>(&self, solution: &T, mut test: impl FnMut(u32) -> bool) -> bool {
-        let found = with_point(solution, |key, point| {
-            let trees = self.trees.get(&key).map_or(&[][..], Vec::as_slice);
-            let mut trees = trees.iter().filter(|tree| tree.radii == point.radii);
+        with_point(solution, |point| {
+            let mut trees = self.trees.iter().filter(|tree| tree.radii == point.radii);
             trees.any(|tree| tree.any(&point.coordinates, &mut point.left, &mut test))
-        });
-        found.unwrap_or(false)
+        })
     }
 
     pub(super) fn bytes(&self) -> usize {
-        self.trees.values().flatten().map(Tree::bytes).sum()
+        self.trees.iter().map(Tree::bytes).sum()
     }
 }
 
@@ -142,7 +137,7 @@ impl Tree {
     fn new(radii: &[f64]) -> Self {
         let mut tree = Self {
             radii: radii.to_vec(),
-            // No distance may come out too large, and none is no number where points are equal.
+            // Points that are equal have a distance of zero, also along an axis without a radius.
             scales: radii.iter().map(|radius| radius.recip().min(f64::MAX)).collect(),
             nodes: Vec::new(),
             boxes: Vec::new(),
@@ -380,7 +375,7 @@ mod tests {
 
     /// The longest way down.
     fn depth(index: &NearIndex) -> usize {
-        let tree = &index.trees.values().next().unwrap()[0];
+        let tree = &index.trees[0];
         let (mut deepest, mut left) = (0, vec![(0, 1)]);
         while let Some((node, depth)) = left.pop() {
             deepest = deepest.max(depth);
@@ -397,7 +392,7 @@ mod tests {
     impl NearIndex {
         /// Hits, counted leaf by leaf.
         fn count(&self) -> usize {
-            let nodes = self.trees.values().flatten().flat_map(|tree| &tree.nodes);
+            let nodes = self.trees.iter().flat_map(|tree| &tree.nodes);
             let leaves = nodes.map(|node| match &node.kind {
                 NodeKind::Leaf { numbers, .. } => numbers.len(),
                 NodeKind::Split { .. } => 0,
