@@ -11,10 +11,7 @@ use crate::spec::RunSpec;
 
 /// A checkpoint of a run: its specification, the reports of the slices that have ended, and the state of the search.
 #[derive(Serialize, Deserialize)]
-#[serde(bound(
-    serialize = "T: Serialize + DeserializeOwned + satisfice::Identity",
-    deserialize = "T: Serialize + DeserializeOwned + satisfice::Identity"
-))]
+#[serde(bound = "T: Serialize + DeserializeOwned + satisfice::Identity")]
 pub(crate) struct SavedRun<T> {
     #[serde(flatten)]
     pub(crate) spec: RunSpec,

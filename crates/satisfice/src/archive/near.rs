@@ -48,7 +48,7 @@ fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(&mut Point) -
         point.coordinates.push(coordinate);
         point.radii.push(radius);
     });
-    let count = point.radii.len().next_multiple_of(LANES);
+    let count = point.radii.len().max(1).next_multiple_of(LANES);
     point.coordinates.resize(count, 0.0);
     point.radii.resize(count, 1.0);
     let result = use_point(&mut point);
@@ -74,7 +74,7 @@ fn is_within<T>(chunks: impl Iterator<Item = T>, distance: impl Fn(&T, usize) ->
 }
 
 impl NearIndex {
-    /// Adds hit `number`. Cost: O(D log n), amortised.
+    /// Adds hit `number`. Cost: O(D) for each node on one way down, some log n, and what is built again.
     pub(super) fn insert<T: Identity>(&mut self, solution: &T, number: u32) {
         with_point(solution, |point| {
             let known = self.trees.iter().position(|tree| tree.radii == point.radii);

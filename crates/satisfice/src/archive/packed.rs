@@ -1,4 +1,4 @@
-//! In a text, a checkpoint has its hits as packed columns: a third to a fifth of the list's length.
+//! In a text, a checkpoint has its hits as packed columns, which are much shorter than their list.
 
 use core::borrow::Borrow;
 
@@ -57,7 +57,7 @@ where
 {
     let archive = if deserializer.is_human_readable() {
         match ReadHits::deserialize(deserializer)? {
-            ReadHits::Packed(state) => unpack(&state).map_err(D::Error::custom)?.into_archive(),
+            ReadHits::Packed(state) => unpack(&state).map_err(D::Error::custom)?,
             ReadHits::List(archive) => archive,
         }
     } else {
@@ -93,48 +93,25 @@ fn pack<T: Packable>(archive: &Archive<T>) -> Option<State> {
     Some(state)
 }
 
-/// The columns of an archive.
-struct Columns<T> {
-    solutions: Vec<T>,
-    fitness: Vec<f64>,
-    evaluations: Vec<u64>,
-    seconds: Vec<f32>,
-}
-
 /// # Errors
 /// [`Error::State`] if these are not such columns, or not of one length.
-fn unpack<T: Packable>(state: &State) -> Result<Columns<T>, Error> {
+fn unpack<T: Packable>(state: &State) -> Result<Archive<T>, Error> {
     let mut reader = Reader::new(state);
     let solutions: Vec<T> = reader.read()?;
-    let mut evaluations: Vec<u64> = reader.read()?;
+    let steps: Vec<u64> = reader.read()?;
     let fitness: Vec<f64> = read_rows(&mut reader)?;
     let seconds: Vec<f32> = read_rows(&mut reader)?;
     reader.finish()?;
-    if [evaluations.len(), fitness.len(), seconds.len()] != [solutions.len(); 3] {
+    if [steps.len(), fitness.len(), seconds.len()] != [solutions.len(); 3] {
         return Err(Error::State("its hits do not fit each other".to_owned()));
     }
-    let mut before = 0_u64;
-    for evaluation in &mut evaluations {
-        before = before.wrapping_add(*evaluation);
-        *evaluation = before;
+    let (mut archive, mut evaluation) = (Archive::default(), 0_u64);
+    let numbers = steps.into_iter().zip(fitness).zip(seconds);
+    for (solution, ((step, fitness), seconds)) in solutions.into_iter().zip(numbers) {
+        evaluation = evaluation.wrapping_add(step);
+        archive.insert(solution, fitness, evaluation, f64::from(seconds));
     }
-    Ok(Columns {
-        solutions,
-        fitness,
-        evaluations,
-        seconds,
-    })
-}
-
-impl<T: Identity> Columns<T> {
-    fn into_archive(self) -> Archive<T> {
-        let mut archive = Archive::default();
-        let numbers = self.fitness.into_iter().zip(self.evaluations).zip(self.seconds);
-        for (solution, ((fitness, evaluation), seconds)) in self.solutions.into_iter().zip(numbers) {
-            archive.insert(solution, fitness, evaluation, f64::from(seconds));
-        }
-        archive
-    }
+    Ok(archive)
 }
 
 #[cfg(test)]

@@ -128,6 +128,18 @@ fn crowded_solutions_on_mixed_axes_agree_with_all_pairs() {
     }));
 }
 
+#[test]
+fn a_point_without_coordinates_among_crowded_ones_is_found() {
+    let mut archive = Archive::default();
+    for n in 0..200 {
+        archive.insert(Located::new(&[0.0, 0.0, 0.0, f64::from(n)], 0.5), 0.0, 1, 0.0);
+    }
+    let none = Located::new(&[], 0.5);
+    assert!(archive.near.is_some() && !archive.contains(&none));
+    archive.insert(none.clone(), 0.0, 1, 0.0);
+    assert!(archive.contains(&none));
+}
+
 /// No axis has cells, so that all hits share one key.
 #[test]
 fn angles_agree_with_all_pairs() {

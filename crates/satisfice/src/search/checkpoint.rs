@@ -36,10 +36,7 @@ pub struct Checkpoint<T> {
 
 /// What a [`Checkpoint`] holds.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-#[serde(bound(
-    serialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity",
-    deserialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity"
-))]
+#[serde(bound = "T: serde::Serialize + serde::de::DeserializeOwned + Identity")]
 pub struct Contents<T> {
     /// The version of this crate; another version is refused, since its results may differ.
     pub version: String,
@@ -77,10 +74,7 @@ pub struct Contents<T> {
 
 /// A slice that has begun and not ended.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-#[serde(bound(
-    serialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity",
-    deserialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity"
-))]
+#[serde(bound = "T: serde::Serialize + serde::de::DeserializeOwned + Identity")]
 pub struct Unfinished<T> {
     /// Its budget, without the cancellation.
     pub budget: Budget,

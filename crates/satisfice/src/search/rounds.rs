@@ -79,10 +79,7 @@ impl<P: SatisficingProblem + ?Sized> core::fmt::Debug for Rounds<P> {
 
 /// What one island does in one round. See [`Rounds`].
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-#[serde(bound(
-    serialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity",
-    deserialize = "T: serde::Serialize + serde::de::DeserializeOwned + Identity"
-))]
+#[serde(bound = "T: serde::Serialize + serde::de::DeserializeOwned + Identity")]
 pub struct IslandRound<T> {
     /// Which island it is, from 0.
     island: usize,

@@ -1,7 +1,7 @@
 //! How large a checkpoint is.
 
 use satisfice::engine::{self, EngineSpec};
-use satisfice::{Budget, Encoding, Neighbourhood, SatisficingProblem, Search, Space, from_fn};
+use satisfice::{Budget, Encoding, Located, Neighbourhood, SatisficingProblem, Search, Space, from_fn};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -22,21 +22,22 @@ fn a_checkpoint_takes_few_bytes_a_hit() {
     assert!(most > 8_000, "{most}");
 }
 
+/// The ball of radius `delta.sqrt()` in a cube.
+fn ball(axes: usize, delta: f64) -> impl SatisficingProblem<Scalar = f64, Solution = Located<f64>> {
+    from_fn(Space::cube(axes, -1.0, 1.0).unwrap(), delta, |x: &[f64]| {
+        x.iter().map(|x| (x - 0.1) * (x - 0.1)).sum()
+    })
+}
+
 #[test]
 fn coordinates_of_many_digits_do_not_make_it_longer() {
-    let ball = from_fn(Space::cube(6, -1.0, 1.0).unwrap(), 0.5, |x: &[f64]| {
-        x.iter().map(|x| (x - 0.1) * (x - 0.1)).sum()
-    });
-    let most = most_hits(&ball);
+    let most = most_hits(&ball(6, 0.5));
     assert!(most > 20_000, "{most}");
 }
 
 #[test]
 fn many_axes_do_not_make_that_of_the_default_longer() {
-    let sphere = from_fn(Space::cube(20, -1.0, 1.0).unwrap(), 0.1, |x: &[f64]| {
-        x.iter().map(|x| (x - 0.1) * (x - 0.1)).sum()
-    });
-    assert!(hits_of(engine::find("portfolio").unwrap(), &sphere) > 0);
+    assert!(hits_of(engine::find("portfolio").unwrap(), &ball(20, 0.1)) > 0);
 }
 
 /// Runs every engine and looks at the size of its checkpoint; the most hits of any.
