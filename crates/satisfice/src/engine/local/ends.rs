@@ -127,14 +127,15 @@ impl Ends {
         distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// An end from which to search on: no hit, none better within `apart`, a good one from which few have searched. That one more
-    /// has is noted. Cost: O(n log n).
+    /// An end from which to search on: no hit, none better within `apart`, a good one from which few have searched: in proportion to
+    /// the inverse square of its rank. That one more has is noted. Cost: O(n log n).
     pub(super) fn promising(&mut self, apart: f64) -> Option<usize> {
         let Self { ends, list, .. } = self;
         list.clear();
         list.extend((0..ends.len()).filter(|&index| !ends[index].is_hit && ends[index].apart >= apart));
         list.sort_unstable_by(|&a, &b| ends[a].fitness.total_cmp(&ends[b].fitness).then(a.cmp(&b)));
-        let cost = |&(rank, &index): &(usize, &usize)| (rank as u64 + 1) * (u64::from(ends[index].tries) + 1);
+        let cost =
+            |&(rank, &index): &(usize, &usize)| (rank as u64 + 1).pow(2) * (u64::from(ends[index].tries) + 1);
         let (_, &index) = list.iter().enumerate().min_by_key(cost)?;
         let tries = &mut ends[index].tries;
         *tries = tries.saturating_add(1);
@@ -217,7 +218,7 @@ mod tests {
         for _ in 0..12 {
             tries[ends.promising(0.2).unwrap()] += 1;
         }
-        assert_eq!(tries, [8, 4, 0, 0]);
+        assert_eq!(tries, [10, 2, 0, 0]);
         assert_eq!(ends.promising(0.001), Some(2));
         assert_eq!(ends.promising(2.0), None);
     }

@@ -3,6 +3,7 @@
 
 mod starts;
 
+use self::starts::Start;
 use super::bandit::Arm;
 use super::ends::Ends;
 use super::misses::MissList;
@@ -22,10 +23,11 @@ use crate::space::Space;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// Local searches by an evolution strategy (Beyer, Sendhoff 2008) of three kinds, and recombinations of all pairs of hits:
+    /// Local searches by an evolution strategy (Beyer, Sendhoff 2008) of four kinds, and recombinations of all pairs of hits:
     ///
     /// - from points that cover the space evenly, far from known hits. Samples near those are refused (Ahrari and others 2022): within a
     ///   radius that belongs to the hit, in units of the search's own spread. It grows with every search that the hit attracts;
+    /// - from uniform points with a small first step, once all searches of the first kind come to known ends;
     /// - from near misses of recombinations;
     /// - from beside the ends of searches that were no hits. A length is drawn log-uniformly, then one of the ends that have no better
     ///   one within it: good ends more often. A search that will not come below its origin ends early.
@@ -48,7 +50,7 @@ engine_settings! {
         /// First step from a uniform point, as a share of the axes.
         pub step: f64 = 0.3, 1e-12..=1.0;
         /// Share of the searches that start beside known ends; near misses aside.
-        pub hops: f64 = 0.33, 0.0..=1.0;
+        pub hops: f64 = 0.5, 0.0..=1.0;
     }
 }
 
@@ -95,10 +97,8 @@ enum BatchKind {
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 struct StrategyRun {
     running: bool,
-    /// Whether it started from a near miss of recombinations.
-    is_from_miss: bool,
-    /// Whether it started beside a known end, of which this is F.
-    is_hop: bool,
+    from: Start,
+    /// F of the known end beside which it started.
     origin: f64,
     /// The spread of the first generation.
     first_spread: f64,
@@ -131,6 +131,8 @@ struct NichingSearch<S> {
     even: EvenPoints,
     /// Searches that started beside known ends, and anywhere.
     started: [u64; 2],
+    /// How many searches from far points, one after the other, have come to known ends.
+    streak: u64,
     /// Evaluations of searches from near misses, and of all.
     spent: [u64; 2],
     start: Vec<f64>,
@@ -175,6 +177,7 @@ impl<S: Real> NichingSearch<S> {
             restarts: 0,
             even: EvenPoints::default(),
             started: [0; 2],
+            streak: 0,
             spent: [0; 2],
             start: Vec::new(),
             run: StrategyRun::default(),
@@ -232,7 +235,7 @@ impl<S: Real> NichingSearch<S> {
         let space = context.space();
         let run = &mut self.run;
         let count = outcomes.len() as u64;
-        self.spent[0] += u64::from(run.is_from_miss) * count;
+        self.spent[0] += u64::from(run.from == Start::NearMiss) * count;
         self.spent[1] += count;
         for (position, outcome) in batch.points().zip(outcomes) {
             self.arms[0].count(outcome.is_hit());
@@ -246,6 +249,7 @@ impl<S: Real> NichingSearch<S> {
         }
         if outcomes.iter().any(|outcome| outcome.is_hit()) {
             run.running = false;
+            self.streak = 0;
             return;
         }
         if self.distribution.told() < run.size {
@@ -278,9 +282,12 @@ impl<S: Real> NichingSearch<S> {
         }
     }
 
-    /// A search that started anywhere has been attracted by a known end, or ends with no hit.
+    /// A search has been attracted by a known end, or ends with no hit.
     fn attracted(&mut self, index: Option<usize>) {
-        if self.run.is_hop {
+        if self.run.from == Start::Far {
+            self.streak = index.map_or(0, |_| self.streak + 1);
+        }
+        if !self.run.from.keeps_away() {
             return;
         }
         let rate = 1.0 / (self.start.len() as f64).sqrt();
@@ -357,7 +364,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
             }
         };
         self.repelled.find(&self.ends, &self.distribution, |fitness| {
-            !run.is_hop && fitness < run.fitness
+            run.from.keeps_away() && fitness < run.fitness
         });
         for _ in 0..left.min(AT_ONCE).min(points_between_looks(dimension)) {
             let sample = self.distribution.sample(rng, &mut self.repelled, confine);
@@ -444,6 +451,7 @@ impl<S: Real> Part for NichingSearch<S> {
         restarts,
         even,
         started,
+        streak,
         spent,
         start,
         run,

@@ -8,16 +8,40 @@ use crate::space::Space;
 /// Displacements from known ends, as shares of the axes: drawn log-uniformly.
 const HOPS: (f64, f64) = (0.01, 0.2);
 /// First steps after a displacement are this share of it or more.
-const SETTLING: f64 = 0.1;
+const SETTLING: f64 = 0.5;
 /// Points of which the one farthest from known hits becomes a start, at most; and coordinates of hits that are looked at for it.
 const STARTS: usize = 100;
 const LOOKED: usize = 1 << 16;
+/// Once so many searches from far points in a row have come to known ends, half of their turns are for uniform points and this step.
+const STREAK: u64 = 20;
+const SMALL_STEP: f64 = 0.05;
 /// The first step from a near miss; and the largest share of the evaluations that searches from there may take.
 const REFINING_STEP: f64 = 0.003;
 const REFINING: f64 = 0.05;
 /// How often a generation is of twice the usual size, and how often again; up to so many coordinates.
 const DOUBLING: f64 = 0.25;
 const COORDINATES: usize = 1 << 20;
+
+/// Where a search starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub(super) enum Start {
+    /// From a point far from known hits.
+    #[default]
+    Far,
+    /// From a uniform point, with a small step.
+    Uniform,
+    /// From beside a known end.
+    Hop,
+    /// From a near miss of recombinations.
+    NearMiss,
+}
+
+impl Start {
+    /// Whether such a search refuses samples near known hits, and changes their radii.
+    pub(super) fn keeps_away(self) -> bool {
+        matches!(self, Self::Far | Self::NearMiss)
+    }
+}
 
 fn log_uniform(rng: &mut SearchRng, (smallest, largest): (f64, f64)) -> f64 {
     largest * (smallest / largest).powf(rng.uniform())
@@ -30,8 +54,7 @@ impl<S: Real> NichingSearch<S> {
         self.restarts += 1;
         self.run = StrategyRun {
             running: true,
-            is_from_miss: false,
-            is_hop: false,
+            from: Start::Far,
             origin: f64::INFINITY,
             first_spread: 0.0,
             size: usual_size(dimension),
@@ -44,14 +67,11 @@ impl<S: Real> NichingSearch<S> {
         };
         let step =
             if self.is_refining_due() && self.misses.take_best(|place| self.start.copy_from_slice(place)) {
-                self.run.is_from_miss = true;
+                self.run.from = Start::NearMiss;
                 REFINING_STEP
             } else {
-                let step = self.hop(rng).unwrap_or_else(|| {
-                    self.draw_start(space, rng);
-                    self.settings.step
-                });
-                self.started[usize::from(!self.run.is_hop)] += 1;
+                let step = self.hop(rng).unwrap_or_else(|| self.start_anywhere(space, rng));
+                self.started[usize::from(self.run.from != Start::Hop)] += 1;
                 while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
                     self.run.size *= 2;
                 }
@@ -65,6 +85,17 @@ impl<S: Real> NichingSearch<S> {
     fn is_refining_due(&self) -> bool {
         let [refining, all] = self.spent.map(|count| count as f64);
         self.restarts.is_multiple_of(2) && refining <= REFINING * all
+    }
+
+    /// Writes a start that is beside no known end on purpose, and returns the first step.
+    fn start_anywhere(&mut self, space: &Space<S>, rng: &mut SearchRng) -> f64 {
+        if self.streak >= STREAK && rng.uniform() < 0.5 {
+            self.start.fill_with(|| rng.uniform());
+            self.run.from = Start::Uniform;
+            return SMALL_STEP.min(self.settings.step);
+        }
+        self.draw_start(space, rng);
+        self.settings.step
     }
 
     /// Writes a start that is far from known hits, in their radii, of points that cover the space evenly.
@@ -100,7 +131,7 @@ impl<S: Real> NichingSearch<S> {
         for x in &mut self.start {
             *x = (*x + length * rng.normal()).clamp(0.0, 1.0);
         }
-        self.run.is_hop = true;
+        self.run.from = Start::Hop;
         self.run.origin = self.ends.fitness(end);
         Some(log_uniform(rng, (SETTLING * length, length)))
     }
