@@ -47,7 +47,7 @@ engine_settings! {
     /// # Ok::<(), satisfice::Error>(())
     /// ```
     pub struct Niching {
-        /// First step from a uniform point, as a share of the axes.
+        /// First step from a point far from known hits, as a share of the axes.
         pub step: f64 = 0.3, 1e-12..=1.0;
         /// Share of the searches that start beside known ends; near misses aside.
         pub hops: f64 = 0.5, 0.0..=1.0;
@@ -285,7 +285,7 @@ impl<S: Real> NichingSearch<S> {
     /// A search has been attracted by a known end, or ends with no hit.
     fn attracted(&mut self, index: Option<usize>) {
         if self.run.from == Start::Far {
-            self.streak = index.map_or(0, |_| self.streak + 1);
+            self.streak = index.map_or(0, |_| self.streak.saturating_add(1));
         }
         if !self.run.from.keeps_away() {
             return;
