@@ -266,3 +266,16 @@ fn mixed_axes_that_are_none_are_refused() {
         assert!(problem.fitness(&wrong).is_nan() && problem.settings(&wrong).is_none());
     }
 }
+
+/// Beside a ball that is one answer there are misses alone, and the model expects hits: it used to look around the first one until the
+/// evaluations were spent, and found 8 of 48.
+#[test]
+fn a_model_leaves_a_region_that_is_one_answer() {
+    let balls = SmallRegions::new(5, 6, Shape::Ball, 0.2, 1.0, 0, 17).unwrap();
+    let hits = |seed| {
+        let mut search = Search::named("surrogate").unwrap().seed(seed);
+        search.run(&balls, &Budget::evaluations(50)).unwrap().hit_count()
+    };
+    let found: usize = (0..8).map(hits).sum();
+    assert!(found >= 14, "{found}");
+}

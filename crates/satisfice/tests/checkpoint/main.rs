@@ -12,6 +12,7 @@ use satisfice::{
 };
 
 mod components;
+mod one_answer;
 mod refused;
 mod size;
 

@@ -4,6 +4,7 @@ use super::candidates::{CandidateSource, least};
 use super::duplicates::{is_duplicate, radius};
 use super::lanes::LANES;
 use super::likelihood::likeliest;
+use super::one_answer::OneAnswer;
 use super::pool::{Place, Pool, REFINED, Score};
 use super::process::Process;
 use super::reach::{reach, square};
@@ -66,7 +67,18 @@ pub(super) struct Given<'a, S> {
     pub(super) context: &'a dyn Context<S>,
     pub(super) units: &'a Units,
     pub(super) record: &'a Record,
+    pub(super) one_answer: &'a OneAnswer,
     pub(super) position: &'a mut [S],
+}
+
+/// What is proposed.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct ModelProposal {
+    pub(super) x: Vec<f64>,
+    /// How probable a hit is by the model.
+    pub(super) probability: f64,
+    /// Whether it is beside a region that is one answer.
+    pub(super) beside: bool,
 }
 
 impl<S: Real> Given<'_, S> {
@@ -207,14 +219,13 @@ impl Model {
         }
     }
 
-    /// The coordinates of the best candidate that is neither known nor within reach of a pending point, and how probable a hit is by the
-    /// model. `None` if there is none.
+    /// The best candidate that is neither known nor within reach of a pending point. `None` if there is none.
     pub(super) fn choose<S: Real>(
         &mut self,
         given: &mut Given<'_, S>,
         pending: &[Vec<f64>],
         rng: &mut SearchRng,
-    ) -> Option<(Vec<f64>, f64)> {
+    ) -> Option<ModelProposal> {
         let ranking = self.pool.ranking(&self.process);
         let starts = self.starts(&ranking, rng);
         let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
@@ -248,8 +259,19 @@ impl Model {
             self.descend(given, pending, start, &mut best);
         }
         let (score, x) = best;
-        let is_logarithm = !self.pool.limits.is_empty() || !pending.is_empty();
-        Some((x, score.probability(is_logarithm)))
+        let beside = given.one_answer.is_beside(given.units, &x);
+        let belief = if beside { given.one_answer.belief() } else { 1.0 };
+        let probability = score.probability(self.has_logarithms(pending)) / belief;
+        Some(ModelProposal {
+            x,
+            probability: probability.min(1.0),
+            beside,
+        })
+    }
+
+    /// Whether scores are logarithms of probabilities.
+    fn has_logarithms(&self, pending: &[Vec<f64>]) -> bool {
+        !self.pool.limits.is_empty() || !pending.is_empty()
     }
 
     /// Some of the best candidates, from which steps towards roots start, where components are modelled.
@@ -305,6 +327,7 @@ impl Model {
     ) -> Option<(Score, Vec<f64>)> {
         let (mut x, mut rounded) = (Vec::new(), Vec::new());
         let mut best: Option<(Score, Vec<f64>)> = None;
+        let belief = given.one_answer.belief();
         for (score, place) in ranking.take(EXAMINED) {
             let bar = best.as_ref().map(|(score, _)| *score).or(than);
             if bar.is_some_and(|bar| score.order(&bar).is_le()) {
@@ -321,7 +344,10 @@ impl Model {
             {
                 continue;
             }
-            let score = self.spread(score, &x, given);
+            let mut score = self.spread(score, &x, given);
+            if belief < 1.0 && score.hopeful && given.one_answer.is_beside(given.units, &x) {
+                score = score.believed(belief, self.has_logarithms(pending));
+            }
             if bar.is_none_or(|bar| score.order(&bar).is_gt()) {
                 best = Some((score, x.clone()));
             }

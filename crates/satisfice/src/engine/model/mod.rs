@@ -8,6 +8,7 @@ mod kernel;
 mod lanes;
 mod likelihood;
 mod local;
+mod one_answer;
 mod points;
 mod pool;
 mod process;

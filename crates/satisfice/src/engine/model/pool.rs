@@ -85,6 +85,22 @@ impl Score {
         }
     }
 
+    /// The score of this share of the probability. Without hope it is the last.
+    pub(super) fn believed(self, share: f64, is_logarithm: bool) -> Self {
+        if is_logarithm {
+            let value = self.value + share.ln();
+            return Self { value, ..self };
+        }
+        let value = normal_quantile(share * normal_below(self.value));
+        if value >= -HOPE {
+            return Self { value, ..self };
+        }
+        Self {
+            hopeful: false,
+            value: f64::MIN,
+        }
+    }
+
     /// How probable a hit is; 0 beyond [`HOPE`]. `is_logarithm`: whether the score is one of components, or beside points that are out.
     pub(super) fn probability(&self, is_logarithm: bool) -> f64 {
         match (self.hopeful, is_logarithm) {
@@ -104,9 +120,21 @@ impl Score {
     }
 }
 
-/// The probability that a standard normal number is below `z`, within 2e-4 (Page 1977, doi 10.2307/2346872).
+/// The logarithm of the odds that a standard normal number is below `z` is `CUBE z³ + LINE z`, within 2e-4 of the probability (Page 1977,
+/// doi 10.2307/2346872).
+const CUBE: f64 = 0.07056;
+const LINE: f64 = 1.5976;
+
 fn normal_below(z: f64) -> f64 {
-    1.0 / (1.0 + (-(0.07056 * z * z * z + 1.5976 * z)).exp())
+    1.0 / (1.0 + (-(CUBE * z * z * z + LINE * z)).exp())
+}
+
+/// The `z` that a standard normal number is below with this probability, by the same formula: a cubic equation with one root.
+fn normal_quantile(probability: f64) -> f64 {
+    let odds = (probability / (1.0 - probability)).ln();
+    let root = (LINE / 3.0 / CUBE).sqrt();
+    let turn = (odds / 2.0 / CUBE / (root * root * root)).asinh();
+    2.0 * root * (turn / 3.0).sinh()
 }
 
 /// Candidates in blocks, of which the oldest are replaced: the last ones, up to [`REFINED`], by candidates around the best, the others by
@@ -337,6 +365,30 @@ mod tests {
         approx::assert_relative_eq!(
             of_components.less(0.0).value.exp(),
             of_components.value.exp().powi(2)
+        );
+    }
+
+    /// By a table of the normal distribution: half of P(z < 1) is P(z < -0.2), and a fiftieth of a certain hit is beyond hope.
+    #[test]
+    fn a_share_of_a_probability_ranks_where_it_belongs() {
+        for z in [-3.0, -0.5, 0.0, 0.1, 2.0, 5.0] {
+            approx::assert_relative_eq!(
+                normal_quantile(normal_below(z)),
+                z,
+                epsilon = 1e-9,
+                max_relative = 1e-6
+            );
+        }
+        let half = Score::new(-1.0, 1.0).believed(0.5, false);
+        assert!(half.hopeful && (half.value + 0.2).abs() < 0.005, "{half:?}");
+        let certain = Score::new(-60.0, 1.0);
+        assert!((certain.believed(0.5, false).value).abs() < 1e-9);
+        let hopeless = certain.believed(0.02, false);
+        assert!(Score::new(10.0, 1.0).order(&hopeless).is_gt());
+        let component = Score::of_components(&[0.1], &[0.3], &[0.2]);
+        approx::assert_relative_eq!(
+            component.believed(0.3, true).probability(true),
+            0.3 * component.probability(true)
         );
     }
 

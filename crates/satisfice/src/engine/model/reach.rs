@@ -45,6 +45,47 @@ pub(super) fn reach<S: Real>(
     (0..units.len()).map(&mut along).collect()
 }
 
+/// The middle of what is the same hit as `hit` around it: halfway along each straight axis, one after the other, which leads to the centre
+/// of a ball or a box. Along an axis on which that goes as far as the space does, or farther than half an axis, it stays where it is.
+///
+/// Cost: 40 look-ups an axis.
+pub(super) fn middle<S: Real>(
+    context: &dyn Context<S>,
+    units: &Units,
+    hit: &[f64],
+    position: &mut [S],
+) -> Vec<f64> {
+    let mut x = hit.to_vec();
+    let straight = |unit: &Unit| unit.cells == 0.0 && unit.shape == Shape::Line;
+    for j in (0..units.len()).filter(|&j| straight(&units.axes[j])) {
+        let from = x[j];
+        let mut extent = |end: f64| {
+            let (mut same, mut distinct) = (from, end);
+            let mut is_same = |at: f64| {
+                x[j] = at;
+                units.to_position(context.space(), &x, position);
+                context.is_deleted(position)
+            };
+            if is_same(end) {
+                return None;
+            }
+            for _ in 0..BISECTIONS {
+                let middle = f64::midpoint(same, distinct);
+                if is_same(middle) {
+                    same = middle;
+                } else {
+                    distinct = middle;
+                }
+            }
+            Some(same)
+        };
+        let lower = extent((from - 0.5).max(0.0));
+        let upper = extent((from + 0.5).min(1.0));
+        x[j] = lower.zip(upper).map_or(from, |(a, b)| f64::midpoint(a, b));
+    }
+    x
+}
+
 /// Squared distance of two points in reaches; equal points are 0 apart, others at least 1 where a reach is not known.
 pub(super) fn square(units: &Units, a: &[f64], b: &[f64], reach: &[f64]) -> f64 {
     let along = |(((a, b), reach), unit): (((&f64, &f64), &f64), &Unit)| {

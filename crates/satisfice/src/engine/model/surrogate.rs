@@ -1,6 +1,7 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
-use super::local::{Given, Model};
+use super::local::{Given, Model, ModelProposal};
+use super::one_answer::OneAnswer;
 use super::promise::Promise;
 use super::record::{PointKind, Record};
 use super::skill::Skill;
@@ -34,6 +35,8 @@ engine_settings! {
     ///   engine learns how far apart distinct hits are.
     /// - Logarithmic axes are seen by their logarithm, periodic ones as circles, permutations by the ranks of their keys. Integers are rounded
     ///   before the kernel sees them, and any two categories are equally far apart.
+    /// - Where hits are represented by other points (the middle of what counts as the same as the first hit is not that hit), all hits around
+    ///   a point are one answer. The probability of a hit beside such a region counts as far as the model's word was true there.
     /// - Scales are the likeliest ones under a weak prior, found anew whenever the points are an eighth more, or 40.
     /// - Beyond `points` points a model knows the 128 points next to a hit, and the next one those next to another.
     ///
@@ -95,8 +98,10 @@ pub(in crate::engine) struct ModelledSearch<S> {
     skill: Skill,
     /// What it expects of its proposals.
     promise: Promise,
-    /// The next proposal, from [`Self::expectation`] until it is asked for or more is told, and how probable a hit is.
-    prepared: Option<(Vec<f64>, f64)>,
+    /// The regions of hits that are one answer.
+    one_answer: OneAnswer,
+    /// The next proposal, from [`Self::expectation`] until it is asked for or more is told.
+    prepared: Option<ModelProposal>,
     position: Vec<S>,
     /// Points of the enumeration that were looked at.
     enumerated: usize,
@@ -114,6 +119,7 @@ impl<S: Real> ModelledSearch<S> {
             model: None,
             skill: Skill::default(),
             promise: Promise::default(),
+            one_answer: OneAnswer::default(),
             prepared: None,
             position: Vec::new(),
             enumerated: 0,
@@ -150,8 +156,18 @@ impl<S: Real> ModelledSearch<S> {
         if self.prepared.is_none() {
             self.prepared = self.modelled(context, rng);
         }
-        let (_, probability) = self.prepared.as_ref()?;
-        Some(self.believed(*probability))
+        let proposal = self.prepared.as_ref()?;
+        Some(self.believed(self.probability(proposal)))
+    }
+
+    /// How probable a hit is by the model, and by what became of its proposals beside regions that are one answer.
+    fn probability(&self, proposal: &ModelProposal) -> f64 {
+        let share = if proposal.beside {
+            self.one_answer.belief()
+        } else {
+            1.0
+        };
+        share * proposal.probability
     }
 
     /// How many points are told before there is a model: the values of fewer say too little about its scales.
@@ -198,15 +214,18 @@ impl<S: Real> ModelledSearch<S> {
         !pending && !self.record.has(&rounded) && !context.is_deleted(&self.position)
     }
 
-    /// The best candidate of the model, and how probable a hit is.
-    fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<(Vec<f64>, f64)> {
+    /// The best candidate of the model.
+    fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<ModelProposal> {
         if self.told() < self.design_size() {
             return None;
         }
+        self.one_answer
+            .follow(context, &self.units, &self.record, &mut self.position);
         let mut given = Given {
             context,
             units: &self.units,
             record: &self.record,
+            one_answer: &self.one_answer,
             position: &mut self.position,
         };
         let mut model = match self.model.take() {
@@ -236,9 +255,12 @@ impl<S: Real> ModelledSearch<S> {
     /// The next proposal of the model.
     fn proposal(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let prepared = self.prepared.take();
-        let (x, probability) = prepared.or_else(|| self.modelled(context, rng))?;
-        self.promise.count(probability);
-        Some(x)
+        let proposal = prepared.or_else(|| self.modelled(context, rng))?;
+        self.promise.count(self.probability(&proposal));
+        if proposal.beside {
+            self.one_answer.count(proposal.probability);
+        }
+        Some(proposal.x)
     }
 
     /// A uniform point that is new, or the next new one of a small space.
@@ -289,6 +311,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         self.model = None;
         self.skill = Skill::default();
         self.promise = Promise::default();
+        self.one_answer = OneAnswer::default();
         self.prepared = None;
         self.enumerated = 0;
         self.position = vec![S::zero(); context.space().dimension()];
@@ -332,6 +355,9 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
                     self.record.add(&x, f.f64(), PointKind::Hit);
                     if is_own && self.model.is_some() {
                         self.promise.keep();
+                        if self.one_answer.is_beside(&self.units, &x) {
+                            self.one_answer.keep();
+                        }
                     }
                 }
                 Outcome::Miss(f) => self.record.add(&x, f.f64(), PointKind::Miss),
@@ -361,6 +387,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         Part::save(&self.position, state);
         Part::save(&self.units.saved(), state);
         Part::save(&(self.skill.saved(), self.promise.saved()), state);
+        self.one_answer.save(state);
         Part::save(&self.prepared, state);
         Part::save(&self.model.is_some(), state);
         if let Some(model) = &self.model {
@@ -380,11 +407,12 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             .ok_or_else(|| Error::State("its axes do not fit".to_owned()))?;
         let (skill, promise) = from.read()?;
         (self.skill, self.promise) = (Skill::restored(skill), Promise::restored(promise));
+        self.one_answer = OneAnswer::restored(self.units.len(), from)?;
         self.prepared = from.read()?;
         if self
             .prepared
             .as_ref()
-            .is_some_and(|(x, _)| x.len() != self.units.len())
+            .is_some_and(|proposal| proposal.x.len() != self.units.len())
         {
             return Err(Error::State("its next proposal does not fit".to_owned()));
         }
