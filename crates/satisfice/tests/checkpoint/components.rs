@@ -2,14 +2,13 @@
 
 use satisfice::Components;
 
+use super::interrupts::Interrupt;
 use super::*;
 
-/// Where a sphere, a plane and a wave meet, on one integer axis and two continuous ones; call number `fatal` cancels.
-struct Meetings<'a> {
+/// Where a sphere, a plane and a wave meet, on one integer axis and two continuous ones.
+struct Meetings {
     space: Space<f64>,
-    calls: AtomicU64,
-    fatal: u64,
-    cancel: &'a Cancel,
+    interrupt: Interrupt,
 }
 
 const LIMIT: f64 = 0.05;
@@ -23,7 +22,7 @@ fn residuals(x: &[f64]) -> [f64; 2] {
     [radius, (2.0 * x[1]).sin() - x[2]]
 }
 
-impl SatisficingProblem for Meetings<'_> {
+impl SatisficingProblem for Meetings {
     type Scalar = f64;
     type Solution = Located<f64>;
     fn space(&self) -> &Space<f64> {
@@ -33,9 +32,7 @@ impl SatisficingProblem for Meetings<'_> {
         Located::new(values, 0.1)
     }
     fn fitness(&self, at: &Located<f64>) -> f64 {
-        if self.calls.fetch_add(1, Ordering::Relaxed) + 1 == self.fatal {
-            self.cancel.cancel();
-        }
+        self.interrupt.count();
         let [a, b] = residuals(&at.coordinates);
         if a.is_nan() { a } else { a.hypot(b) }
     }
@@ -47,7 +44,7 @@ impl SatisficingProblem for Meetings<'_> {
     }
 }
 
-impl Components<f64, Located<f64>> for Meetings<'_> {
+impl Components<f64, Located<f64>> for Meetings {
     fn count(&self) -> usize {
         2
     }
@@ -56,7 +53,7 @@ impl Components<f64, Located<f64>> for Meetings<'_> {
     }
 }
 
-fn meetings(cancel: &Cancel, fatal: u64) -> Meetings<'_> {
+fn meetings(interrupt: Interrupt) -> Meetings {
     let axes = [
         Axis::integer(-3, 3),
         Axis::continuous(-2.0, 2.0),
@@ -64,38 +61,12 @@ fn meetings(cancel: &Cancel, fatal: u64) -> Meetings<'_> {
     ];
     Meetings {
         space: Space::new(axes).unwrap(),
-        calls: AtomicU64::new(0),
-        fatal,
-        cancel,
+        interrupt,
     }
 }
 
 #[test]
 fn after_an_interrupt_with_a_model_of_the_components() {
-    let budget = Budget::evaluations(60);
-    for name in ["surrogate", "portfolio"] {
-        let entry = engine::find(name).unwrap();
-        let never = Cancel::new();
-        let expected = search(entry, 0.0).run(&meetings(&never, 0), &budget).unwrap();
-        // It searches by them: of uniform points fewer than one in a hundred hits.
-        assert!(expected.hit_count() >= 3, "{name}: {}", expected.hit_count());
-        for fatal in [3, 17, 30, 44, 59] {
-            let cancel = Cancel::new();
-            let problem = meetings(&cancel, fatal);
-            let mut kept: Option<Saved> = None;
-            let mut first = search(entry, 0.0);
-            let report = first
-                .run_with(
-                    &problem,
-                    &budget.clone().and_until(&cancel),
-                    RunOptions::new()
-                        .checkpoints(Duration::MAX, &mut |saved: &Saved| kept = Some(saved.clone())),
-                )
-                .unwrap();
-            assert_eq!(report.stop_reason, StopReason::Cancelled, "{name} at {fatal}");
-            let mut again = resume(entry, &kept.unwrap());
-            let report = again.run_resumed(&problem, RunOptions::new()).unwrap();
-            assert_eq!(timeless(&report), timeless(&expected), "{name} at {fatal}");
-        }
-    }
+    // It searches by them: of uniform points fewer than one in a hundred hits.
+    interrupts::do_not_change_the_report(meetings, [3, 17, 30, 44, 59], 3);
 }

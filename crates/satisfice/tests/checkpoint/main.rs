@@ -12,6 +12,7 @@ use satisfice::{
 };
 
 mod components;
+mod interrupts;
 mod one_answer;
 mod refused;
 mod size;

@@ -1,5 +1,6 @@
 //! A search among regions that are one answer each, saved and resumed.
 
+use super::interrupts::Interrupt;
 use super::*;
 
 const CENTRES: [[f64; 3]; 5] = [
@@ -10,15 +11,13 @@ const CENTRES: [[f64; 3]; 5] = [
     [0.3, 0.35, 0.8],
 ];
 
-/// Balls that are represented by their centres; call number `fatal` cancels.
-struct Balls<'a> {
+/// Balls that are represented by their centres.
+struct Balls {
     space: Space<f64>,
-    calls: AtomicU64,
-    fatal: u64,
-    cancel: &'a Cancel,
+    interrupt: Interrupt,
 }
 
-impl Balls<'_> {
+impl Balls {
     /// The nearest centre and its distance, in radii.
     fn nearest(x: &[f64]) -> ([f64; 3], f64) {
         let square = |c: &[f64; 3]| c.iter().zip(x).map(|(c, x)| (c - x).powi(2)).sum::<f64>();
@@ -30,7 +29,7 @@ impl Balls<'_> {
     }
 }
 
-impl SatisficingProblem for Balls<'_> {
+impl SatisficingProblem for Balls {
     type Scalar = f64;
     type Solution = Located<f64>;
     fn space(&self) -> &Space<f64> {
@@ -40,9 +39,7 @@ impl SatisficingProblem for Balls<'_> {
         Located::new(values, 0.2)
     }
     fn fitness(&self, at: &Located<f64>) -> f64 {
-        if self.calls.fetch_add(1, Ordering::Relaxed) + 1 == self.fatal {
-            self.cancel.cancel();
-        }
+        self.interrupt.count();
         Self::nearest(&at.coordinates).1
     }
     fn threshold(&self) -> f64 {
@@ -53,40 +50,14 @@ impl SatisficingProblem for Balls<'_> {
     }
 }
 
-fn balls(cancel: &Cancel, fatal: u64) -> Balls<'_> {
+fn balls(interrupt: Interrupt) -> Balls {
     Balls {
         space: Space::cube(3, 0.0, 1.0).unwrap(),
-        calls: AtomicU64::new(0),
-        fatal,
-        cancel,
+        interrupt,
     }
 }
 
 #[test]
 fn after_an_interrupt_with_regions_that_are_one_answer() {
-    let budget = Budget::evaluations(60);
-    for name in ["surrogate", "portfolio"] {
-        let entry = engine::find(name).unwrap();
-        let never = Cancel::new();
-        let expected = search(entry, 0.0).run(&balls(&never, 0), &budget).unwrap();
-        assert!(expected.hit_count() >= 3, "{name}: {}", expected.hit_count());
-        for fatal in [9, 17, 30, 44, 59] {
-            let cancel = Cancel::new();
-            let problem = balls(&cancel, fatal);
-            let mut kept: Option<Saved> = None;
-            let mut first = search(entry, 0.0);
-            let report = first
-                .run_with(
-                    &problem,
-                    &budget.clone().and_until(&cancel),
-                    RunOptions::new()
-                        .checkpoints(Duration::MAX, &mut |saved: &Saved| kept = Some(saved.clone())),
-                )
-                .unwrap();
-            assert_eq!(report.stop_reason, StopReason::Cancelled, "{name} at {fatal}");
-            let mut again = resume(entry, &kept.unwrap());
-            let report = again.run_resumed(&problem, RunOptions::new()).unwrap();
-            assert_eq!(timeless(&report), timeless(&expected), "{name} at {fatal}");
-        }
-    }
+    interrupts::do_not_change_the_report(balls, [9, 17, 30, 44, 59], 3);
 }
