@@ -75,7 +75,7 @@ pub(super) struct Given<'a, S> {
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct ModelProposal {
     pub(super) x: Vec<f64>,
-    /// How probable a hit is by the model.
+    /// How probable a hit is by the model, beside a region as far as its word was true there.
     pub(super) probability: f64,
     /// Whether it is beside a region that is one answer.
     pub(super) beside: bool,
@@ -259,13 +259,10 @@ impl Model {
             self.descend(given, pending, start, &mut best);
         }
         let (score, x) = best;
-        let beside = given.one_answer.is_beside(given.units, &x);
-        let belief = if beside { given.one_answer.belief() } else { 1.0 };
-        let probability = score.probability(self.has_logarithms(pending)) / belief;
         Some(ModelProposal {
+            beside: given.one_answer.is_beside(given.units, &x),
+            probability: score.probability(self.has_logarithms(pending)),
             x,
-            probability: probability.min(1.0),
-            beside,
         })
     }
 

@@ -79,9 +79,9 @@ impl OneAnswer {
         if share < ENOUGH { share } else { 1.0 }
     }
 
-    /// Counts a proposal beside a region that the model takes to be this probable to hit.
-    pub(super) fn count(&mut self, probability: f64) {
-        self.promised += probability;
+    /// Counts a proposal beside a region that is this probable to hit by what is [believed](Self::belief).
+    pub(super) fn count(&mut self, believed: f64) {
+        self.promised += (believed / self.belief()).min(1.0);
     }
 
     /// Counts a proposal beside a region that has hit.
@@ -209,11 +209,10 @@ mod tests {
         assert_eq!(one_answer.belief(), 1.0);
         one_answer.count(0.9);
         assert_eq!(one_answer.belief(), 0.25);
+        // By the model, a hit was certain again.
+        one_answer.count(0.25);
+        approx::assert_relative_eq!(one_answer.belief(), 0.3 / 2.2);
         one_answer.keep();
         assert_eq!(one_answer.belief(), 1.0);
-        for _ in 0..4 {
-            one_answer.count(1.0);
-        }
-        assert_eq!(one_answer.belief(), 0.25);
     }
 }

@@ -28,21 +28,28 @@ pub(super) fn reach<S: Real>(
             return 1.0 / unit.cells;
         }
         let sign = if hit[j] < 0.5 { 1.0 } else { -1.0 };
-        let (mut same, mut distinct) = (0.0, 0.5);
-        for _ in 0..BISECTIONS {
-            let middle = (same + distinct) / 2.0;
-            x[j] = hit[j] + sign * middle;
+        let (_, distinct) = border((0.0, 0.5), |distance| {
+            x[j] = hit[j] + sign * distance;
             units.to_position(context.space(), &x, position);
-            if context.is_deleted(position) {
-                same = middle;
-            } else {
-                distinct = middle;
-            }
-        }
+            context.is_deleted(position)
+        });
         x[j] = hit[j];
         distinct
     };
     (0..units.len()).map(&mut along).collect()
+}
+
+/// The last place that is the same hit and the first one that is not, between one of either.
+fn border((mut same, mut distinct): (f64, f64), mut is_same: impl FnMut(f64) -> bool) -> (f64, f64) {
+    for _ in 0..BISECTIONS {
+        let middle = f64::midpoint(same, distinct);
+        if is_same(middle) {
+            same = middle;
+        } else {
+            distinct = middle;
+        }
+    }
+    (same, distinct)
 }
 
 /// The middle of what is the same hit as `hit` around it: halfway along each straight axis, one after the other, which leads to the centre
@@ -60,24 +67,12 @@ pub(super) fn middle<S: Real>(
     for j in (0..units.len()).filter(|&j| straight(&units.axes[j])) {
         let from = x[j];
         let mut extent = |end: f64| {
-            let (mut same, mut distinct) = (from, end);
             let mut is_same = |at: f64| {
                 x[j] = at;
                 units.to_position(context.space(), &x, position);
                 context.is_deleted(position)
             };
-            if is_same(end) {
-                return None;
-            }
-            for _ in 0..BISECTIONS {
-                let middle = f64::midpoint(same, distinct);
-                if is_same(middle) {
-                    same = middle;
-                } else {
-                    distinct = middle;
-                }
-            }
-            Some(same)
+            (!is_same(end)).then(|| border((from, end), is_same).0)
         };
         let lower = extent((from - 0.5).max(0.0));
         let upper = extent((from + 0.5).min(1.0));

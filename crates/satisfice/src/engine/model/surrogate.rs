@@ -157,17 +157,7 @@ impl<S: Real> ModelledSearch<S> {
             self.prepared = self.modelled(context, rng);
         }
         let proposal = self.prepared.as_ref()?;
-        Some(self.believed(self.probability(proposal)))
-    }
-
-    /// How probable a hit is by the model, and by what became of its proposals beside regions that are one answer.
-    fn probability(&self, proposal: &ModelProposal) -> f64 {
-        let share = if proposal.beside {
-            self.one_answer.belief()
-        } else {
-            1.0
-        };
-        share * proposal.probability
+        Some(self.believed(proposal.probability))
     }
 
     /// How many points are told before there is a model: the values of fewer say too little about its scales.
@@ -256,7 +246,7 @@ impl<S: Real> ModelledSearch<S> {
     fn proposal(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
         let prepared = self.prepared.take();
         let proposal = prepared.or_else(|| self.modelled(context, rng))?;
-        self.promise.count(self.probability(&proposal));
+        self.promise.count(proposal.probability);
         if proposal.beside {
             self.one_answer.count(proposal.probability);
         }
