@@ -56,11 +56,23 @@ fn nearest(record: &Record, units: &Units, i: usize) -> f64 {
 
 /// Whether a point is within the radius of a hit or of a duplicate.
 pub(super) fn is_duplicate(record: &Record, units: &Units, radius: f64, x: &[f64]) -> bool {
-    let known = record.hits.iter().chain(&record.duplicates);
     radius > 0.0
-        && known
-            .into_iter()
-            .any(|&i| square(units, record.point(i), x) <= radius * radius)
+        && record
+            .answers()
+            .any(|answer| is_within(units, answer, x, radius * radius))
+}
+
+/// Whether the squared distance of two points is at most this; most are too far apart along the first axis already.
+#[inline]
+fn is_within(units: &Units, a: &[f64], b: &[f64], most: f64) -> bool {
+    let mut sum = 0.0;
+    for ((a, b), unit) in a.iter().zip(b).zip(&units.axes) {
+        sum += unit.difference(*a, *b).powi(2);
+        if sum > most {
+            return false;
+        }
+    }
+    true
 }
 
 fn square(units: &Units, a: &[f64], b: &[f64]) -> f64 {

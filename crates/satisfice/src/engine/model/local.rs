@@ -7,7 +7,7 @@ use super::likelihood::likeliest;
 use super::one_answer::OneAnswer;
 use super::pool::{Place, Pool, REFINED, Score};
 use super::process::Process;
-use super::reach::{reach, square};
+use super::reach::{is_within, reach, square};
 use super::record::Record;
 use super::region::TrustRegion;
 use super::roots::steps;
@@ -324,7 +324,7 @@ impl Model {
     ) -> Option<(Score, Vec<f64>)> {
         let (mut x, mut rounded) = (Vec::new(), Vec::new());
         let mut best: Option<(Score, Vec<f64>)> = None;
-        let belief = given.one_answer.belief();
+        let (belief, slope) = (given.one_answer.belief(), self.slope());
         for (score, place) in ranking.take(EXAMINED) {
             let bar = best.as_ref().map(|(score, _)| *score).or(than);
             if bar.is_some_and(|bar| score.order(&bar).is_le()) {
@@ -337,11 +337,11 @@ impl Model {
             }
             if pending
                 .iter()
-                .any(|point| square(given.units, point, &x, &self.reach) <= 1.0)
+                .any(|point| is_within(given.units, point, &x, &self.reach, 1.0))
             {
                 continue;
             }
-            let mut score = self.spread(score, &x, given);
+            let mut score = spread(score, bar, &x, &slope, given);
             if belief < 1.0 && score.hopeful && given.one_answer.is_beside(given.units, &x) {
                 score = score.believed(belief, self.has_logarithms(pending));
             }
@@ -352,24 +352,33 @@ impl Model {
         best
     }
 
-    /// Where no candidate is hopeful, what is left next to a hit is its slope, the lowest there is: candidates lose by being close to one.
-    fn spread<S>(&self, score: Score, x: &[f64], given: &Given<'_, S>) -> Score {
-        if score.hopeful {
-            return score;
-        }
-        let record = given.record;
+    /// For each axis, how far the slope next to a hit goes.
+    fn slope(&self) -> Vec<f64> {
         let deviations = |(&reach, length): (&f64, f64)| (REACHES * reach).max(SCALES * length.min(0.5));
-        let slope: Vec<f64> = self.reach.iter().zip(self.lengths()).map(deviations).collect();
-        let hits = record
-            .hits
-            .iter()
-            .map(|&hit| square(given.units, record.point(hit), x, &slope));
-        let nearest = hits.fold(f64::INFINITY, f64::min);
-        Score {
-            value: score.value - (-nearest / 2.0).exp(),
-            ..score
+        self.reach.iter().zip(self.lengths()).map(deviations).collect()
+    }
+}
+
+/// Where no candidate is hopeful, what is left next to a hit is its slope, the lowest there is: candidates lose by being close to one.
+/// A candidate that is not better than `bar` for that is not looked at any longer.
+fn spread<S>(score: Score, bar: Option<Score>, x: &[f64], slope: &[f64], given: &Given<'_, S>) -> Score {
+    if score.hopeful {
+        return score;
+    }
+    let record = given.record;
+    let (mut nearest, mut spread) = (f64::INFINITY, score);
+    // The latest hits are more often near.
+    for &hit in record.hits.iter().rev() {
+        let distance = square(given.units, record.point(hit), x, slope);
+        if distance < nearest {
+            nearest = distance;
+            spread.value = score.value - (-nearest / 2.0).exp();
+            if bar.is_some_and(|bar| spread.order(&bar).is_le()) {
+                break;
+            }
         }
     }
+    spread
 }
 
 /// What the model learns of points: the values of each output.

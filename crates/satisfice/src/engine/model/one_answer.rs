@@ -4,7 +4,7 @@
 //! a point are one answer, and beside it there are often none. A model cannot know that: it has seen F below delta there, and where it
 //! has seen no miss it expects more of the same.
 
-use super::reach::{middle, reach, square};
+use super::reach::{is_within, middle, reach, square};
 use super::record::Record;
 use super::units::Units;
 use crate::context::Context;
@@ -69,7 +69,7 @@ impl OneAnswer {
     pub(super) fn is_beside(&self, units: &Units, x: &[f64]) -> bool {
         self.regions.chunks_exact(2 * x.len().max(1)).any(|region| {
             let (middle, reach) = region.split_at(x.len());
-            square(units, middle, x, reach) <= BESIDE * BESIDE
+            is_within(units, middle, x, reach, BESIDE)
         })
     }
 

@@ -83,6 +83,22 @@ pub(super) fn middle<S: Real>(
 
 /// Squared distance of two points in reaches; equal points are 0 apart, others at least 1 where a reach is not known.
 pub(super) fn square(units: &Units, a: &[f64], b: &[f64], reach: &[f64]) -> f64 {
+    squares(units, a, b, reach).sum()
+}
+
+/// Whether two points are at most so many reaches apart. Most are farther apart along the first axis already.
+pub(super) fn is_within(units: &Units, a: &[f64], b: &[f64], reach: &[f64], reaches: f64) -> bool {
+    let most = reaches * reaches;
+    let mut sum = 0.0;
+    squares(units, a, b, reach).all(|square| {
+        sum += square;
+        sum <= most
+    })
+}
+
+/// The share of each axis in the squared distance.
+#[inline]
+fn squares(units: &Units, a: &[f64], b: &[f64], reach: &[f64]) -> impl Iterator<Item = f64> {
     let along = |(((a, b), reach), unit): (((&f64, &f64), &f64), &Unit)| {
         if *reach > 0.0 {
             (unit.difference(*a, *b) / reach).powi(2)
@@ -90,5 +106,33 @@ pub(super) fn square(units: &Units, a: &[f64], b: &[f64], reach: &[f64]) -> f64 
             f64::from(u8::from(a != b))
         }
     };
-    a.iter().zip(b).zip(reach).zip(&units.axes).map(along).sum()
+    a.iter().zip(b).zip(reach).zip(&units.axes).map(along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Axis, Space};
+
+    #[test]
+    fn within_so_many_reaches_is_by_the_sum_of_all_axes() {
+        let periodic = Axis::continuous(0.0, 1.0).periodic();
+        let space = Space::<f64>::new([Axis::continuous(0.0, 1.0), periodic, Axis::categorical(4)]).unwrap();
+        let units = Units::of(&space);
+        let (centre, reach) = ([0.5, 0.95, 0.125], [0.1, 0.2, 0.0]);
+        let mut within = 0;
+        for i in 0..1_000_u32 {
+            let at = |step: f64| (f64::from(i) * step).fract();
+            let x = [
+                at(0.754_877),
+                at(0.569_840),
+                (at(0.381) * 4.0).floor() / 4.0 + 0.125,
+            ];
+            let by_the_sum = square(&units, &centre, &x, &reach) <= 4.0;
+            assert_eq!(is_within(&units, &centre, &x, &reach, 2.0), by_the_sum, "{x:?}");
+            within += usize::from(by_the_sum);
+        }
+        // An ellipse with half axes of 0.2 and 0.4 in a quarter of the space, and one of three quarters of its area in the rest: 0.204.
+        assert!((190..220).contains(&within), "{within}");
+    }
 }

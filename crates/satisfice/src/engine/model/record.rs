@@ -31,6 +31,8 @@ pub(super) struct Record {
     pub(super) hits: Vec<usize>,
     /// Indices of points that turned out to be the same as a hit.
     pub(super) duplicates: Vec<usize>,
+    /// Coordinates of both, side by side: every candidate is compared with all of them.
+    answers: Vec<f64>,
     /// Keys of all points.
     seen: HashSet<u64, FixedState>,
 }
@@ -57,6 +59,11 @@ impl Record {
         &self.units[i * self.axes..(i + 1) * self.axes]
     }
 
+    /// The points that are hits or the same as one, in any order.
+    pub(super) fn answers(&self) -> impl Iterator<Item = &[f64]> {
+        self.answers.chunks_exact(self.axes.max(1))
+    }
+
     /// Whether this very point was told.
     pub(super) fn has(&self, units: &[f64]) -> bool {
         self.seen.contains(&key(units))
@@ -69,6 +76,9 @@ impl Record {
             PointKind::Hit => self.hits.push(self.len()),
             PointKind::Duplicate => self.duplicates.push(self.len()),
             PointKind::Miss => {}
+        }
+        if kind != PointKind::Miss {
+            self.answers.extend_from_slice(units);
         }
         self.units.extend_from_slice(units);
         self.values.push(value);
@@ -124,8 +134,13 @@ impl Record {
             components,
             hits,
             duplicates,
+            answers: Vec::new(),
             seen: HashSet::default(),
         };
+        for &i in record.hits.iter().chain(&record.duplicates) {
+            let point = &record.units[i * axes..(i + 1) * axes];
+            record.answers.extend_from_slice(point);
+        }
         for i in 0..record.len() {
             let key = key(record.point(i));
             record.seen.insert(key);
