@@ -3,6 +3,7 @@
 //! A problem may recognise a hit only once it is evaluated (its canonical form is polished). The engine cannot ask for
 //! that radius, but it can learn it.
 
+use super::reach::is_at_most;
 use super::record::Record;
 use super::units::Units;
 
@@ -59,25 +60,17 @@ pub(super) fn is_duplicate(record: &Record, units: &Units, radius: f64, x: &[f64
     radius > 0.0
         && record
             .answers()
-            .any(|answer| is_within(units, answer, x, radius * radius))
-}
-
-/// Whether the squared distance of two points is at most this; most are too far apart along the first axis already.
-#[inline]
-fn is_within(units: &Units, a: &[f64], b: &[f64], most: f64) -> bool {
-    let mut sum = 0.0;
-    for ((a, b), unit) in a.iter().zip(b).zip(&units.axes) {
-        sum += unit.difference(*a, *b).powi(2);
-        if sum > most {
-            return false;
-        }
-    }
-    true
+            .any(|answer| is_at_most(squares(units, answer, x), radius * radius))
 }
 
 fn square(units: &Units, a: &[f64], b: &[f64]) -> f64 {
+    squares(units, a, b).sum()
+}
+
+#[inline]
+fn squares(units: &Units, a: &[f64], b: &[f64]) -> impl Iterator<Item = f64> {
     let pairs = a.iter().zip(b).zip(&units.axes);
-    pairs.map(|((a, b), unit)| unit.difference(*a, *b).powi(2)).sum()
+    pairs.map(|((a, b), unit)| unit.difference(*a, *b).powi(2))
 }
 
 #[cfg(test)]
@@ -103,8 +96,15 @@ mod tests {
         let radius = radius(&record, &units);
         // Duplicates are up to 0.05 from a hit; new hits are 0.2 and more away.
         assert!((radius - 0.1).abs() < 1e-12, "{radius}");
-        assert!(
-            is_duplicate(&record, &units, radius, &[0.95]) && !is_duplicate(&record, &units, radius, &[0.6])
-        );
+        let (axes, numbers, lists) = record.saved();
+        let restored = Record::restored(axes, numbers, lists).unwrap();
+        for record in [record, restored] {
+            assert!(is_duplicate(&record, &units, radius, &[0.95]));
+            assert!(
+                is_duplicate(&record, &units, radius, &[0.2]),
+                "beside a duplicate"
+            );
+            assert!(!is_duplicate(&record, &units, radius, &[0.6]));
+        }
     }
 }

@@ -86,11 +86,16 @@ pub(super) fn square(units: &Units, a: &[f64], b: &[f64], reach: &[f64]) -> f64 
     squares(units, a, b, reach).sum()
 }
 
-/// Whether two points are at most so many reaches apart. Most are farther apart along the first axis already.
+/// Whether two points are at most so many reaches apart.
 pub(super) fn is_within(units: &Units, a: &[f64], b: &[f64], reach: &[f64], reaches: f64) -> bool {
-    let most = reaches * reaches;
+    is_at_most(squares(units, a, b, reach), reaches * reaches)
+}
+
+/// Whether the sum of squares is at most this. Most points are too far apart along the first axis already.
+#[inline]
+pub(super) fn is_at_most(mut squares: impl Iterator<Item = f64>, most: f64) -> bool {
     let mut sum = 0.0;
-    squares(units, a, b, reach).all(|square| {
+    squares.all(|square| {
         sum += square;
         sum <= most
     })
