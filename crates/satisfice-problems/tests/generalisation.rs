@@ -113,3 +113,14 @@ fn a_model_leaves_the_lowest_stair() {
     println!("surrogate, random: {found:?}");
     assert!(found[0] > 0.8 * found[1], "{found:?}");
 }
+
+/// 400 uniform points find 6.5 of eight boxes that fill 3 % of six axes and whose surroundings are flat, the points of two grids all: 1 + 64 + 729,
+/// of which the first 65 leave out no box of this size inside the bounds.
+#[test]
+fn no_plateau_is_overlooked_by_the_default() {
+    for instance in ["70", "71", "72"] {
+        let stairs = [("radius", "0.2"), ("steps", "3"), ("instance", instance)];
+        let found = hits_within::<SmallRegions>(400, "portfolio", &stairs) / SEEDS as f64;
+        assert!(found > 7.5, "{found} of 8, instance {instance}");
+    }
+}

@@ -11,6 +11,7 @@ use super::climbers::Climbers;
 use super::credit::{Credit, Patches};
 use super::drought::Drought;
 use super::guests::Guests;
+use super::inner_grid::InnerGrid;
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::pace::Pace;
@@ -67,6 +68,8 @@ pub(super) struct Sources<S> {
     drought: Drought,
     /// Uniform points, and where swarms start.
     even: EvenPoints,
+    /// Instead of uniform points, where F is a step function.
+    grid: InnerGrid,
     /// Who brings the search closer to a first hit.
     progress: Progress,
     /// Evaluations that were planned when the slice began, if that was known.
@@ -109,6 +112,7 @@ impl<S: Real> Sources<S> {
             patches: Patches::default(),
             drought: Drought::default(),
             even: EvenPoints::default(),
+            grid: InnerGrid::default(),
             progress: Progress::default(),
             planned: None,
             guests: Guests::new(),
@@ -175,6 +179,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.patches = Patches::default();
         self.drought = Drought::default();
         self.even = EvenPoints::default();
+        self.grid = InnerGrid::default();
         self.progress = Progress::default();
         self.chosen = None;
         // The tags of the last batch name sources of the slice before.
@@ -345,7 +350,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position.save(state);
         (self.whole, self.patches, self.progress.clone()).save(state);
         self.drought.save(state);
-        self.even.save(state);
+        (self.even.clone(), self.grid.clone()).save(state);
         (self.chosen, self.planned, self.pace.is_timed()).save(state);
         (self.batch, self.block, self.next_descent).save(state);
         self.waiting.save(state);
@@ -370,7 +375,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position = from.read()?;
         (self.whole, self.patches, self.progress) = from.read()?;
         self.drought = from.read()?;
-        self.even = from.read()?;
+        (self.even, self.grid) = from.read()?;
         let timed;
         (self.chosen, self.planned, timed) = from.read()?;
         self.pace = Pace::new(timed);
@@ -389,6 +394,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         let out = || self.tags.iter().copied().chain(self.awaited.tags());
         let trials_fit = self.awaited.fit(self.position.len());
         if !trials_fit
+            || !self.grid.is_sound()
             || self.waiting.len() != descents
             || !out().all(descents_fit)
             || !self.guests.fit(self.tags.len(), out(), chosen)

@@ -59,7 +59,7 @@ impl<S: Real> Sources<S> {
     }
 
     /// Whether F may have slopes: it is not known to be a step function.
-    fn has_slopes(&self) -> bool {
+    pub(super) fn has_slopes(&self) -> bool {
         !self.progress.levels.are_few()
     }
 
@@ -95,7 +95,7 @@ impl<S: Real> Sources<S> {
                 best = (worth, tag);
             }
         };
-        let trial = if modelled {
+        let trial = if modelled || steps {
             Trial::beside_model(self.barren(), self.whole.missed())
         } else {
             Trial::new(self.planned, self.barren()).until_known(&self.whole)

@@ -82,7 +82,13 @@ impl<S: Real> Sources<S> {
                         return false;
                     }
                 } else {
-                    self.even.draw_inwards(context.space(), rng, &mut self.position);
+                    let space = context.space();
+                    // Of random keys the order counts, and most points of a grid have keys in common.
+                    let is_blind = !self.has_slopes() && !self.has_neighbours;
+                    let is_in_grid = is_blind && self.grid.draw(space, self.planned, rng, &mut self.position);
+                    if !is_in_grid {
+                        self.even.draw_inwards(space, rng, &mut self.position);
+                    }
                     if !self.is_fresh(context) {
                         return true; // this draw was rejected, the next may be accepted
                     }
