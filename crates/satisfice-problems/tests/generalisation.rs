@@ -114,8 +114,8 @@ fn a_model_leaves_the_lowest_stair() {
     assert!(found[0] > 0.8 * found[1], "{found:?}");
 }
 
-/// 400 uniform points find 6.5 of eight boxes that fill 3 % of six axes and whose surroundings are flat, the points of two grids all: 1 + 64 + 729,
-/// of which the first 65 leave out no box of this size inside the bounds.
+/// 400 uniform points find 6.5 of eight boxes that fill 3 % of six axes and whose surroundings are flat. One of the 65 points of two grids is in each
+/// box inside the bounds whose sides are above a third.
 #[test]
 fn no_plateau_is_overlooked_by_the_default() {
     for instance in ["70", "71", "72"] {

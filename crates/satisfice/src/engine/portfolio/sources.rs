@@ -394,7 +394,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         let out = || self.tags.iter().copied().chain(self.awaited.tags());
         let trials_fit = self.awaited.fit(self.position.len());
         if !trials_fit
-            || !self.grid.is_sound()
             || self.waiting.len() != descents
             || !out().all(descents_fit)
             || !self.guests.fit(self.tags.len(), out(), chosen)
