@@ -31,6 +31,10 @@ impl<S: Real> Share<S> {
         self.outcomes.resize(self.waits, Outcome::NotEvaluated);
     }
 
+    pub(super) fn dimension(&self) -> usize {
+        self.points.dimension()
+    }
+
     pub(super) fn len(&self) -> usize {
         self.outcomes.len()
     }

@@ -13,6 +13,9 @@ const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
 /// Weight of descents by quadratic models, and of those by components.
 const QUADRATIC_WEIGHT: f64 = 4.0;
 const COMPONENTS_WEIGHT: f64 = 16.0;
+/// Before one has come, they are expected to need so many times the evaluations of a simplex for a hit at least: where most evaluations of
+/// others hit, a multiple of that would be more than one hit an evaluation.
+const SIMPLICES: f64 = 2.0;
 
 impl<S: Real> Guest<S> {
     /// Its weight, unless it is not worth trying. `descends_first`: whether descents take part in the search for a first hit.
@@ -28,10 +31,15 @@ impl<S: Real> Guest<S> {
         let is_worth_trying = self.arm.is_worth_trying(all, trial);
         match (self.kind, &self.engine) {
             (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
-            (GuestKind::Quadratic, _) if components => {
-                (is_worth_trying || descends_first).then_some(COMPONENTS_WEIGHT)
+            (GuestKind::Quadratic, _) => {
+                let weight = if components {
+                    COMPONENTS_WEIGHT
+                } else {
+                    QUADRATIC_WEIGHT
+                };
+                let most = all.price() / (SIMPLICES * (self.share.dimension() + 1) as f64);
+                (is_worth_trying || descends_first).then_some(weight.min(most))
             }
-            (GuestKind::Quadratic, _) => (is_worth_trying || descends_first).then_some(QUADRATIC_WEIGHT),
             (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
             (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
             (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
