@@ -54,3 +54,28 @@ impl<S: Real> Guest<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Sizes;
+    use super::*;
+
+    #[test]
+    fn descents_without_a_hit_are_not_expected_to_hit_more_often_than_they_can() {
+        let guest = Guest::<f64>::new(GuestKind::Quadratic, Sizes::default(), 3);
+        let expected = |all: &Credit, components| {
+            let weight = guest.weight(all, Trial::new(None, 1), true, components, false);
+            weight.unwrap() / all.price()
+        };
+        let (rare, mut frequent) = (Credit::default(), Credit::default());
+        assert_eq!(expected(&rare, false), QUADRATIC_WEIGHT / rare.price());
+        for _ in 0..50 {
+            frequent.count(true, 1.0);
+        }
+        // Two evaluations for each of the four corners of a simplex.
+        for components in [false, true] {
+            let yields = expected(&frequent, components);
+            assert!((yields - 0.125).abs() < 1e-12, "{yields}");
+        }
+    }
+}
