@@ -13,8 +13,8 @@ const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
 /// Weight of descents by quadratic models, and of those by components.
 const QUADRATIC_WEIGHT: f64 = 4.0;
 const COMPONENTS_WEIGHT: f64 = 16.0;
-/// Before one has come, they are expected to need so many times the evaluations of a simplex for a hit at least: where most evaluations of
-/// others hit, a multiple of that would be more than one hit an evaluation.
+/// Until they have a hit, they are expected to need at least so many evaluations for each corner of a simplex: where most evaluations of the
+/// others hit, a multiple of that yield would be more than one hit an evaluation.
 const SIMPLICES: f64 = 2.0;
 
 impl<S: Real> Guest<S> {
