@@ -165,19 +165,29 @@ impl Model {
 
     /// Adds the points that were told since, each of which is first predicted.
     pub(super) fn follow(&mut self, record: &Record, skill: &mut Skill) {
+        let first = self.first_mean(record);
         for i in self.taken..record.len() {
             if record.duplicates.binary_search(&i).is_err() {
                 self.region.known.push(i);
                 let values = self.target.of_point(record, i);
                 let errors = self.process.push(record.point(i), &values);
                 if self.target.units.is_empty() {
-                    skill.count(values[0], errors[0]);
+                    skill.count(values[0], errors[0], first);
                 } else {
                     skill.count_share(self.process.share_of_variance(&errors));
                 }
             }
         }
         self.taken = record.len();
+    }
+
+    /// The mean of what is learned of the first points, which no model has chosen; 0 where components are learned.
+    fn first_mean(&self, record: &Record) -> f64 {
+        if !self.target.units.is_empty() {
+            return 0.0;
+        }
+        let first = &record.values[..design_size(record.axes()).min(record.len())];
+        first.iter().map(|&value| self.target.of(value)).sum::<f64>() / first.len().max(1) as f64
     }
 
     fn lengths(&self) -> Vec<f64> {
@@ -379,6 +389,11 @@ fn spread<S>(score: Score, bar: Option<Score>, x: &[f64], slope: &[f64], given: 
         }
     }
     spread
+}
+
+/// How many points are told before there is a model: the values of fewer say too little about its scales.
+pub(super) fn design_size(axes: usize) -> usize {
+    axes + 2
 }
 
 /// What the model learns of points: the values of each output.

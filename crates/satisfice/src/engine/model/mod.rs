@@ -27,5 +27,6 @@ mod units;
 
 pub use gaussian_process::GaussianProcess;
 pub use quadratic::QuadraticDescent;
+pub(super) use skill::Yardstick;
 pub(super) use surrogate::ModelledSearch;
 pub use surrogate::Surrogate;

@@ -1,10 +1,10 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
-use super::local::{Given, Model, ModelProposal};
+use super::local::{Given, Model, ModelProposal, design_size};
 use super::one_answer::OneAnswer;
 use super::promise::Promise;
 use super::record::{PointKind, Record};
-use super::skill::Skill;
+use super::skill::{Skill, Yardstick};
 use super::units::Units;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -131,9 +131,9 @@ impl<S: Real> ModelledSearch<S> {
         self.settings.batch = points.max(1);
     }
 
-    /// Whether the model predicts F better than its mean does; `None` before that is known.
-    pub(in crate::engine) fn is_useful(&self) -> Option<bool> {
-        self.skill.is_useful()
+    /// Whether the model predicts F better than this mean does; `None` before that is known.
+    pub(in crate::engine) fn is_useful(&self, yardstick: Yardstick) -> Option<bool> {
+        self.skill.is_useful(yardstick)
     }
 
     /// Whether it expects no hit of its latest proposals.
@@ -160,11 +160,6 @@ impl<S: Real> ModelledSearch<S> {
         Some(self.believed(proposal.probability))
     }
 
-    /// How many points are told before there is a model: the values of fewer say too little about its scales.
-    fn design_size(&self) -> usize {
-        self.units.len() + 2
-    }
-
     /// Points that were told, those of known solutions aside.
     fn told(&self) -> usize {
         self.record.len() - self.record.duplicates.len()
@@ -173,7 +168,7 @@ impl<S: Real> ModelledSearch<S> {
     /// The next point of the design that is new: the first one is the middle, where axes have one. Misses of others count for its points;
     /// while answers are awaited, it goes on.
     fn first_point(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
-        let (axes, size) = (self.units.len(), self.design_size());
+        let (axes, size) = (self.units.len(), design_size(self.units.len()));
         let mut x = Vec::new();
         let misses = self.told() - self.record.hits.len();
         for _ in 0..TRIES.max(size) {
@@ -206,7 +201,7 @@ impl<S: Real> ModelledSearch<S> {
 
     /// The best candidate of the model.
     fn modelled(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<ModelProposal> {
-        if self.told() < self.design_size() {
+        if self.told() < design_size(self.units.len()) {
             return None;
         }
         self.one_answer

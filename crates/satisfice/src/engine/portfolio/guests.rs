@@ -15,6 +15,7 @@ use flood_alone::FloodAlone;
 use member::Member;
 use share::Share;
 use sizes::{MOST_PROPOSALS, Sizes};
+use weights::Situation;
 
 use super::credit::{Credit, Trial};
 use super::progress::Ground;
@@ -23,7 +24,7 @@ use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::exact::BranchAndBound;
 use crate::engine::local::{Niching, RestartedCmaEs};
-use crate::engine::model::{ModelledSearch, QuadraticDescent, Surrogate};
+use crate::engine::model::{ModelledSearch, QuadraticDescent, Surrogate, Yardstick};
 use crate::engine::{Ask, EngineConfig};
 use crate::error::Error;
 use crate::scalar::Real;
@@ -293,10 +294,19 @@ impl<S: Real> Guests<S> {
         self.guests[index].place()
     }
 
+    /// What the model has to predict better than.
+    fn yardstick(&self) -> Yardstick {
+        if self.ground.is_some() {
+            Yardstick::Latest
+        } else {
+            Yardstick::First
+        }
+    }
+
     /// Whether a model of F is open and may be of use.
     pub(super) fn has_model(&self) -> bool {
         self.guests.iter().any(|guest| match &guest.engine {
-            Member::Model(model) => guest.open && model.is_useful() != Some(false),
+            Member::Model(model) => guest.open && model.is_useful(self.yardstick()) != Some(false),
             Member::Other(_) => false,
         })
     }
@@ -333,7 +343,12 @@ impl<S: Real> Guests<S> {
         steps: bool,
     ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
         let leads = self.components && !self.promises_little();
-        let descends_first = modelled && self.continuous && !leads && !steps;
+        let situation = Situation {
+            descends_first: modelled && self.continuous && !leads && !steps,
+            components: self.components,
+            steps,
+            yardstick: self.yardstick(),
+        };
         let ready = self.guests.iter().enumerate();
         let mut offered = None;
         ready.filter_map(move |(index, guest)| {
@@ -345,7 +360,7 @@ impl<S: Real> Guests<S> {
                 GuestKind::Quadratic if modelled && self.components => Trial::beside_components(all.missed()),
                 _ => trial,
             };
-            let weight = guest.weight(all, trial, descends_first, self.components, steps);
+            let weight = guest.weight(all, trial, situation);
             weight.map(|weight| (index, &guest.arm, weight))
         })
     }

@@ -78,15 +78,15 @@ impl<S: Real> Guests<S> {
         })
     }
 
-    /// What the model expects of its next proposal, where that decides whether it is next: in the search for the first hit, and on a smooth F
-    /// after it.
+    /// What the model expects of its next proposal, where that decides whether it is next: in the search for the first hit, and after it
+    /// on a smooth F or where nothing leads down.
     pub(in crate::engine::portfolio) fn expectation(
         &mut self,
         seekers: Option<Seekers>,
         context: &dyn Context<S>,
         rng: &mut SearchRng,
     ) -> Option<Expectation> {
-        if seekers.is_none() && self.ground != Some(Ground::Smooth) {
+        if seekers.is_none() && !matches!(self.ground, Some(Ground::Smooth) | None) {
             return None;
         }
         let mut guests = self.guests.iter();

@@ -1,6 +1,7 @@
 //! What an engine weighs in the draw of the next source.
 
 use super::{Guest, GuestKind, MODELLED, Member};
+use crate::engine::model::Yardstick;
 use crate::engine::portfolio::credit::{Credit, Trial};
 use crate::scalar::Real;
 
@@ -17,17 +18,28 @@ const COMPONENTS_WEIGHT: f64 = 16.0;
 /// others hit, a multiple of that yield would be more than one hit an evaluation.
 const SIMPLICES: f64 = 2.0;
 
+/// What weights depend on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Situation {
+    /// Whether descents take part in the search for a first hit.
+    pub(super) descends_first: bool,
+    /// Whether the problem tells the components of F.
+    pub(super) components: bool,
+    /// Whether F is a step function.
+    pub(super) steps: bool,
+    /// What the model has to predict better than.
+    pub(super) yardstick: Yardstick,
+}
+
 impl<S: Real> Guest<S> {
-    /// Its weight, unless it is not worth trying. `descends_first`: whether descents take part in the search for a first hit.
-    /// `components`: whether the problem tells them. `steps`: whether F is a step function.
-    pub(super) fn weight(
-        &self,
-        all: &Credit,
-        trial: Trial,
-        descends_first: bool,
-        components: bool,
-        steps: bool,
-    ) -> Option<f64> {
+    /// Its weight, unless it is not worth trying.
+    pub(super) fn weight(&self, all: &Credit, trial: Trial, situation: Situation) -> Option<f64> {
+        let Situation {
+            descends_first,
+            components,
+            steps,
+            yardstick,
+        } = situation;
         let is_worth_trying = self.arm.is_worth_trying(all, trial);
         match (self.kind, &self.engine) {
             (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
@@ -42,7 +54,7 @@ impl<S: Real> Guest<S> {
             }
             (GuestKind::Flood, _) => is_worth_trying.then_some(1.0),
             (GuestKind::Regions, _) => is_worth_trying.then_some(0.3),
-            (GuestKind::Model, Member::Model(model)) => match model.is_useful() {
+            (GuestKind::Model, Member::Model(model)) => match model.is_useful(yardstick) {
                 None | Some(true) if all.evaluations() >= MODELLED => is_worth_trying.then_some(1.0),
                 None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
                 Some(true) => Some(MODEL_WEIGHT),
@@ -64,7 +76,13 @@ mod tests {
     fn descents_without_a_hit_are_not_expected_to_hit_more_often_than_they_can() {
         let guest = Guest::<f64>::new(GuestKind::Quadratic, Sizes::default(), 3);
         let expected = |all: &Credit, components| {
-            let weight = guest.weight(all, Trial::new(None, 1), true, components, false);
+            let situation = Situation {
+                descends_first: true,
+                components,
+                steps: false,
+                yardstick: Yardstick::Latest,
+            };
+            let weight = guest.weight(all, Trial::new(None, 1), situation);
             weight.unwrap() / all.price()
         };
         let (rare, mut frequent) = (Credit::default(), Credit::default());
