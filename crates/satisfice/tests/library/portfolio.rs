@@ -181,6 +181,37 @@ fn the_default_is_nearly_as_good_as_its_model_on_a_smooth_level_set() {
     );
 }
 
+/// Of 10,000 planned evaluations the model has a part where hits are rare, not where they are frequent or where F has slopes.
+#[test]
+fn a_model_is_opened_once_hits_turn_out_to_be_rare() {
+    let proposed = |space: Space<f64>, delta: f64, fitness: fn(&[f64]) -> f64| {
+        let problem = from_fn(space, delta, fitness).boxed();
+        let report = Search::new()
+            .seed(1)
+            .run(&problem, &Budget::evaluations(10_000))
+            .unwrap();
+        let model = report.sources.names.iter().position(|name| name == "model");
+        (
+            report.sources.rows.last().unwrap().proposed[model.unwrap()],
+            report.hit_count(),
+        )
+    };
+    // Five traps of five bits: 41 hits in 33 million points, of which one is found without a model.
+    let traps = |x: &[f64]| {
+        let trap = |bits: &[f64]| match bits.iter().sum() {
+            5.0 => 0.0,
+            ones => 1.0 + ones,
+        };
+        x.chunks(5).map(trap).sum()
+    };
+    let (model, hits) = proposed(Space::lattice(25, 2).unwrap(), 2.5, traps);
+    assert!(model > 100 && hits > 5, "{model} {hits}");
+    let sum = |x: &[f64]| x.iter().sum();
+    assert_eq!(proposed(Space::lattice(4, 100).unwrap(), 100.0, sum).0, 0);
+    let square = |x: &[f64]| x.iter().map(|x| x * x).sum();
+    assert_eq!(proposed(Space::cube(4, -9.0, 8.0).unwrap(), 1e-4, square).0, 0);
+}
+
 /// 2,000 evaluations of a cheap F take a millisecond, 1,000 proposals of the model half a second.
 #[test]
 fn a_limit_of_time_that_is_short_for_the_model_keeps_it_out() {

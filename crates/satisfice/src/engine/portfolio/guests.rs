@@ -4,6 +4,7 @@ mod first_hit;
 mod flood_alone;
 mod lessons;
 mod member;
+mod opening;
 mod share;
 mod sizes;
 mod weights;
@@ -32,15 +33,10 @@ use crate::seed::SearchRng;
 use crate::space::AxisKind;
 use crate::state::{Part, Reader, State};
 
-/// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited and time leaves room for it, or where an
-/// evaluation takes more than `EXPENSIVE` seconds and at most `MODELLED` have been made. It leads for so many evaluations; from then on it
-/// competes by its yield.
+/// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited and time leaves room for it, or where it is
+/// opened [later](opening). It leads while fewer than `MODELLED` evaluations have been made; from then on it competes by its yield.
 const MODELLED: u64 = MOST_PROPOSALS;
-const EXPENSIVE: f64 = 5e-3;
 const MODEL_AXES: usize = 50;
-/// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
-/// about half as long. Those by components always run.
-const QUADRATIC: f64 = 2e-5;
 /// With fewer evaluations left none are spent on bounds: a split asks for several before there is anything to evaluate.
 const LAST_BOUNDS: u64 = 8;
 /// With at most this many axes, a matrix takes no more memory and time than a few steps.
@@ -247,26 +243,6 @@ impl<S: Real> Guests<S> {
     fn kinds(&self) -> impl Iterator<Item = &Guest<S>> {
         let kinds = self.guests.chunk_by(|a, b| a.kind == b.kind);
         kinds.filter_map(|same| same.first())
-    }
-
-    /// Opens the model and the descents by quadratic models once F turns out to be expensive enough for them.
-    pub(super) fn look_at_price(&mut self, context: &dyn Context<S>) {
-        let Some(seconds) = context.seconds_an_evaluation() else {
-            return;
-        };
-        let axes = context.space().axes();
-        let is_there = |kind: GuestKind| self.guests.iter().any(|guest| guest.kind == kind);
-        let opens_model = seconds > EXPENSIVE
-            && context.evaluations() <= MODELLED
-            && axes.len() <= MODEL_AXES
-            && !is_there(GuestKind::Model);
-        let opens_quadratic = seconds > QUADRATIC && is_smooth(context) && !is_there(GuestKind::Quadratic);
-        if opens_model {
-            self.open(GuestKind::Model, context);
-        }
-        if opens_quadratic {
-            self.open(GuestKind::Quadratic, context);
-        }
     }
 
     /// Begins a batch, in which no engine has a part yet.

@@ -57,6 +57,7 @@ impl<S: Real> Sources<S> {
             self.waiting.push(false);
         }
         self.guests.look_at_price(context);
+        self.guests.look_at_yield(context, &self.whole);
         if let Some(visited) = &self.visited
             && self.scan.goes_on(context, visited, PROBES, SCANNED, &self.whole)
         {
