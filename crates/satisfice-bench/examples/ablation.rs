@@ -56,7 +56,6 @@ const ENGINES: [(&str, &str); 17] = [
     ("pso-latest-hit", ""),
     ("portfolio", ""),
     ("portfolio", "without=swarms"),
-    ("portfolio", "without=climbers"),
     ("portfolio", "without=steps"),
     ("portfolio", "without=learning"),
     ("portfolio", "without=recombination"),

@@ -240,7 +240,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     }
 
     /// Points that the next slice evaluates first, as values: one number per axis, inside the bounds and whole on integer axes. They
-    /// are counted like all others. Engines are told of them: descents and climbers start at the best ones, models learn
+    /// are counted like all others. Engines are told of them: descents start at the best ones, models learn
     /// from all; swarms follow those that hit.
     ///
     /// A slice refuses to begin with a point that is not of the space: [`Error::StartPoint`] says which one.

@@ -119,7 +119,7 @@ impl<S: Real> RestartedDescent<S> {
     }
 
     /// Keeps points that the user has given.
-    pub(super) fn keep_starts(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+    pub(in crate::engine) fn keep_starts(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
         for (position, outcome) in batch.points().zip(outcomes) {
             if let Outcome::Miss(fitness) = *outcome {
                 let place = self.starts.partition_point(|(other, _)| *other > fitness);

@@ -1,12 +1,10 @@
 //! The default engine: sources of candidates that compete for evaluations by their yield.
 
-mod climbers;
 pub(super) mod credit;
 mod drought;
 mod guests;
 mod inner_grid;
 mod levels;
-mod moves;
 mod near_misses;
 mod neighbourhoods;
 mod pace;
@@ -45,8 +43,6 @@ engine_choice! {
         Nothing = "none",
         /// Small quantum-behaved swarms.
         Swarms = "swarms",
-        /// Restarted local searches.
-        Climbers = "climbers",
         /// Known steps from hit to hit.
         Steps = "steps",
         /// New steps, learned from differences of hits.
@@ -79,8 +75,8 @@ engine_settings! {
     ///   of evaluations once it would no longer fit later;
     /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
     ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness;
-    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012; local searches by adaptive moves;
-    ///   uniform points, on a lattice without repetition, on continuous axes evenly and somewhat denser in the middle, of a step function on
+    /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012;
+    /// - uniform points, on a lattice without repetition, on continuous axes evenly and somewhat denser in the middle, of a step function on
     ///   finer and finer grids that no box inside the bounds slips through, unless the problem names neighbours;
     /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
     ///   hits.

@@ -9,7 +9,6 @@ use crate::scalar::Real;
 pub(super) enum Source {
     Uniform,
     Swarm,
-    Climber,
     /// A hit moved by a step that is known.
     Step,
     /// A hit moved by the difference of two hits, on trial.
@@ -41,7 +40,7 @@ impl Source {
     /// The role of a source that is not a [whole engine](Source::Guest).
     pub(super) fn role(self) -> Role {
         match self {
-            Self::Uniform | Self::Swarm | Self::Climber | Self::Descent => Role::Explores,
+            Self::Uniform | Self::Swarm | Self::Descent => Role::Explores,
             Self::Step | Self::Trial | Self::Cross | Self::Neighbour => Role::Exploits,
             Self::NearMiss | Self::Guest => Role::Apart,
         }
@@ -49,13 +48,12 @@ impl Source {
 }
 
 /// Number of all sources, whole engines included.
-pub(super) const PLACES: usize = 15;
+pub(super) const PLACES: usize = 14;
 
 /// The names of all sources in the order of [`Source`], then those of the whole engines in the order of their kinds.
 const NAMES: [&str; PLACES] = [
     "uniform",
     "swarms",
-    "climbers",
     "steps",
     "trial steps",
     "recombination",
@@ -90,23 +88,22 @@ impl Tally {
     }
 }
 
-/// A candidate's source, and the index of the swarm, climber, step, trial or engine within it.
+/// A candidate's source, and the index of the swarm, descent, step, trial or engine within it.
 pub(super) type Tag = (Source, usize);
 
 /// Number of sources that are arms of the bandit, and the indices of some.
-pub(super) const ARMS: usize = 8;
-pub(super) const TRIAL: usize = 3;
-pub(super) const CROSS: usize = 4;
-pub(super) const DESCENT: usize = 5;
-pub(super) const STEP: usize = 6;
-pub(super) const NEIGHBOUR: usize = 7;
+pub(super) const ARMS: usize = 7;
+pub(super) const TRIAL: usize = 2;
+pub(super) const CROSS: usize = 3;
+pub(super) const DESCENT: usize = 4;
+pub(super) const STEP: usize = 5;
+pub(super) const NEIGHBOUR: usize = 6;
 
 /// The arm of a source. Near misses and whole engines count for themselves.
 pub(super) fn arm_of(source: Source) -> Option<usize> {
     match source {
         Source::Uniform => Some(0),
         Source::Swarm => Some(1),
-        Source::Climber => Some(2),
         Source::Trial => Some(TRIAL),
         Source::Cross => Some(CROSS),
         Source::Descent => Some(DESCENT),

@@ -7,7 +7,6 @@ mod proposals;
 
 use awaited::PointsAwaited;
 
-use super::climbers::Climbers;
 use super::credit::{Credit, Patches};
 use super::drought::Drought;
 use super::guests::Guests;
@@ -80,7 +79,6 @@ pub(super) struct Sources<S> {
     /// The lattice point by point, once uniform draws would mostly repeat points, or if the budget has room for all.
     scan: Scan,
     swarms: Swarms<S>,
-    climbers: Climbers<S>,
     steps: Option<Translations<S>>,
     neighbourhoods: Neighbourhoods<S>,
     near_misses: NearMisses<S>,
@@ -125,7 +123,6 @@ impl<S: Real> Sources<S> {
                 settings.alpha,
                 settings.restart,
             ),
-            climbers: Climbers::new(),
             steps: None,
             neighbourhoods: Neighbourhoods::default(),
             timing: settings.neighbours,
@@ -135,6 +132,14 @@ impl<S: Real> Sources<S> {
             tally: Tally::default(),
             trials: Vec::new(),
             position: Vec::new(),
+        }
+    }
+
+    /// Has at least this many descents.
+    fn grow_descents(&mut self, count: usize) {
+        while self.descents.len() < count {
+            self.descents.push(RestartedDescent::new(0.25, 1e-6));
+            self.waiting.push(false);
         }
     }
 
@@ -169,7 +174,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         let unprobed = Probes::leave_no_room(space, PROBES, context.evaluations_planned());
         self.scan = Scan::new(space, unprobed);
         self.swarms.begin(dimension);
-        self.climbers.begin(context);
         self.descents.clear();
         self.waiting.clear();
         self.next_descent = 0;
@@ -258,11 +262,8 @@ impl<S: Real> Engine<S> for Sources<S> {
             });
         }
         if origin == Origin::Start {
-            for (position, outcome) in batch.points().zip(outcomes) {
-                if let Outcome::Miss(fitness) = *outcome {
-                    self.climbers.offer(position, fitness);
-                }
-            }
+            self.grow_descents(1);
+            self.descents[0].keep_starts(batch, outcomes);
         }
         if is_own {
             if let Some((Source::Uniform, 1)) = self.tags.first() {
@@ -284,7 +285,6 @@ impl<S: Real> Engine<S> for Sources<S> {
             let (position, outcome) = (batch.point(i), outcomes[i]);
             match source {
                 Source::Swarm => self.swarms.tell(index, position, outcome),
-                Source::Climber => self.climbers.tell(index, position, outcome),
                 Source::Step => {
                     if let Some(steps) = &mut self.steps {
                         steps.count(index, outcome.is_hit());
@@ -292,17 +292,11 @@ impl<S: Real> Engine<S> for Sources<S> {
                 }
                 Source::Neighbour => self.neighbourhoods.count(outcome.fitness()),
                 Source::NearMiss => self.near_misses.count(outcome.is_hit()),
-                // Hits are inexact on continuous axes: a recombination of two may just miss a third.
-                Source::Cross => {
-                    if let (None, Outcome::Miss(fitness)) = (&self.visited, outcome) {
-                        self.climbers.offer(position, fitness);
-                    }
-                }
                 Source::Descent => {
                     self.waiting[index] = false;
                     self.descents[index].learn(position, outcome);
                 }
-                Source::Uniform | Source::Trial | Source::Guest => {}
+                Source::Uniform | Source::Trial | Source::Cross | Source::Guest => {}
             }
         }
         if self.visited.is_none() {
@@ -341,7 +335,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.visited.save(state);
         self.scan.save(state);
         self.swarms.save(state);
-        self.climbers.save(state);
         self.steps.save(state);
         self.neighbourhoods.save(state);
         self.near_misses.save(state);
@@ -366,7 +359,6 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.visited = from.read()?;
         self.scan = from.read()?;
         self.swarms.restore(from)?;
-        self.climbers.restore(from)?;
         self.steps = from.read()?;
         self.neighbourhoods.restore(from)?;
         self.near_misses.restore(from)?;

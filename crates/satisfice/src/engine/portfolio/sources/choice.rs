@@ -110,9 +110,6 @@ impl<S: Real> Sources<S> {
         if uses(Omitted::Swarms) && (steps || is_worth(1)) {
             offer(self.arms[1].draw(price, swarm, rng), (Source::Swarm, 0));
         }
-        if uses(Omitted::Climbers) && is_worth(2) {
-            offer(self.arms[2].draw(price, 0.5, rng), (Source::Climber, 0));
-        }
         let hits = self.hit_count();
         if uses(Omitted::Learning) && hits >= 3 && is_worth(TRIAL) {
             offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));

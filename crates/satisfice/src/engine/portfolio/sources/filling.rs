@@ -6,7 +6,6 @@ use super::proposals::SCANNED;
 use crate::batch::Batch;
 use crate::context::Context;
 use crate::engine::Ask;
-use crate::engine::local::descent::RestartedDescent;
 use crate::engine::portfolio::guests::GuestAnswer;
 use crate::engine::portfolio::source::Source;
 use crate::engine::portfolio::visited::Visited;
@@ -51,11 +50,7 @@ impl<S: Real> Sources<S> {
             .unwrap_or_else(|| (made / slow).clamp(1, LARGEST).max(wanted));
         let at_work = if in_any_order { at_once } else { self.batch };
         self.block = at_work.div_ceil(4);
-        self.climbers.begin_batch(self.block);
-        while self.descents.len() < self.block {
-            self.descents.push(RestartedDescent::new(0.25, 1e-6));
-            self.waiting.push(false);
-        }
+        self.grow_descents(self.block);
         self.guests.look_at_price(context);
         self.guests.look_at_yield(context, &self.whole);
         if let Some(visited) = &self.visited

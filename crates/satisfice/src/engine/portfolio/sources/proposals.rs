@@ -51,7 +51,6 @@ impl<S: Real> Sources<S> {
                 self.swarms
                     .propose(context.space(), self.visited.as_ref(), &mut self.even, rng, out)
             }
-            Source::Climber => self.climbers.propose(context, self.visited.as_ref(), rng, out),
             Source::Descent => {
                 if self.descended == self.block {
                     return false;
@@ -149,16 +148,14 @@ impl<S: Real> Sources<S> {
         let Some(index) = proposed else {
             return false;
         };
-        if matches!(source, Source::Swarm | Source::Climber)
-            && self.is_repeated(context, (source, index), out)
-        {
+        if source == Source::Swarm && self.is_repeated(context, (source, index), out) {
             return true;
         }
         self.tags.push((source, index));
         true
     }
 
-    /// Takes back the last proposal of a swarm, a climber or a descent if that point was visited before. Its source is told of a point
+    /// Takes back the last proposal of a swarm or a descent if that point was visited before. Its source is told of a point
     /// without a new hit, and a miss is counted.
     fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
         let space = context.space();
@@ -172,8 +169,7 @@ impl<S: Real> Sources<S> {
         }
         match source {
             Source::Swarm => self.swarms.tell(index, out.point(last), Outcome::NonFinite),
-            Source::Descent => self.descents[index].learn(out.point(last), Outcome::NonFinite),
-            _ => self.climbers.tell(index, out.point(last), Outcome::NonFinite),
+            _ => self.descents[index].learn(out.point(last), Outcome::NonFinite),
         }
         if let Some(arm) = arm_of(source) {
             self.rejected(arm);
