@@ -71,7 +71,11 @@ fn every_hit_is_a_hit_and_listed_once() {
         .count();
     assert_eq!(report.hit_count(), all, "{:?}", report.counts);
     // Four separate searches would have found nearly three quarters of their hits more than once.
-    assert!(report.counts.duplicates < 2 * all as u64, "{:?}", report.counts);
+    assert!(
+        report.counts.duplicates < 3 * all as u64 / 2,
+        "{:?}",
+        report.counts
+    );
     assert!(report.hits().map(|hit| hit.evaluation).is_sorted());
     assert_eq!(report.counts.probes, 800);
 }

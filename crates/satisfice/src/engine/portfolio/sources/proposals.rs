@@ -18,10 +18,11 @@ const DESCENT_TRIES: usize = 64;
 const CROSS_TRIES: usize = 4;
 
 impl<S: Real> Sources<S> {
-    /// Whether a position is inside and worth an evaluation: on a lattice not proposed before, elsewhere not a known hit. An evaluation of a
-    /// quick F costs less than the look-up among many close hits.
+    /// Whether a position is inside and worth an evaluation: no known hit, and on a lattice not proposed before. Elsewhere an evaluation of
+    /// a quick F costs less than the look-up among many close hits.
     pub(super) fn is_fresh(&mut self, context: &dyn Context<S>) -> bool {
         let space = context.space();
+        let has_others = self.has_hits_of_others(context);
         let inside = space.axes().iter().zip(&self.position).all(|(axis, &x)| {
             axis.start() <= x
                 && if axis.is_integer() {
@@ -32,7 +33,10 @@ impl<S: Real> Sources<S> {
         });
         inside
             && match &mut self.visited {
-                Some(visited) => visited.insert(space, &self.position),
+                Some(visited) => {
+                    visited.insert(space, &self.position)
+                        && !(has_others && context.is_deleted(&self.position))
+                }
                 None => self.is_quick || !context.is_deleted(&self.position),
             }
     }
@@ -155,16 +159,24 @@ impl<S: Real> Sources<S> {
         true
     }
 
+    /// Whether some hits are those of other islands, which the engine is not told of: they are not among the visited points.
+    fn has_hits_of_others(&self, context: &dyn Context<S>) -> bool {
+        context.hits() * self.position.len() > self.hits.len()
+    }
+
     /// Takes back the last proposal of a swarm or a descent if that point was visited before. Its source is told of a point
     /// without a new hit, and a miss is counted.
     fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
         let space = context.space();
+        let has_others = self.has_hits_of_others(context);
         let last = out.len() - 1;
         let Some(visited) = &mut self.visited else {
             return false;
         };
         space.keep_inside(out.point_mut(last));
-        if visited.insert(space, out.point(last)) {
+        // A descent has looked whether it is a known hit.
+        let may_be_known = has_others && source != Source::Descent;
+        if visited.insert(space, out.point(last)) && !(may_be_known && context.is_deleted(out.point(last))) {
             return false;
         }
         match source {
