@@ -45,7 +45,7 @@ const SEEDS: u64 = 8;
 /// The geometric mean is over the ten problems before the teapots.
 const MEAN_OVER: usize = 10;
 /// Engines with their settings.
-const ENGINES: [(&str, &str); 17] = [
+const ENGINES: [(&str, &str); 16] = [
     ("latest-hit-qpso", ""),
     ("latest-hit-qpso", "exhaust=yes"),
     ("random", ""),
