@@ -98,6 +98,25 @@ fn a_local_search_begins_at_the_best_of_them() {
     }
 }
 
+/// A hit in a small basin of a plain of 10^8 points: nothing but the start leads there.
+#[test]
+fn the_descents_of_the_default_begin_there() {
+    let basin = |x: &[f64]| {
+        let far: f64 = x.iter().map(|x| (x - 70.0).abs()).sum();
+        if far < 6.0 { far } else { 1e3 }
+    };
+    let problem = from_fn(Space::lattice(4, 100).unwrap(), 0.5, basin).boxed();
+    let hits = |starts: &[[f64; 4]]| {
+        let mut search = Search::new().start_from(starts.to_vec());
+        search
+            .run(&problem, &Budget::evaluations(11_000))
+            .unwrap()
+            .hit_count()
+    };
+    assert_eq!(hits(&[]), 0);
+    assert_eq!(hits(&[[10.0; 4], [68.0, 70.0, 71.0, 70.0]]), 1);
+}
+
 #[test]
 fn one_that_is_not_of_the_space_is_refused_with_its_number() {
     let (problem, _) = problem();
