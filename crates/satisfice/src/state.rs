@@ -124,7 +124,7 @@ impl<'a> Reader<'a> {
     fn next<T: DeserializeOwned>(&mut self) -> Result<T, Error> {
         let (value, rest) = postcard::take_from_bytes(self.bytes).map_err(|error| match error {
             postcard::Error::DeserializeUnexpectedEnd => Error::State("it ends too early".to_owned()),
-            other => Error::State(format!("it is damaged: {other}")),
+            other => Error::State(format!("it is damaged, or of another build: {other}")),
         })?;
         self.bytes = rest;
         Ok(value)
