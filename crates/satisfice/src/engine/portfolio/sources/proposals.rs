@@ -159,7 +159,7 @@ impl<S: Real> Sources<S> {
         true
     }
 
-    /// Whether some hits are those of other islands, which the engine is not told of: they are not among the visited points.
+    /// Whether there are hits that the engine is not told of, such as those of other islands: they are not among the visited points.
     fn has_hits_of_others(&self, context: &dyn Context<S>) -> bool {
         context.hits() * self.position.len() > self.hits.len()
     }
