@@ -123,3 +123,19 @@ fn the_regret_suite_has_every_problem_and_engine_and_holds_back_a_third() {
         assert!((problems / 3..=problems.div_ceil(3)).contains(&regret.held_back.len()));
     }
 }
+
+/// A table of a suite names its problem or engine under `name`, so a parameter of that name could not be set.
+#[test]
+fn no_parameter_has_the_key_of_a_name() {
+    let problems = satisfice_catalogue::catalogue::all().iter();
+    let engines = satisfice::engine::all().iter();
+    let parameters = problems
+        .map(|problem| (problem.name, problem.parameters))
+        .chain(engines.map(|engine| (engine.name, engine.parameters())));
+    for (owner, parameters) in parameters {
+        assert!(
+            parameters.iter().all(|parameter| parameter.name != "name"),
+            "{owner}"
+        );
+    }
+}

@@ -72,7 +72,7 @@ impl System {
             description: description(
                 Self::NAME,
                 [
-                    ("name", name.to_owned()),
+                    ("equations", name.to_owned()),
                     ("threshold", threshold.to_string()),
                     ("separation", separation.to_string()),
                 ],
@@ -110,7 +110,7 @@ impl Catalogued for System {
         "all roots of a nonlinear system from the literature, polished and counted distinct";
     const SOURCE: &'static str = "Song et al. 2015, doi 10.1109/TEVC.2014.2336865, and others; counts proved by interval branch and bound";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::choice("name", "which system", "merlet", NAMES),
+        Parameter::choice("equations", "which system", "merlet", NAMES),
         Parameter::real(
             "threshold",
             "level of the sum of squares, delta",
@@ -129,7 +129,7 @@ impl Catalogued for System {
 
     fn from_params(params: &Params) -> Result<Self, Error> {
         Self::new(
-            params.text("name"),
+            params.text("equations"),
             params.real("threshold"),
             params.real("separation"),
         )
