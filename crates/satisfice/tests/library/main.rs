@@ -3,6 +3,7 @@
 mod axes;
 mod best;
 mod equations;
+mod isolated_hits;
 mod lanes;
 mod panics;
 mod patience;

@@ -41,6 +41,9 @@ const SCALES: f64 = 0.5;
 const NEWTON: usize = 5;
 const STARTS: usize = 2;
 const AMONG: usize = 64;
+/// A point that is proposed and not told yet keeps others out of its separation radius if a hit is at least as probable there. With a miss
+/// there, it would keep them from the way to a hit.
+const LIKELY: f64 = 0.5;
 /// Candidates that are examined for one proposal.
 const EXAMINED: usize = 4096;
 
@@ -69,6 +72,14 @@ pub(super) struct Given<'a, S> {
     pub(super) record: &'a Record,
     pub(super) one_answer: &'a OneAnswer,
     pub(super) position: &'a mut [S],
+}
+
+/// A point that is proposed and not told yet.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pending {
+    pub(super) x: Vec<f64>,
+    /// How probable the model takes a hit to be; 0 where it has not said.
+    pub(super) probability: f64,
 }
 
 /// What is proposed.
@@ -233,7 +244,7 @@ impl Model {
     pub(super) fn choose<S: Real>(
         &mut self,
         given: &mut Given<'_, S>,
-        pending: &[Vec<f64>],
+        pending: &[Pending],
         rng: &mut SearchRng,
     ) -> Option<ModelProposal> {
         let ranking = self.pool.ranking(&self.process);
@@ -277,7 +288,7 @@ impl Model {
     }
 
     /// Whether scores are logarithms of probabilities.
-    fn has_logarithms(&self, pending: &[Vec<f64>]) -> bool {
+    fn has_logarithms(&self, pending: &[Pending]) -> bool {
         !self.pool.limits.is_empty() || !pending.is_empty()
     }
 
@@ -300,7 +311,7 @@ impl Model {
     fn descend<S: Real>(
         &mut self,
         given: &mut Given<'_, S>,
-        pending: &[Vec<f64>],
+        pending: &[Pending],
         (mut last, mut at): (Score, Vec<f64>),
         best: &mut (Score, Vec<f64>),
     ) {
@@ -329,7 +340,7 @@ impl Model {
         &mut self,
         given: &mut Given<'_, S>,
         ranking: impl Iterator<Item = (Score, Place)>,
-        pending: &[Vec<f64>],
+        pending: &[Pending],
         than: Option<Score>,
     ) -> Option<(Score, Vec<f64>)> {
         let (mut x, mut rounded) = (Vec::new(), Vec::new());
@@ -347,7 +358,8 @@ impl Model {
             }
             if pending
                 .iter()
-                .any(|point| is_within(given.units, point, &x, &self.reach, 1.0))
+                .filter(|pending| pending.probability >= LIKELY)
+                .any(|pending| is_within(given.units, &pending.x, &x, &self.reach, 1.0))
             {
                 continue;
             }

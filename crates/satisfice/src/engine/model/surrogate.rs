@@ -1,6 +1,6 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
-use super::local::{Given, Model, ModelProposal, design_size};
+use super::local::{Given, Model, ModelProposal, Pending, design_size};
 use super::one_answer::OneAnswer;
 use super::promise::Promise;
 use super::record::{PointKind, Record};
@@ -24,7 +24,7 @@ engine_settings! {
     /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate, closer and
     ///   closer; these are kept for two proposals.
     /// - A candidate that is a known point, or the same as a hit, is excluded; so is one within the separation radius of a point that is
-    ///   proposed and not told yet. Where such points will say more of a candidate, it waits: its probability p counts
+    ///   proposed, not told yet, and probably a hit. Where such points will say more of a candidate, it waits: its probability p counts
     ///   `p (1 - (1 - s) (1 - p))`, where s is the share of its variance that their values will leave. The design goes on until as many points
     ///   are told.
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad. Where F takes few values, such as a
@@ -93,7 +93,7 @@ pub(in crate::engine) struct ModelledSearch<S> {
     /// First points that were looked at.
     started: usize,
     /// Points that are proposed and not told yet.
-    pending: Vec<Vec<f64>>,
+    pending: Vec<Pending>,
     model: Option<Model>,
     skill: Skill,
     /// What it expects of its proposals.
@@ -195,7 +195,7 @@ impl<S: Real> ModelledSearch<S> {
         let mut rounded = Vec::new();
         self.units.to_position(space, x, &mut self.position);
         self.units.of_position(space, &self.position, &mut rounded);
-        let pending = self.pending.contains(&rounded);
+        let pending = self.pending.iter().any(|pending| pending.x == rounded);
         !pending && !self.record.has(&rounded) && !context.is_deleted(&self.position)
     }
 
@@ -225,8 +225,8 @@ impl<S: Real> ModelledSearch<S> {
         model.follow(&self.record, &mut self.skill);
         model.refresh(&mut given, rng);
         let known = model.process.len();
-        for point in &self.pending {
-            model.process.believe(point);
+        for pending in &self.pending {
+            model.process.believe(&pending.x);
         }
         let chosen = model.choose(&mut given, &self.pending, rng);
         if !self.pending.is_empty() {
@@ -237,15 +237,15 @@ impl<S: Real> ModelledSearch<S> {
         chosen
     }
 
-    /// The next proposal of the model.
-    fn proposal(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<Vec<f64>> {
+    /// The next proposal of the model, and how probable it takes a hit to be.
+    fn proposal(&mut self, context: &dyn Context<S>, rng: &mut SearchRng) -> Option<(Vec<f64>, f64)> {
         let prepared = self.prepared.take();
         let proposal = prepared.or_else(|| self.modelled(context, rng))?;
         self.promise.count(proposal.probability);
         if proposal.beside {
             self.one_answer.count(proposal.probability);
         }
-        Some(proposal.x)
+        Some((proposal.x, proposal.probability))
     }
 
     /// A uniform point that is new, or the next new one of a small space.
@@ -310,17 +310,20 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             if proposed > 0 && context.is_out_of_time() {
                 break;
             }
-            let next = self
-                .first_point(context, rng)
+            let unknown = |x| (x, 0.0);
+            let next = (self.first_point(context, rng).map(unknown))
                 .or_else(|| self.proposal(context, rng))
-                .or_else(|| self.any_new(context, rng));
-            let Some(x) = next else { break };
+                .or_else(|| self.any_new(context, rng).map(unknown));
+            let Some((x, probability)) = next else { break };
             let mut rounded = Vec::new();
             self.units.to_position(context.space(), &x, &mut self.position);
             self.units
                 .of_position(context.space(), &self.position, &mut rounded);
             out.push(&self.position);
-            self.pending.push(rounded);
+            self.pending.push(Pending {
+                x: rounded,
+                probability,
+            });
         }
         if out.is_empty() { Ask::Exhausted } else { Ask::More }
     }
@@ -332,7 +335,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         let mut components = vec![S::nan(); context.component_count()];
         for (point, outcome) in batch.points().zip(outcomes) {
             self.units.of_position(context.space(), point, &mut x);
-            if let Some(place) = self.pending.iter().position(|pending| *pending == x) {
+            if let Some(place) = self.pending.iter().position(|pending| pending.x == x) {
                 self.pending.remove(place);
             }
             match *outcome {
