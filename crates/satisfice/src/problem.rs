@@ -94,7 +94,8 @@ pub trait SatisficingProblem: Sync {
     /// default, if the hit represents itself. Called for hits only. Two hits with the same representative count once.
     ///
     /// The representative is a hit, too, and the one that is listed, with its own fitness: that call of the fitness is
-    /// counted nowhere.
+    /// counted nowhere. One that is no hit is not used, and the hit is listed itself; a run does not say so, but
+    /// [`testing::problem::check`](crate::testing::problem::check) does.
     fn canonical(&self, _hit: &Self::Solution) -> Option<Self::Solution> {
         None
     }

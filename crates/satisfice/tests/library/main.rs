@@ -9,6 +9,7 @@ mod patience;
 mod portfolio;
 mod problem_suite;
 mod rounds;
+mod problem_suite_rare;
 mod start_points;
 mod tickets;
 mod unsized_problem;
