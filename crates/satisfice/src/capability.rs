@@ -135,7 +135,8 @@ pub trait Neighbourhood<T> {
 /// ```
 pub trait Bounds<S> {
     /// A value that F equals or exceeds at every point of `region`; `None` if no bound is known there. It must be sound: a
-    /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation.
+    /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation. Before a report says `Proved`, a few more
+    /// are asked for, uncounted, at points that were evaluated: one above their F makes it `Unknown`.
     fn lower_bound(&self, region: &Region<S>) -> Option<S>;
 }
 

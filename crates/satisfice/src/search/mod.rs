@@ -1,6 +1,7 @@
 //! The search: engines, settings and hits, slice after slice.
 
 mod checkpoint;
+mod contradiction;
 mod lane;
 mod lanes;
 mod options;
