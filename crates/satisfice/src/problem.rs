@@ -333,8 +333,20 @@ impl<S: Real, F> FnProblem<S, F> {
     pub fn separations(mut self, radii: &[S]) -> Result<Self, Error> {
         let axes = self.space.axes();
         if radii.len() != axes.len() {
-            let wanted = format!("one radius for each of the {} axes", axes.len());
-            return Err(Error::parameter("separations", radii.len(), wanted));
+            let count = |number: usize, one: &str, more: &str| match number {
+                1 => format!("1 {one}"),
+                _ => format!("{number} {more}"),
+            };
+            let (radii, axes) = (
+                count(radii.len(), "radius", "radii"),
+                count(axes.len(), "axis", "axes"),
+            );
+            let value = format!("{radii} for {axes}");
+            return Err(Error::parameter(
+                "separations",
+                value,
+                "give one radius for each axis",
+            ));
         }
         if let Some(radius) = radii
             .iter()
