@@ -75,6 +75,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             requested_probe_share: self.probes,
             probe_share: slice.probes.share(),
             stop_reason,
+            panic: None,
             counts,
             elapsed,
             overshoot,
