@@ -100,7 +100,18 @@ pub trait SatisficingProblem: Sync {
         None
     }
 
-    /// Name and parameters, for the report.
+    /// Name and parameters, for the report. By default the name is `unnamed`; to give one:
+    ///
+    /// ```
+    /// use satisfice::Description;
+    /// # struct Rings;
+    /// # impl Rings {
+    /// fn description(&self) -> Description {
+    ///     Description { name: "rings".to_owned(), ..Description::default() }
+    /// }
+    /// # }
+    /// # assert_eq!(Rings.description().name, "rings");
+    /// ```
     fn description(&self) -> Description {
         Description::default()
     }
