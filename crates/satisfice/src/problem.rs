@@ -1,6 +1,10 @@
 //! Problems: what a candidate means, how good it is, and when it is good enough.
 
+mod neighbours;
+
 use std::sync::Arc;
+
+use neighbours::FnNeighbours;
 
 use crate::capability::{Bounds, Components, Encoding, Neighbourhood};
 use crate::description::Description;
@@ -125,6 +129,7 @@ pub struct FnProblem<S, F> {
     separation: Separation<S>,
     fitness: F,
     components: Option<FnComponents<S>>,
+    neighbours: Option<FnNeighbours<S>>,
     description: Description,
 }
 
@@ -164,6 +169,9 @@ pub type BoxedFn<'a, S> = Box<dyn Fn(&[S]) -> S + Send + Sync + 'a>;
 /// otherwise. Different values on an integer axis are different answers anyway. On a logarithmic axis distances are those
 /// of the logarithms, and the radius is 1 % of theirs; on a periodic one they go around the circle.
 ///
+/// A closure may also name [neighbours](FnProblem::neighbours) and [components](FnProblem::components). Bounds and
+/// representatives need the [trait](SatisficingProblem).
+///
 /// ```
 /// use satisfice::{engine, from_fn, Budget, Search, Space};
 /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| ((x[0] - 50.0).powi(2) + (x[1] - 20.0).powi(2)).sqrt());
@@ -196,6 +204,7 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
         separation,
         fitness,
         components: None,
+        neighbours: None,
         description: Description {
             name: "closure".to_owned(),
             ..Description::default()
@@ -283,6 +292,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
             separation: self.separation,
             fitness: Box::new(self.fitness),
             components: self.components,
+            neighbours: self.neighbours,
             description: self.description,
         }
     }
@@ -400,6 +410,9 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     }
     fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
         Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<Located<S>>> {
+        self.neighbours.as_ref().map(|neighbours| neighbours as _)
     }
     fn components(&self) -> Option<&dyn Components<S, Located<S>>> {
         self.components.as_ref().map(|components| components as _)

@@ -2,14 +2,15 @@
 
 mod axes;
 mod best;
+mod closures;
 mod equations;
 mod lanes;
 mod panics;
 mod patience;
 mod portfolio;
 mod problem_suite;
-mod rounds;
 mod problem_suite_rare;
+mod rounds;
 mod start_points;
 mod tickets;
 mod unsized_problem;
