@@ -120,7 +120,8 @@ impl<P: SatisficingProblem + ?Sized> core::fmt::Debug for Search<P> {
 }
 
 impl<P: SatisficingProblem + ?Sized> Search<P> {
-    /// A search by the [default engine](crate::engine::default), which uses whatever the problem offers.
+    /// A search by the [default engine](crate::engine::default), which uses whatever the problem offers. Where evaluations alone
+    /// are limited, it may think for about a millisecond on each of the first 1,000: see [`Budget::evaluations`].
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::engine::default())
