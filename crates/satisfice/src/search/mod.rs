@@ -189,8 +189,8 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self
     }
 
-    /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. Needs the feature `rayon`;
-    /// without it one thread works. Reports under a budget of evaluations do not depend on it.
+    /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. **Needs the feature `rayon`:**
+    /// without it one thread works, whatever the number, and nothing says so, for no report depends on threads. Reports under a budget of evaluations do not depend on it.
     ///
     /// With one lane, threads share each batch that is worth it. [`Budget::with_parallel`] tells the engine how large batches have to
     /// be; under a limit of time alone, it is the number of threads. An engine that proposes one point at a time keeps one of them
