@@ -71,7 +71,9 @@ pub trait Encoding<S, T> {
 
 /// The solutions next to a solution, which engines look at once it is good. Needs an [`Encoding`].
 ///
-/// For a problem without one, engines use the next lattice points on integer axes and shrinking steps on continuous ones.
+/// For a problem without one, engines use the next lattice points on integer axes, the other categories, swaps of near places of a
+/// permutation, and shrinking steps on continuous axes. Name neighbours where such a step spoils a good solution. For a closure:
+/// [`FnProblem::neighbours`](crate::problem::FnProblem::neighbours).
 ///
 /// Neighbours have indices, so that an engine can take a few of them, or one at random, however many there are. A solution
 /// of a million neighbours costs no more than one of ten as long as they are not all examined.
@@ -135,7 +137,8 @@ pub trait Neighbourhood<T> {
 /// ```
 pub trait Bounds<S> {
     /// A value that F equals or exceeds at every point of `region`; `None` if no bound is known there. It must be sound: a
-    /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation.
+    /// bound that is too high loses hits. Every bound returned uses up the budget like an evaluation. Before a report says `Proved`, a few more
+    /// are asked for, uncounted, at points that were evaluated: one above their F makes it `Unknown`.
     fn lower_bound(&self, region: &Region<S>) -> Option<S>;
 }
 

@@ -3,7 +3,7 @@
 /// Name and parameters of a problem or an engine, as reports show them.
 ///
 /// ```
-/// use satisfice::catalogue::Description;
+/// use satisfice::Description;
 /// let description = Description { name: "ring".to_owned(), parameters: vec![("radius".to_owned(), "2".to_owned())] };
 /// assert_eq!(Description::default().name, "unnamed");
 /// # let _ = description;

@@ -45,6 +45,7 @@ pub use best::Best;
 pub use budget::{Budget, Cancel, StopReason};
 pub use capability::{Bounds, Components, Encoding, Neighbourhood};
 pub use context::Context;
+pub use description::Description;
 pub use engine::{Engine, WarmStart};
 pub use error::Error;
 pub use identity::{AxisSeparation, Identity, Located, Separation};

@@ -1,6 +1,10 @@
 //! Problems: what a candidate means, how good it is, and when it is good enough.
 
+mod neighbours;
+
 use std::sync::Arc;
+
+use neighbours::FnNeighbours;
 
 use crate::capability::{Bounds, Components, Encoding, Neighbourhood};
 use crate::description::Description;
@@ -94,12 +98,24 @@ pub trait SatisficingProblem: Sync {
     /// default, if the hit represents itself. Called for hits only. Two hits with the same representative count once.
     ///
     /// The representative is a hit, too, and the one that is listed, with its own fitness: that call of the fitness is
-    /// counted nowhere.
+    /// counted nowhere. One that is no hit is not used, and the hit is listed itself; a run does not say so, but
+    /// [`testing::problem::check`](crate::testing::problem::check) does.
     fn canonical(&self, _hit: &Self::Solution) -> Option<Self::Solution> {
         None
     }
 
-    /// Name and parameters, for the report.
+    /// Name and parameters, for the report. By default the name is `unnamed`; to give one:
+    ///
+    /// ```
+    /// use satisfice::Description;
+    /// # struct Rings;
+    /// # impl Rings {
+    /// fn description(&self) -> Description {
+    ///     Description { name: "rings".to_owned(), ..Description::default() }
+    /// }
+    /// # }
+    /// # assert_eq!(Rings.description().name, "rings");
+    /// ```
     fn description(&self) -> Description {
         Description::default()
     }
@@ -113,6 +129,7 @@ pub struct FnProblem<S, F> {
     separation: Separation<S>,
     fitness: F,
     components: Option<FnComponents<S>>,
+    neighbours: Option<FnNeighbours<S>>,
     description: Description,
 }
 
@@ -152,6 +169,9 @@ pub type BoxedFn<'a, S> = Box<dyn Fn(&[S]) -> S + Send + Sync + 'a>;
 /// otherwise. Different values on an integer axis are different answers anyway. On a logarithmic axis distances are those
 /// of the logarithms, and the radius is 1 % of theirs; on a periodic one they go around the circle.
 ///
+/// A closure may also name [neighbours](FnProblem::neighbours) and [components](FnProblem::components). Bounds and
+/// representatives need the [trait](SatisficingProblem).
+///
 /// ```
 /// use satisfice::{engine, from_fn, Budget, Search, Space};
 /// let problem = from_fn(Space::lattice(2, 100)?, 2.5, |x: &[f64]| ((x[0] - 50.0).powi(2) + (x[1] - 20.0).powi(2)).sqrt());
@@ -184,6 +204,7 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
         separation,
         fitness,
         components: None,
+        neighbours: None,
         description: Description {
             name: "closure".to_owned(),
             ..Description::default()
@@ -271,6 +292,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
             separation: self.separation,
             fitness: Box::new(self.fitness),
             components: self.components,
+            neighbours: self.neighbours,
             description: self.description,
         }
     }
@@ -332,8 +354,20 @@ impl<S: Real, F> FnProblem<S, F> {
     pub fn separations(mut self, radii: &[S]) -> Result<Self, Error> {
         let axes = self.space.axes();
         if radii.len() != axes.len() {
-            let wanted = format!("one radius for each of the {} axes", axes.len());
-            return Err(Error::parameter("separations", radii.len(), wanted));
+            let count = |number: usize, one: &str, more: &str| match number {
+                1 => format!("1 {one}"),
+                _ => format!("{number} {more}"),
+            };
+            let (radii, axes) = (
+                count(radii.len(), "radius", "radii"),
+                count(axes.len(), "axis", "axes"),
+            );
+            let value = format!("{radii} for {axes}");
+            return Err(Error::parameter(
+                "separations",
+                value,
+                "give one radius for each axis",
+            ));
         }
         if let Some(radius) = radii
             .iter()
@@ -376,6 +410,9 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     }
     fn encoding(&self) -> Option<&dyn Encoding<S, Located<S>>> {
         Some(self)
+    }
+    fn neighbourhood(&self) -> Option<&dyn Neighbourhood<Located<S>>> {
+        self.neighbours.as_ref().map(|neighbours| neighbours as _)
     }
     fn components(&self) -> Option<&dyn Components<S, Located<S>>> {
         self.components.as_ref().map(|components| components as _)

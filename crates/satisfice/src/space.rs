@@ -58,7 +58,7 @@ impl<S: Real> Space<S> {
     ///
     /// # Errors
     /// [`Error::NoAxis`] without axes; [`Error::Bounds`] if bounds are not finite, are the wrong way round, have a
-    /// difference that overflows, or are integers that the scalar cannot hold exactly.
+    /// difference that overflows, or are integers that the scalar cannot hold exactly, and for no categories or places.
     pub fn new(axes: impl IntoIterator<Item = Axis<S>>) -> Result<Self, Error> {
         let axes: Vec<_> = axes.into_iter().collect();
         if axes.is_empty() {
@@ -88,8 +88,15 @@ impl<S: Real> Space<S> {
     /// `dimension` integer axes `0..cells`.
     ///
     /// # Errors
-    /// As [`Space::new`].
+    /// As [`Space::new`]; [`Error::Parameter`] for 0 cells.
     pub fn lattice(dimension: usize, cells: u32) -> Result<Self, Error> {
+        if cells == 0 {
+            return Err(Error::parameter(
+                "cells",
+                cells,
+                "an axis without cells has no value: give at least 1",
+            ));
+        }
         Self::new((0..dimension).map(|_| Axis::integer(0, i64::from(cells) - 1)))
     }
 

@@ -132,6 +132,26 @@ fn unusable_bounds_are_errors() {
 }
 
 #[test]
+fn an_axis_without_values_says_so() {
+    let text = |space: Result<Space<f64>, Error>| space.unwrap_err().to_string();
+    assert_eq!(
+        text(Space::lattice(2, 0)),
+        "cells = 0 is not allowed: an axis without cells has no value: give at least 1"
+    );
+    assert!(text(Space::new([Axis::categorical(0)])).ends_with("there is no category: give at least 1"));
+    assert!(text(Space::new([Axis::integer(5, 1)])).ends_with("there is no value between them"));
+    let chained = [Axis::continuous(0.0, 1.0)]
+        .into_iter()
+        .chain(Axis::permutation(0));
+    let error = text(Space::new(chained));
+    assert!(error.starts_with("axis 1: "), "{error}");
+    assert!(
+        error.ends_with("a permutation of nothing: give at least 1 place"),
+        "{error}"
+    );
+}
+
+#[test]
 fn cardinality_counts_lattice_points() {
     assert_eq!(Space::<f64>::lattice(3, 10).unwrap().cardinality(), Some(1000.0));
     assert_eq!(Space::<f64>::cube(2, 0.0, 1.0).unwrap().cardinality(), None);

@@ -327,6 +327,24 @@ mod tests {
     use crate::engine::{Pso, all};
 
     #[test]
+    fn an_unknown_parameter_gets_the_common_ones_as_well() {
+        for (name, wanted) in [
+            ("exhuast", "did you mean `exhaust`?"),
+            ("zzzzzzzz", "exhaust, prune"),
+        ] {
+            let error = ConfiguredEngine::<f64>::named("random").unwrap().set(name, "yes");
+            let error = error.unwrap_err().to_string();
+            assert!(
+                error.contains(wanted) && error.ends_with("exhaust, prune"),
+                "{error}"
+            );
+        }
+        // The settings of an engine alone do not have them.
+        let error = EngineConfig::set(&mut Pso::default(), "prune", "yes").unwrap_err();
+        assert!(!error.to_string().ends_with("prune"), "{error}");
+    }
+
+    #[test]
     fn every_engine_is_built_by_its_name_and_its_aliases() {
         for spec in all() {
             let engine = ConfiguredEngine::<f32>::named(spec.name).unwrap();

@@ -126,6 +126,7 @@ impl<'de, T: Deserialize<'de> + Identity> Deserialize<'de> for Report<T> {
             requested_probe_share: run.spec.requested_probe_share,
             probe_share: run.probe_share,
             stop_reason: run.stop_reason,
+            panic: run.panic,
             counts: run.counts,
             elapsed: duration(run.elapsed_seconds)?,
             overshoot: duration(run.overshoot_seconds)?,

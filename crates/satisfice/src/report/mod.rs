@@ -114,6 +114,8 @@ pub struct Report<T> {
     pub probe_share: f64,
     /// Why it ended.
     pub stop_reason: StopReason,
+    /// The message of the problem's panic, if that ended it.
+    pub panic: Option<String>,
     /// The counts.
     pub counts: Counts,
     /// Wall time of the slice.
@@ -175,14 +177,17 @@ impl<T> core::fmt::Display for Report<T> {
         }
         write!(
             f,
-            " and {:.3} s by {} on {}, seed {}; {}; completeness {:?}",
+            " and {:.3} s by {} on {}, seed {}; {}",
             self.elapsed.as_secs_f64(),
             self.engine.name,
             self.problem.name,
             self.seed,
             self.stop_reason,
-            self.completeness,
         )?;
+        if let Some(first) = self.panic.as_ref().and_then(|message| message.lines().next()) {
+            write!(f, ": {first}")?;
+        }
+        write!(f, "; completeness {:?}", self.completeness)?;
         match &self.unseen {
             Some(unseen) if self.completeness == Completeness::Unknown => {
                 write!(f, ", {unseen} hits not seen")

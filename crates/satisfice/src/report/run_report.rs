@@ -47,6 +47,9 @@ pub struct RunReport<Spec, S> {
     pub overshoot_seconds: f64,
     /// Why the last slice ended.
     pub stop_reason: StopReason,
+    /// The message of the problem's panic, if that ended it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub panic: Option<String>,
     /// The number of distinct hits, of all slices together.
     pub hits: u64,
     /// The number of all hits of the problem, where it is known.
@@ -192,6 +195,7 @@ impl<Spec, S> RunReport<Spec, S> {
         }
         if let Some(last) = reports.last() {
             run.stop_reason = last.stop_reason;
+            run.panic.clone_from(&last.panic);
             // A slice that has covered the space is the last one.
             run.completeness = last.completeness;
             run.set_unseen(last.unseen.as_ref(), run.hits - last.hit_count() as u64);
@@ -281,6 +285,7 @@ impl<Spec, S> RunReport<Spec, S> {
             elapsed_seconds: 0.0,
             overshoot_seconds: 0.0,
             stop_reason: StopReason::Exhausted,
+            panic: None,
             hits: 0,
             reference_hits: None,
             recall: None,
@@ -388,6 +393,7 @@ impl<Spec, S> RunReport<Spec, S> {
         self.elapsed_seconds += next.elapsed_seconds;
         self.overshoot_seconds += next.overshoot_seconds;
         self.stop_reason = next.stop_reason;
+        self.panic = next.panic;
         self.hits += next.hits;
         if next.completeness == Completeness::Unknown {
             self.completeness = Completeness::Unknown;

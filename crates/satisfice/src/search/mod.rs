@@ -1,6 +1,7 @@
 //! The search: engines, settings and hits, slice after slice.
 
 mod checkpoint;
+mod contradiction;
 mod lane;
 mod lanes;
 mod options;
@@ -119,7 +120,8 @@ impl<P: SatisficingProblem + ?Sized> core::fmt::Debug for Search<P> {
 }
 
 impl<P: SatisficingProblem + ?Sized> Search<P> {
-    /// A search by the [default engine](crate::engine::default), which uses whatever the problem offers.
+    /// A search by the [default engine](crate::engine::default), which uses whatever the problem offers. Where evaluations alone
+    /// are limited, it may think for about a millisecond on each of the first 1,000: see [`Budget::evaluations`].
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::engine::default())
@@ -187,8 +189,8 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self
     }
 
-    /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. Needs the feature `rayon`;
-    /// without it one thread works. Reports under a budget of evaluations do not depend on it.
+    /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. **Needs the feature `rayon`:**
+    /// without it one thread works, whatever the number, and nothing says so, for no report depends on threads. Reports under a budget of evaluations do not depend on it.
     ///
     /// With one lane, threads share each batch that is worth it. [`Budget::with_parallel`] tells the engine how large batches have to
     /// be; under a limit of time alone, it is the number of threads. An engine that proposes one point at a time keeps one of them

@@ -96,12 +96,21 @@ impl<'a, T> RunOptions<'a, T> {
     }
 
     /// Ends the slice with what was found if the problem panics, on any number of threads: the report says
-    /// [`StopReason::Panicked`](crate::StopReason::Panicked). The panic is still printed by the panic hook.
+    /// [`StopReason::Panicked`](crate::StopReason::Panicked), and the [message](crate::Report::panic). The panic is still printed by the
+    /// panic hook.
     #[must_use]
     pub fn catch_panics(mut self) -> Self {
         self.catches_panics = true;
         self
     }
+}
+
+/// The message of a panic that was caught.
+pub(super) fn message_of(panic: &(dyn core::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("the panic has no message")
+        .to_owned()
 }
 
 /// When the next checkpoint is due, and where it goes.

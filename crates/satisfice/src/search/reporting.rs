@@ -4,6 +4,7 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use super::Search;
+use super::contradiction::is_contradicted;
 use super::running::Running;
 use super::slice::Slice;
 use crate::budget::StopReason;
@@ -52,8 +53,11 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     ) -> Report<P::Solution> {
         let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
         let counts = slice.counts();
-        // A hit that only a probe found contradicts an engine that says it has covered everything.
-        let proved = stop_reason == StopReason::Covered && slice.ledger.archive.probe_only() == 0;
+        // A hit that only a probe found contradicts an engine that says it has covered everything; so does a bound above F.
+        let calls = counts.bound_calls;
+        let proved = stop_reason == StopReason::Covered
+            && slice.ledger.archive.probe_only() == 0
+            && !(calls > 0 && is_contradicted(problem, &slice.ledger, calls));
         let unseen = if proved {
             Some(Unseen::nothing(slice.probes.count()))
         } else {
@@ -71,6 +75,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             requested_probe_share: self.probes,
             probe_share: slice.probes.share(),
             stop_reason,
+            panic: None,
             counts,
             elapsed,
             overshoot,

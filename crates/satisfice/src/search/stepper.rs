@@ -7,7 +7,7 @@ use super::Search;
 use super::checkpoint::Checkpoint;
 use super::lane::RunningLane;
 use super::lanes::Exchange;
-use super::options::{Keeper, RunOptions};
+use super::options::{Keeper, RunOptions, message_of};
 use super::running::{Running, Turn};
 use super::stage::Stage;
 use crate::budget::StopReason;
@@ -302,11 +302,13 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
         let observer = observer.unwrap_or(&mut silent);
         if catches_panics {
             let run = AssertUnwindSafe(|| self.drive_on(&threads, observer, &mut keeper));
-            if catch_unwind(run).is_err() {
+            if let Err(panic) = catch_unwind(run) {
                 self.end_after_panic();
                 // Threads may still hold what the panic has left.
                 self.search.pool = None;
-                return Ok(self.finish_without_lanes());
+                let mut report = self.finish_without_lanes();
+                report.panic = Some(message_of(panic.as_ref()));
+                return Ok(report);
             }
         } else {
             self.drive_on(&threads, observer, &mut keeper);

@@ -96,9 +96,11 @@ impl<S: Real> Axis<S> {
     }
 
     /// The places of a permutation of the integers `0..count`, one axis each; they stand together, in this order. Engines move
-    /// a key for each place: values are the ranks of the keys (Bean 1994, doi 10.1287/ijoc.6.2.154).
+    /// a key for each place: values are the ranks of the keys (Bean 1994, doi 10.1287/ijoc.6.2.154). A `count` of 0 is refused by
+    /// [`Space::new`](crate::Space::new).
     pub fn permutation(count: u32) -> impl Iterator<Item = Self> {
-        (0..count).map(move |place| Self {
+        // One axis without values stands for no places, so that it is refused and not left out.
+        (0..count.max(1)).map(move |place| Self {
             start: S::zero(),
             end: S::one(),
             kind: AxisKind::Place,
@@ -267,7 +269,13 @@ impl<S: Real> Axis<S> {
             return bad("both have to be finite");
         }
         if self.lower > self.upper {
-            return bad("the lower one is above the upper one");
+            return bad(match self.kind {
+                AxisKind::Categorical => "there is no category: give at least 1",
+                AxisKind::Place => "a permutation of nothing: give at least 1 place",
+                AxisKind::Integer | AxisKind::Continuous => {
+                    "the lower one is above the upper one, so that there is no value between them"
+                }
+            });
         }
         if !(self.upper - self.lower).is_finite() {
             return bad("their difference overflows");

@@ -100,6 +100,24 @@ impl<S: Real> Space<S> {
             true
         })
     }
+
+    /// Exchanges places of each permutation at random, as far as its order stays inside a region. `pick` draws a number from a range.
+    pub(crate) fn shuffle_inside(
+        &self,
+        region: &Region<S>,
+        values: &mut [S],
+        pick: &mut dyn FnMut(core::ops::Range<usize>) -> usize,
+    ) {
+        for &(first, length) in &self.permutations {
+            let fits = |place: usize, rank: S| region.lower[place] <= rank && rank <= region.upper[place];
+            for last in (first + 1..first + length).rev() {
+                let other = pick(first..last + 1);
+                if fits(last, values[other]) && fits(other, values[last]) {
+                    values.swap(last, other);
+                }
+            }
+        }
+    }
 }
 
 impl<S: Real> Axis<S> {

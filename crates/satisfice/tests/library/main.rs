@@ -2,6 +2,7 @@
 
 mod axes;
 mod best;
+mod closures;
 mod equations;
 mod isolated_hits;
 mod lanes;
@@ -9,6 +10,7 @@ mod panics;
 mod patience;
 mod portfolio;
 mod problem_suite;
+mod problem_suite_rare;
 mod rounds;
 mod start_points;
 mod tickets;

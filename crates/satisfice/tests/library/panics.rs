@@ -43,6 +43,11 @@ fn what_was_found_is_reported() {
             let case = format!("{name}, {islands} lanes on {threads} threads: {report}");
             assert_eq!(report.stop_reason, StopReason::Panicked, "{case}");
             assert_eq!(report.completeness, Completeness::Unknown, "{case}");
+            assert_eq!(report.panic.as_deref(), Some("call 1500 is fatal"), "{case}");
+            assert!(
+                case.contains("a panic of the problem: call 1500 is fatal; "),
+                "{case}"
+            );
             assert!(
                 report.hit_count() > 0 && (alone || report.counts.fitness_calls < 1_500),
                 "{case}"

@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::{Engine, compiled};
+use super::{COMMON_PARAMETERS, Engine, compiled};
 use crate::catalogue::Parameter;
 use crate::error::Error;
 use crate::scalar::Real;
@@ -118,10 +118,13 @@ pub trait Settings {
 /// The row with this name.
 pub(super) fn row<'a>(table: &'a [Parameter], owner: &str, name: &str) -> Result<&'a Parameter, Error> {
     table.iter().find(|row| row.name == name).ok_or_else(|| {
+        // The common ones are known as well; if one of them comes here, it is not known to the engine itself.
+        let is_common = COMMON_PARAMETERS.iter().any(|row| row.name == name);
+        let common = if is_common { &[] } else { COMMON_PARAMETERS };
         Error::unknown(
             &format!("parameter of `{owner}`"),
             name,
-            table.iter().map(|row| row.name),
+            table.iter().chain(common).map(|row| row.name),
         )
     })
 }
