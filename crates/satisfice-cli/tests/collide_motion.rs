@@ -236,6 +236,13 @@ fn impacts_are_written_as_csv_and_told() {
     );
     let fields = head.split(',').count();
     assert!(csv.lines().all(|line| line.split(',').count() == fields));
+    let cut = satisfice_in(folder.path(), &format!("{FALL} --threshold 0 --max-pairs 3"));
+    assert!(
+        cut.stdout
+            .contains("first impact  not known: an earlier pair may not be listed; --first finds it\n"),
+        "{}",
+        cut.stdout
+    );
     let rest = satisfice_in(
         folder.path(),
         "collide --from ball0.obj sheet.obj --to ball0.obj sheet.obj --threshold 0",
