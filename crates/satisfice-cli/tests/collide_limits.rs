@@ -268,6 +268,28 @@ fn witnesses_are_written_to_json_and_csv_and_shown() {
         ),
         (&0.0.into(), &Value::Null)
     );
+    // The points on both edges are rounded, so that they differ where the edges cross.
+    fs::write(
+        folder.path().join("slant.obj"),
+        "v 0.1 0.2 0\nv 0.7 1.3 0\nv 9 0 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("steep.obj"),
+        "v 0.3 0.1 -0.7\nv 0.4 1.1 0.9\nv 0.3 0.1 9\nf 1 2 3\n",
+    )
+    .unwrap();
+    let cut = json_of(
+        folder.path(),
+        "collide slant.obj steep.obj --threshold 1e-9 --pairs edge-triangle --witnesses",
+    );
+    assert!(!cut["pairs"].as_array().unwrap().is_empty());
+    for pair in cut["pairs"].as_array().unwrap() {
+        assert_eq!(
+            (&pair["distance"], &pair["witness"]["normal"]),
+            (&0.0.into(), &Value::Null)
+        );
+    }
     let without = json_of(folder.path(), &scene.replace(" --witnesses", ""));
     assert_eq!(without["pairs"][0]["witness"], Value::Null);
 }
