@@ -295,6 +295,35 @@ fn witnesses_are_written_to_json_and_csv_and_shown() {
 }
 
 #[test]
+fn surfaces_that_may_cut_are_pointed_at_where_only_vertices_were_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("flat.obj"),
+        "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("through.obj"),
+        "v 0.5 0.5 -1\nv 0.5 0.5 1\nv 0.75 0.5 1\nf 1 2 3\n",
+    )
+    .unwrap();
+    let scene = "collide flat.obj through.obj --threshold 0.01";
+    let done = satisfice_in(folder.path(), scene);
+    assert_eq!(
+        (done.code, done.stderr.as_str()),
+        (
+            1,
+            "note: only vertices were compared; the surfaces of flat.obj and through.obj may meet all the same, since their \
+             boxes overlap: --pairs triangle-triangle compares surfaces\n"
+        )
+    );
+    for other in ["--pairs triangle-triangle", "--at through:0,0,2"] {
+        let done = satisfice_in(folder.path(), &format!("{scene} {other}"));
+        assert!(!done.stderr.contains("note:"), "{other}: {}", done.stderr);
+    }
+}
+
+#[test]
 fn the_summary_speaks_of_pairs_and_distances() {
     let folder = balls(2);
     let done = satisfice_in(
