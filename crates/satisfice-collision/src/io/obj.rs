@@ -14,7 +14,7 @@ const NAME: &str = "OBJ";
 pub(super) const FORMAT: Format = Format {
     name: "obj",
     extensions: &["obj"],
-    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into fans about their first corner",
+    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into fans about their first corner, and faces of two corners are lines",
     reader: Reader::Mesh(parse),
 };
 
