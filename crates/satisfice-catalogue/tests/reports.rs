@@ -272,6 +272,27 @@ fn a_false_record_is_found_out() {
     for place in ["completeness", "unseen_estimate"] {
         assert!(found.iter().any(|m| m.place == place), "{place}: {found:?}");
     }
+    let told = |report: &RunReport| -> Vec<String> {
+        let found = instance.verify(report, Some(15));
+        found.iter().map(ToString::to_string).collect()
+    };
+    proved.unseen_estimate = None;
+    proved.unseen_interval = Some((0.0, Some(134_925.0)));
+    let wanted =
+        "unseen_estimate: found null in [0, 134925], expected 0 in [0, 0], since completeness is proved";
+    assert!(
+        told(&proved).iter().any(|line| line == wanted),
+        "{:?}",
+        told(&proved)
+    );
+    // Two hits may share an evaluation.
+    let mut early = report.clone();
+    early.solutions[2].evaluation = 1;
+    let wanted = format!(
+        "solutions[2].evaluation: found 1, expected at least {} and at most 20000",
+        report.solutions[1].evaluation
+    );
+    assert!(told(&early).contains(&wanted), "{:?}", told(&early));
 }
 
 /// A search by bounds spends most of its budget on them: a report that leaves them out has not spent its budget.

@@ -30,9 +30,14 @@ pub(crate) fn report(error: &anyhow::Error) -> ExitCode {
 /// Reports a mistake in the command line; help and version, which arrive here as well, go to stdout.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        // A closed pipe is not an error of the reader.
-        drop(error.print());
-        return ExitCode::SUCCESS;
+        let printed = error.print().and_then(|()| std::io::stdout().flush());
+        return match printed {
+            // A closed pipe is not an error of the reader.
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                tell(&format!("cannot write to stdout: {error}"))
+            }
+            _ => ExitCode::SUCCESS,
+        };
     }
     tell(&one_line(error))
 }

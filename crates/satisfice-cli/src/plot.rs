@@ -15,6 +15,8 @@ pub(crate) fn chart(report: &RunReport) -> Chart {
         .map_or_else(String::new, |recall| format!(", recall {:.1} %", 100.0 * recall));
     let curve = |points: Vec<(f64, f64)>| Curve {
         points,
+        // Between two points of the trace the number of hits does not rise evenly.
+        steps: true,
         ..Curve::default()
     };
     let by_evaluations = report.trace.iter().map(|p| (p.evaluations as f64, p.hits as f64));
@@ -24,7 +26,7 @@ pub(crate) fn chart(report: &RunReport) -> Chart {
         .map(|p| (1e3 * p.elapsed_seconds, p.hits as f64));
     let panel = |x_label: &str, log_x, points| Panel {
         x_label: x_label.to_owned(),
-        y_label: "distinct hits |C|".to_owned(),
+        y_label: "distinct hits".to_owned(),
         log_x,
         curves: vec![curve(points)],
         mark: mark.clone(),
@@ -65,6 +67,7 @@ mod tests {
     fn the_chart_of_a_record_is_drawn_the_same_twice_in_both_formats() {
         let chart = chart(&queens(20_000));
         assert_eq!(chart.panels.len(), 2);
+        assert!(chart.panels.iter().all(|panel| panel.curves[0].steps));
         assert_eq!(chart.panels[0].curves[0].points.last(), Some(&(20_000.0, 2.0)));
         let svg = String::from_utf8(draw(&chart, Format::Svg).unwrap()).unwrap();
         for text in ["<svg", "evaluations", "time (ms)", "all 2 hits", "recall 100.0 %"] {

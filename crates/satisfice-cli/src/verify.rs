@@ -42,7 +42,11 @@ pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyh
             "{path} is true: {hits} hits of {problem} evaluated anew, each below the threshold and listed once; its counts agree"
         );
     } else {
-        let _ = writeln!(said, "{path} is false in {} places", mismatches.len());
+        let places = match mismatches.len() {
+            1 => "1 place".to_owned(),
+            many => format!("{many} places"),
+        };
+        let _ = writeln!(said, "{path} is false in {places}");
         for mismatch in mismatches.iter().take(SHOWN) {
             let _ = writeln!(said, "  {mismatch}");
         }

@@ -255,7 +255,11 @@ fn mistakes_are_told_before_anything_runs() {
     assert!(error("bench none.toml").contains("none.toml: cannot read this suite"));
     fs::write(place.path().join("mine.toml"), SUITE).unwrap();
     fs::write(place.path().join("file"), "").unwrap();
-    assert!(error_in(place.path(), "bench mine.toml --out file").contains("choose another one"));
+    let line = error_in(place.path(), "bench mine.toml --out file");
+    assert!(
+        line.contains("file: it is a file, but results need a folder; choose another one"),
+        "{line}"
+    );
     fs::create_dir(place.path().join("bad")).unwrap();
     fs::write(place.path().join("bad/results.jsonl"), "{}\n").unwrap();
     assert!(error_in(place.path(), "bench mine.toml --out bad").contains("line 1 is not a finished run"));

@@ -474,6 +474,8 @@ fn mistakes_are_told_in_one_line() {
         "collide triangle.obj index.obj --threshold 1",
         "collide triangle.obj empty.obj --threshold 1",
         "collide triangle.obj mesh.stp --threshold 1",
+        "collide . --self --threshold 1",
+        "collide triangle.obj above.obj --threshold 1 --at triangle:0,0,nan",
         "collide triangle.obj broken.ply --threshold 1",
         "collide triangle.obj above.obj --threshold 1 --out no/such/folder/pairs.csv",
     ]

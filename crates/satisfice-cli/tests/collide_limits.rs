@@ -268,8 +268,59 @@ fn witnesses_are_written_to_json_and_csv_and_shown() {
         ),
         (&0.0.into(), &Value::Null)
     );
+    // The points on both edges are rounded, so that they differ where the edges cross.
+    fs::write(
+        folder.path().join("slant.obj"),
+        "v 0.1 0.2 0\nv 0.7 1.3 0\nv 9 0 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("steep.obj"),
+        "v 0.3 0.1 -0.7\nv 0.4 1.1 0.9\nv 0.3 0.1 9\nf 1 2 3\n",
+    )
+    .unwrap();
+    let cut = json_of(
+        folder.path(),
+        "collide slant.obj steep.obj --threshold 1e-9 --pairs edge-triangle --witnesses",
+    );
+    assert!(!cut["pairs"].as_array().unwrap().is_empty());
+    for pair in cut["pairs"].as_array().unwrap() {
+        assert_eq!(
+            (&pair["distance"], &pair["witness"]["normal"]),
+            (&0.0.into(), &Value::Null)
+        );
+    }
     let without = json_of(folder.path(), &scene.replace(" --witnesses", ""));
     assert_eq!(without["pairs"][0]["witness"], Value::Null);
+}
+
+#[test]
+fn surfaces_that_may_cut_are_pointed_at_where_only_vertices_were_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("flat.obj"),
+        "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("through.obj"),
+        "v 0.5 0.5 -1\nv 0.5 0.5 1\nv 0.75 0.5 1\nf 1 2 3\n",
+    )
+    .unwrap();
+    let scene = "collide flat.obj through.obj --threshold 0.01";
+    let done = satisfice_in(folder.path(), scene);
+    assert_eq!(
+        (done.code, done.stderr.as_str()),
+        (
+            1,
+            "note: only vertices were compared; the surfaces of flat.obj and through.obj may meet all the same, since their \
+             boxes overlap: --pairs triangle-triangle compares surfaces\n"
+        )
+    );
+    for other in ["--pairs triangle-triangle", "--at through:0,0,2"] {
+        let done = satisfice_in(folder.path(), &format!("{scene} {other}"));
+        assert!(!done.stderr.contains("note:"), "{other}: {}", done.stderr);
+    }
 }
 
 #[test]

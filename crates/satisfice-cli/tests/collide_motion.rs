@@ -132,7 +132,10 @@ fn a_point_falls_through_a_triangle() {
     let [low, high] = bounds(&pair["time"]);
     assert!(low <= 0.25 && 0.25 <= high && high - low <= 1e-6, "{low} {high}");
     let normal: [f64; 3] = serde_json::from_value(pair["normal"].clone()).unwrap();
-    assert!(normal[2] > 0.999, "from the triangle up to the point: {normal:?}");
+    assert!(
+        normal[2] < -0.999,
+        "from the point down to the triangle: {normal:?}"
+    );
     let point: [f64; 3] = serde_json::from_value(pair["point_b"].clone()).unwrap();
     assert!(
         (point[0] - 0.25).abs() < 1e-5 && point[2].abs() < 1e-5,
@@ -236,6 +239,13 @@ fn impacts_are_written_as_csv_and_told() {
     );
     let fields = head.split(',').count();
     assert!(csv.lines().all(|line| line.split(',').count() == fields));
+    let cut = satisfice_in(folder.path(), &format!("{FALL} --threshold 0 --max-pairs 3"));
+    assert!(
+        cut.stdout
+            .contains("first impact  not known: an earlier pair may not be listed; --first finds it\n"),
+        "{}",
+        cut.stdout
+    );
     let rest = satisfice_in(
         folder.path(),
         "collide --from ball0.obj sheet.obj --to ball0.obj sheet.obj --threshold 0",

@@ -359,17 +359,19 @@ fn a_full_disk_is_an_error() {
     );
     // The summary is shown all the same.
     assert!(done.stdout.contains("  hits          "), "{}", done.stdout);
-    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output = command(env!("CARGO_MANIFEST_DIR").as_ref(), "list")
-        .stdout(full)
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .starts_with("error: cannot write to stdout")
-    );
+    for arguments in ["list", "--help", "run --help", "--version"] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = command(env!("CARGO_MANIFEST_DIR").as_ref(), arguments)
+            .stdout(full)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            said.starts_with("error: cannot write to stdout") && said.lines().count() == 1,
+            "{arguments}: {said}"
+        );
+    }
 }
 
 /// The first Ctrl-C ends the search, and what it found is written.

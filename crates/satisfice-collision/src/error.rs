@@ -4,6 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use crate::distance::PairKind;
+
 /// The element to which an index belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -62,7 +64,7 @@ pub enum Error {
         vertices: usize,
     },
     /// A surface with a hole encloses nothing.
-    #[error("the surface is not closed: edges at which an odd number of triangles meet: {edges}, the first of vertices {} and {} with {triangles}; close its holes", edge[0], edge[1])]
+    #[error("the surface is not closed: {}, the first of them between vertices {} and {} ({}); close its holes", odd(*edges), edge[0], edge[1], counted(*triangles, "triangle"))]
     NotClosed {
         /// The vertices of the first edge at which an odd number of triangles meet.
         edge: [usize; 2],
@@ -141,6 +143,16 @@ pub enum Error {
         /// The reason.
         source: Box<Error>,
     },
+    /// A body has none of the features that the pairs of a world are made of.
+    #[error("the mesh has no {missing}: each mesh needs {needed} for {pairs} pairs")]
+    NoFeature {
+        /// What it has not.
+        missing: &'static str,
+        /// What it needs.
+        needed: &'static str,
+        /// The kind of the pairs.
+        pairs: PairKind,
+    },
     /// A parameter lies outside what is allowed.
     #[error("{parameter} = {value} is not allowed: {allowed}")]
     Parameter {
@@ -151,6 +163,17 @@ pub enum Error {
         /// What is allowed, in words.
         allowed: &'static str,
     },
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
+}
+
+/// Edges at which an odd number of triangles meet.
+fn odd(edges: usize) -> String {
+    let verb = if edges == 1 { "has" } else { "have" };
+    format!("{} {verb} an odd number of triangles", counted(edges, "edge"))
 }
 
 impl Error {

@@ -353,6 +353,27 @@ def test_a_world_over_frames():
         world.add(A, "floating")
 
 
+def test_a_body_of_another_world_is_refused():
+    world, other = (collision.World(threshold=0.12) for _ in range(2))
+    floor, lid = world.add(A, "fixed"), world.add(B, transform=[0, 0, 5])
+    mine, stranger = other.add(A, "fixed"), other.add(B, transform=[0, 0, 7])
+    assert stranger.index == lid.index and stranger != lid and list(world) == [floor, lid]
+    for use in (
+        lambda: world.place(stranger, None),
+        lambda: world.translate(stranger, [0, 0, 1]),
+        lambda: world.deform(stranger, B[0]),
+        lambda: world.replace(stranger, A),
+        lambda: world.set_groups(stranger, 1),
+        lambda: world.exclude(floor, stranger),
+        lambda: world.include(mine, lid),
+        lambda: world.distance(floor, stranger),
+        lambda: world.remove(stranger),
+    ):
+        with pytest.raises(ValueError, match="body [01] is of another world"):
+            use()
+    assert len(world) == 2 and world.distance(floor, lid).distance > 4
+
+
 def test_a_translated_body_stays_turned():
     quarter = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 9], [0, 0, 0, 1.0]])
     found = []

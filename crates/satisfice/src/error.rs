@@ -8,7 +8,7 @@ pub enum Error {
     #[error("the space has no axis: give at least one")]
     NoAxis,
     /// An axis whose bounds are not usable.
-    #[error("axis {axis}: bounds [{lower}, {upper}] are not usable: {reason}")]
+    #[error("axis {axis}: bounds [{}, {}] are not usable: {reason}", short(*lower), short(*upper))]
     Bounds {
         /// Index of the axis, from 0.
         axis: usize,
@@ -90,6 +90,14 @@ pub enum Error {
     },
 }
 
+/// A bound in digits that can be read: large and small ones by their power of ten.
+fn short(bound: f64) -> String {
+    match bound.abs() {
+        size if size.is_finite() && size != 0.0 && !(1e-6..1e16).contains(&size) => format!("{bound:e}"),
+        _ => bound.to_string(),
+    }
+}
+
 fn suggestion(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
 }
@@ -158,6 +166,27 @@ mod tests {
             };
             assert_eq!(nearest.as_deref(), wanted, "{name}");
         }
+    }
+
+    #[test]
+    fn bounds_are_told_in_few_digits() {
+        let told = |lower, upper| {
+            let reason = "their difference overflows";
+            let axis = 0;
+            Error::Bounds {
+                axis,
+                lower,
+                upper,
+                reason,
+            }
+            .to_string()
+        };
+        assert_eq!(
+            told(-1e308, 1e308),
+            "axis 0: bounds [-1e308, 1e308] are not usable: their difference overflows"
+        );
+        assert!(told(-0.25, 1e-300).contains("[-0.25, 1e-300]"));
+        assert!(told(0.0, f64::INFINITY).contains("[0, inf]"));
     }
 
     #[test]

@@ -86,13 +86,11 @@ impl Metrics {
             .max(report.elapsed_seconds);
         let area = |cost: &dyn Fn(&FoundSolution) -> f64, whole: f64| {
             let all = report.reference_hits.filter(|&all| all > 0 && whole > 0.0)? as f64;
-            Some(
-                found
-                    .iter()
-                    .map(|hit| (1.0 - cost(hit) / whole).max(0.0))
-                    .sum::<f64>()
-                    / all,
-            )
+            // `sum` of nothing is -0.0.
+            let sum = found
+                .iter()
+                .fold(0.0, |sum, hit| sum + (1.0 - cost(hit) / whole).max(0.0));
+            Some(sum / all)
         };
         Self {
             first_hit: found.first().map(cost),
@@ -187,6 +185,13 @@ mod tests {
             / (20_000.0 * 2.0 * hits as f64);
         approx::assert_abs_diff_eq!(metrics.area_evaluations.unwrap(), mean, epsilon = 1e-4);
         assert!(Metrics::of(&report, &[], &[1e9], false).at_seconds.is_empty());
+
+        // Without a hit it is 0, not -0, which tables would show with its sign.
+        let mut none = report.clone();
+        none.solutions.clear();
+        none.hits = 0;
+        let area = Metrics::of(&none, &[], &[], false).area_evaluations.unwrap();
+        assert!(area == 0.0 && area.is_sign_positive());
 
         let curve = curve(&report);
         for Moment(evaluations, _, count) in &curve {

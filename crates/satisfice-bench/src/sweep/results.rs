@@ -30,6 +30,12 @@ impl Results {
             path: path.clone(),
             what,
         };
+        if folder.is_file() {
+            return Err(Error::File {
+                path: folder.to_owned(),
+                what: "it is a file, but results need a folder; choose another one".to_owned(),
+            });
+        }
         std::fs::create_dir_all(folder)
             .map_err(|error| failed(format!("cannot make its folder: {error}; choose another one")))?;
         let mut file = OpenOptions::new()

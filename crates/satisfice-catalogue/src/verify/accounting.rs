@@ -2,7 +2,7 @@
 
 use satisfice::{Completeness, StopReason};
 
-use super::Mismatch;
+use super::{Mismatch, shown};
 use crate::report::{RunReport, SliceReport};
 
 /// Checks everything that can be checked without the problem.
@@ -47,7 +47,11 @@ fn counts(report: &RunReport, wrong: &mut Vec<Mismatch>) {
     if report.completeness == Completeness::Proved
         && (report.unseen_estimate != Some(0.0) || report.unseen_interval != Some((0.0, Some(0.0))))
     {
-        let found = format!("{:?} in {:?}", report.unseen_estimate, report.unseen_interval);
+        let interval = report.unseen_interval.map_or_else(
+            || "null".to_owned(),
+            |(low, high)| format!("[{low}, {}]", shown(high)),
+        );
+        let found = format!("{} in {interval}", shown(report.unseen_estimate));
         wrong.push(Mismatch::new(
             "unseen_estimate",
             found,
@@ -127,7 +131,7 @@ fn order(report: &RunReport, wrong: &mut Vec<Mismatch>) {
             wrong.push(Mismatch::new(
                 format!("solutions[{index}].evaluation"),
                 solution.evaluation,
-                format!("more than {evaluation} and at most {}", report.counts.evaluations),
+                format!("at least {evaluation} and at most {}", report.counts.evaluations),
             ));
         }
         if later(seconds, solution.seconds) || later(solution.seconds, report.elapsed_seconds) {

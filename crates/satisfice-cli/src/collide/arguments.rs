@@ -124,7 +124,8 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "N", default_value = "10000000", value_parser = quantity::count, allow_hyphen_values = true)]
     pub(crate) max_pairs: u64,
 
-    /// Report the closest points of each pair, the normal between them, and the corner, edge or face they are on.
+    /// Report the closest points of each pair, the normal from a to b (none where they meet), and the corner, edge or face
+    /// they are on. With --from, points and normals, also from a to b, are always reported.
     #[arg(long)]
     pub(crate) witnesses: bool,
 

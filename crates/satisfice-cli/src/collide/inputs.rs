@@ -50,11 +50,12 @@ pub(crate) struct At {
 pub(crate) fn at(text: &str) -> Result<At, String> {
     const FORM: &str = "write BODY:x,y,z[,rx,ry,rz[,scale]], e.g. 1:0,0,2.5 or arm:1,0,0,0,0,90";
     let (body, numbers) = text.rsplit_once(':').ok_or(FORM)?;
-    let numbers: Vec<f64> = numbers
-        .split(',')
-        .map(|word| word.trim().parse().ok().filter(|x: &f64| x.is_finite()))
-        .collect::<Option<_>>()
-        .ok_or(FORM)?;
+    let number = |word: &str| match word.trim().parse() {
+        Ok(x) if f64::is_finite(x) => Ok(x),
+        Ok(_) => Err(format!("{FORM}; {} is not finite", word.trim())),
+        Err(_) => Err(format!("{FORM}; `{}` is no number", word.trim())),
+    };
+    let numbers: Vec<f64> = numbers.split(',').map(number).collect::<Result<_, _>>()?;
     let [x, y, z, ref rest @ ..] = numbers[..] else {
         return Err(FORM.to_owned());
     };
@@ -197,6 +198,12 @@ mod tests {
             "0:1,2,3,4,5,6,7,8",
         ] {
             assert!(at(text).unwrap_err().starts_with("write BODY:"), "{text}");
+        }
+        for (text, fault) in [
+            ("tri:0,0,nan", "; nan is not finite"),
+            ("0:1,2,x", "; `x` is no number"),
+        ] {
+            assert!(at(text).unwrap_err().ends_with(fault), "{text}");
         }
     }
 }

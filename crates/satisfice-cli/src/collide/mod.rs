@@ -103,6 +103,11 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     if files.summary {
         steps.step(output::print(summary::summary(&report).as_bytes()));
     }
+    if report.head.hits == 0
+        && let Some(hint) = warnings::only_vertices(&world)
+    {
+        message::say(format_args!("note: {hint}"));
+    }
     steps.outcome()?;
     if answer.is_full {
         bail!(

@@ -60,7 +60,10 @@ impl Witness {
         Self {
             point_a: near.point_a,
             point_b: near.point_b,
-            normal: direction(near.point_a, near.point_b),
+            // Where they meet, the points differ by their rounding only.
+            normal: (near.distance > 0.0)
+                .then(|| direction(near.point_a, near.point_b))
+                .flatten(),
             part_a: part(near.feature_a),
             part_b: part(near.feature_b),
         }

@@ -2,6 +2,7 @@
 
 use satisfice_catalogue::quantity::shown;
 use satisfice_collision::FeatureKind;
+use satisfice_collision::distance::PairKind;
 
 use super::scene::World;
 use super::weld;
@@ -104,6 +105,31 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
     }
     said.extend(seams(world));
     said
+}
+
+/// Surfaces can cut through each other where no two vertices are near: said where only vertices were compared, none are near,
+/// and two bodies with triangles have boxes that overlap.
+pub(super) fn only_vertices(world: &World) -> Option<String> {
+    if world.request.kind != PairKind::VertexVertex || world.request.solid {
+        return None;
+    }
+    let with_surface = || {
+        let bodies = world.bodies.iter();
+        bodies.filter(|body| !body.mesh.triangles().is_empty())
+    };
+    let boxes: Vec<_> = with_surface()
+        .map(|body| (&body.name, body.mesh.bounds()))
+        .collect();
+    let (a, b) = boxes.iter().enumerate().find_map(|(index, (a, box_a))| {
+        let (b, _) = boxes[index + 1..].iter().find(|(_, box_b)| {
+            (0..3).all(|k| box_a.min[k] <= box_b.max[k] && box_b.min[k] <= box_a.max[k])
+        })?;
+        Some((*a, *b))
+    })?;
+    Some(format!(
+        "only vertices were compared; the surfaces of {a} and {b} may meet all the same, since their boxes overlap: \
+         --pairs triangle-triangle compares surfaces"
+    ))
 }
 
 /// Seams make pairs of a body with itself: the vertices on both sides are not neighbours on the mesh.

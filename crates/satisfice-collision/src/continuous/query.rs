@@ -22,7 +22,7 @@ pub struct Impact {
     pub point_a: Point,
     /// The closest point of the second feature.
     pub point_b: Point,
-    /// A vector of length 1 from the second feature towards the first, at about the time of impact; 0 if the features leave it
+    /// A vector of length 1 from the first feature towards the second, at about the time of impact; 0 if the features leave it
     /// open, as where they are at rest on each other.
     pub normal: Point,
     /// Who proved it.
@@ -90,7 +90,7 @@ pub fn touches<A: Against<B>, B: Copy>(a: &Moving<A>, b: &Moving<B>) -> bool {
 /// let at_rest = Moving::at_rest([0.0; 3]);
 /// let impact = impact(&falling, &at_rest, Separation::new(1.0)?, 1e-9)?.expect("they meet");
 /// assert!(impact.time[0] <= 0.25 && 0.25 <= impact.time[1] && impact.time[1] - impact.time[0] <= 1e-9);
-/// assert!(impact.normal[2] > 0.999_999);
+/// assert!(impact.normal[2] < -0.999_999, "from the falling point down to the one at rest");
 /// # Ok::<(), satisfice_collision::Error>(())
 /// ```
 ///
@@ -135,7 +135,10 @@ pub(super) fn within<A: Against<B>, B: Copy>(
     let before = [0.0, 1e-6, 1e-4, 1e-2].map(|earlier| (time[0] - earlier).max(0.0));
     let normal = before.into_iter().chain([time[1]]).find_map(|time| {
         let near = at(time);
-        unit(near.point_a, near.point_b)
+        // Where they meet, the points differ by their rounding only.
+        (near.distance > 0.0)
+            .then(|| unit(near.point_a, near.point_b))
+            .flatten()
     });
     Some(Impact {
         time,
@@ -147,9 +150,9 @@ pub(super) fn within<A: Against<B>, B: Copy>(
     })
 }
 
-/// The direction from `q` to `p`, or `None` if they are the same up to rounding.
+/// The direction from `p` to `q`, or `None` if they are the same up to rounding.
 fn unit(p: Point, q: Point) -> Option<Point> {
-    let d: Point = std::array::from_fn(|k| p[k] - q[k]);
+    let d: Point = std::array::from_fn(|k| q[k] - p[k]);
     let scale = (0..3).fold(0.0_f64, |most, k| most.max(p[k].abs()).max(q[k].abs()));
     let length = (0..3).map(|k| (d[k] / scale).powi(2)).sum::<f64>().sqrt();
     (length > 1e-12).then(|| d.map(|x| x / scale / length))

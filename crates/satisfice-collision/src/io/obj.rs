@@ -14,7 +14,7 @@ const NAME: &str = "OBJ";
 pub(super) const FORMAT: Format = Format {
     name: "obj",
     extensions: &["obj"],
-    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into fans about their first corner",
+    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into fans about their first corner, and faces of two corners are lines",
     reader: Reader::Mesh(parse),
 };
 
@@ -167,7 +167,18 @@ impl Contents {
         }
         let vertices = self.vertices.len();
         let vertex = if given < 0 {
-            given.saturating_add_unsigned(vertices as u64)
+            let vertex = given.saturating_add_unsigned(vertices as u64);
+            if vertex < 0 {
+                let before = match vertices {
+                    1 => "1 vertex stands".to_owned(),
+                    many => format!("{many} vertices stand"),
+                };
+                let reason = format!(
+                    "{element} {index} names vertex {given}, counted backwards, but only {before} before it"
+                );
+                return Err(Error::malformed(NAME, reason));
+            }
+            vertex
         } else {
             given - 1
         };

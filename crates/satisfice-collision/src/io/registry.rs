@@ -1,5 +1,6 @@
 //! The registry of formats: one line for each.
 
+use std::io;
 use std::path::Path;
 
 use super::format::Format;
@@ -21,7 +22,7 @@ impl Format {
     /// The format that the extension of `path` names, in letters of either case. An extension `.gz` is skipped.
     ///
     /// # Errors
-    /// [`Error::UnknownFormat`], which lists the known extensions.
+    /// [`Error::UnknownFormat`], which lists the known extensions; [`Error::Unreadable`] for a folder without one.
     pub fn of_path(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let is_gz = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"));
@@ -40,9 +41,15 @@ impl Format {
                     .into_iter()
                     .find(|format| format.extensions.contains(&e.as_str()))
             })
-            .ok_or_else(|| Error::UnknownFormat {
-                path: path.to_owned(),
-                known: known_extensions(),
+            .ok_or_else(|| match path.is_dir() {
+                true => Error::Unreadable {
+                    path: path.to_owned(),
+                    source: io::Error::other("it is a folder: name the mesh files in it"),
+                },
+                false => Error::UnknownFormat {
+                    path: path.to_owned(),
+                    known: known_extensions(),
+                },
             })
     }
 

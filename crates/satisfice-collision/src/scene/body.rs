@@ -9,6 +9,9 @@ use crate::Placement;
 /// A handle of a body in its world. It stays valid until the body is removed, whatever else is added or removed; a handle of a
 /// removed body is refused, even if its place has been given to another body.
 ///
+/// It does not know its world: in another world it means the body of the same index there, and is not refused. Keep the handles of
+/// each world apart.
+///
 /// Ordered by index, then by generation.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BodyId {

@@ -80,7 +80,7 @@ impl World {
     /// Adds a body, which counts from the next query on. Cost: constant; for a deforming body, linear in its size.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the mesh has no feature that the world's pairs are made of, such as a mesh without triangles where
+    /// [`Error::NoFeature`] if the mesh has no feature that the world's pairs are made of, such as a mesh without triangles where
     /// pairs of triangles are looked for; [`Error::NonFiniteVertex`] if the placement takes a vertex out of the range of numbers.
     /// The world is then as before.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
@@ -309,18 +309,18 @@ impl World {
         if kind_a.count(mesh.mesh()) > 0 || kind_b.count(mesh.mesh()) > 0 {
             return Ok(());
         }
-        let (value, allowed) = match kind_b {
-            FeatureKind::Vertex => ("no vertex", "a mesh needs a vertex"),
-            FeatureKind::Edge => (
-                "no edge",
-                "a mesh needs an edge where pairs of edges are looked for",
-            ),
-            FeatureKind::Triangle => (
-                "no triangle",
-                "a mesh needs a triangle, or an edge with edge-triangle pairs, or a vertex with vertex-triangle pairs",
-            ),
+        // A kind with vertices lacks nothing: every mesh has one.
+        let (missing, needed) = match (kind_a, kind_b) {
+            (FeatureKind::Edge, FeatureKind::Triangle) => ("edge and no triangle", "an edge or a triangle"),
+            (_, FeatureKind::Triangle) => ("triangle", "a triangle"),
+            (_, FeatureKind::Edge) => ("edge", "an edge"),
+            (_, FeatureKind::Vertex) => ("vertex", "a vertex"),
         };
-        Err(Error::parameter("mesh", value, allowed))
+        Err(Error::NoFeature {
+            missing,
+            needed,
+            pairs: self.kind,
+        })
     }
 
     /// Pairs of bodies, a body with itself included, that are kept from colliding, and pairs of two that may collide.

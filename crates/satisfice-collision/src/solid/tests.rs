@@ -161,7 +161,8 @@ fn holes_are_refused() {
     .unwrap();
     let error = Solid::new(&torn).unwrap_err().to_string();
     assert!(
-        error.starts_with("the surface is not closed") && error.contains(": 3, the first of vertices "),
+        error.starts_with("the surface is not closed: 3 edges have an odd number of triangles, the first of them between vertices ")
+            && error.ends_with(" (1 triangle); close its holes"),
         "{error}"
     );
     let line = Mesh::new(vec![[0.0; 3], [1.0; 3]], vec![[0, 1]], Vec::new()).unwrap();

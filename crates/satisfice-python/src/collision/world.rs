@@ -1,5 +1,6 @@
 //! Worlds of bodies that move from frame to frame.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
@@ -17,24 +18,30 @@ use crate::refused;
 /// A handle of a body in its world.
 #[pyclass(frozen, eq, hash, module = "satisfice.collision")]
 #[derive(PartialEq, Eq, Hash)]
-pub(crate) struct Body(BodyId);
+pub(crate) struct Body {
+    id: BodyId,
+    /// The number of its world.
+    world: u64,
+}
 
 #[pymethods]
 impl Body {
     /// Its place in the world: 0, 1, 2, ... in the order of addition.
     #[getter]
     fn index(&self) -> usize {
-        self.0.index()
+        self.id.index()
     }
 
     fn __repr__(&self) -> String {
-        format!("<satisfice.collision.Body {}>", self.0)
+        format!("<satisfice.collision.Body {}>", self.id)
     }
 }
 
 /// Bodies, a kind of feature pair and a threshold.
 #[pyclass(frozen, module = "satisfice.collision")]
 pub(crate) struct World {
+    /// No other world of the process has it.
+    number: u64,
     inner: Mutex<scene::World>,
     pool: Option<ThreadPool>,
 }
@@ -51,6 +58,26 @@ type Columns = (
 type Nearest = (u32, u32, u32, u32, f64, [f64; 3], [f64; 3]);
 
 impl World {
+    /// The handle of a body of this world.
+    fn body(&self, id: BodyId) -> Body {
+        Body {
+            id,
+            world: self.number,
+        }
+    }
+
+    /// The body of a handle; a body of the same index may be another one in the world that the handle is of.
+    fn id(&self, body: &Bound<'_, Body>) -> PyResult<BodyId> {
+        let body = body.get();
+        if body.world != self.number {
+            return Err(refused(format!(
+                "body {} is of another world: give a handle that `add` of this world returned",
+                body.id
+            )));
+        }
+        Ok(body.id)
+    }
+
     fn lock(&self) -> MutexGuard<'_, scene::World> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -124,7 +151,9 @@ impl World {
         if pool.is_some() {
             inner = inner.parallel();
         }
+        static WORLDS: AtomicU64 = AtomicU64::new(0);
         Ok(Self {
+            number: WORLDS.fetch_add(1, Ordering::Relaxed),
             inner: Mutex::new(inner),
             pool,
         })
@@ -159,16 +188,17 @@ impl World {
         if !self_collision {
             body = body.without_self_collision();
         }
-        self.change(py, |world| world.add(body)).map(Body)
+        let id = self.change(py, |world| world.add(body))?;
+        Ok(self.body(id))
     }
 
     fn place(&self, py: Python<'_>, body: &Bound<'_, Body>, pose: Option<Pose>) -> PyResult<()> {
-        let (body, placement) = (body.get().0, placement(pose)?);
+        let (body, placement) = (self.id(body)?, placement(pose)?);
         self.change(py, |world| world.place(body, placement))
     }
 
     fn translate(&self, py: Python<'_>, body: &Bound<'_, Body>, translation: [f64; 3]) -> PyResult<()> {
-        let body = body.get().0;
+        let body = self.id(body)?;
         self.change(py, |world| world.translate(body, translation))
     }
 
@@ -178,32 +208,32 @@ impl World {
         body: &Bound<'_, Body>,
         vertices: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
-        let (body, vertices) = (body.get().0, points(&vertices)?);
+        let (body, vertices) = (self.id(body)?, points(&vertices)?);
         self.change(py, |world| world.deform(body, &vertices))
     }
 
     fn remove(&self, py: Python<'_>, body: &Bound<'_, Body>) -> PyResult<()> {
-        let body = body.get().0;
+        let body = self.id(body)?;
         self.change(py, |world| world.remove(body))
     }
 
     fn replace(&self, py: Python<'_>, body: &Bound<'_, Body>, mesh: &Bound<'_, Mesh>) -> PyResult<()> {
-        let (body, mesh) = (body.get().0, mesh.get().0.clone());
+        let (body, mesh) = (self.id(body)?, mesh.get().0.clone());
         self.change(py, |world| world.replace(body, mesh))
     }
 
     fn set_groups(&self, py: Python<'_>, body: &Bound<'_, Body>, groups: u32, mask: u32) -> PyResult<()> {
-        let body = body.get().0;
+        let body = self.id(body)?;
         self.change(py, |world| world.set_groups(body, groups, mask))
     }
 
     fn exclude(&self, py: Python<'_>, a: &Bound<'_, Body>, b: &Bound<'_, Body>) -> PyResult<()> {
-        let (a, b) = (a.get().0, b.get().0);
+        let (a, b) = (self.id(a)?, self.id(b)?);
         self.change(py, |world| world.exclude(a, b))
     }
 
     fn include(&self, py: Python<'_>, a: &Bound<'_, Body>, b: &Bound<'_, Body>) -> PyResult<()> {
-        let (a, b) = (a.get().0, b.get().0);
+        let (a, b) = (self.id(a)?, self.id(b)?);
         self.change(py, |world| world.include(a, b))
     }
 
@@ -226,7 +256,7 @@ impl World {
     fn bodies(&self, py: Python<'_>) -> Vec<Body> {
         py.detach(|| self.lock().bodies().collect::<Vec<_>>())
             .into_iter()
-            .map(Body)
+            .map(|id| self.body(id))
             .collect()
     }
 
@@ -288,7 +318,10 @@ impl World {
         })?;
         let mut pairs: Vec<_> = found.iter().map(Contact::bodies).collect();
         pairs.sort_unstable();
-        let pairs = pairs.into_iter().map(|(a, b)| (Body(a), Body(b))).collect();
+        let pairs = pairs
+            .into_iter()
+            .map(|(a, b)| (self.body(a), self.body(b)))
+            .collect();
         Ok((pairs, completeness == Completeness::Proved))
     }
 
@@ -314,7 +347,7 @@ impl World {
         a: &Bound<'_, Body>,
         b: &Bound<'_, Body>,
     ) -> PyResult<Option<Nearest>> {
-        let (a, b) = (a.get().0, b.get().0);
+        let (a, b) = (self.id(a)?, self.id(b)?);
         let found = self.ask(py, None, None, |world, _| world.distance(a, b))?;
         Ok(found.map(one))
     }
@@ -328,7 +361,7 @@ impl World {
         let found = self.ask(py, None, None, |world, _| world.nearest_to_point(point))?;
         Ok(found.map(|near| {
             (
-                Body(near.body),
+                self.body(near.body),
                 near.feature,
                 near.proximity.distance,
                 near.proximity.point_b,
@@ -344,11 +377,11 @@ impl World {
         to: [f64; 3],
     ) -> PyResult<Option<(Body, u32, f64, [f64; 3])>> {
         let hit = self.ask(py, None, None, |world, _| world.cast_ray(from, to))?;
-        Ok(hit.map(|hit| (Body(hit.body), hit.triangle, hit.part, hit.point)))
+        Ok(hit.map(|hit| (self.body(hit.body), hit.triangle, hit.part, hit.point)))
     }
 
     fn bodies_in(&self, py: Python<'_>, min: [f64; 3], max: [f64; 3]) -> PyResult<Vec<Body>> {
         let found = self.ask(py, None, None, |world, _| world.bodies_in(&Aabb { min, max }))?;
-        Ok(found.into_iter().map(Body).collect())
+        Ok(found.into_iter().map(|id| self.body(id)).collect())
     }
 }

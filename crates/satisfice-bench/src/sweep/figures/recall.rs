@@ -11,11 +11,7 @@ pub(super) fn recall(group: &Group, all: &[Runs<'_>]) -> Option<Figure> {
         .reference_hits
         .filter(|&count| count > 0)
         .map_or(1.0, |count| count as f64);
-    let what = if scale > 1.0 {
-        "recall"
-    } else {
-        "distinct hits |C|"
-    };
+    let what = if scale > 1.0 { "recall" } else { "distinct hits" };
     let panel = |by: By| Panel {
         x_label: by.label(),
         y_label: what.to_owned(),

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use satisfice_catalogue::Settings;
-use satisfice_collision::Mesh;
 use satisfice_collision::continuous::{Separation, Step};
 use satisfice_collision::distance::PairKind;
+use satisfice_collision::{Error, Mesh};
 use serde_json::json;
 
 use super::super::inputs::NamedBody;
@@ -122,9 +122,13 @@ impl Frames {
     fn check_features(&self) -> anyhow::Result<()> {
         // The kinds that a motion does not decide are refused here.
         for &kind in &self.kinds {
-            self.step
-                .hits_until(kind, self.separation, &mut || true)
-                .with_context(|| format!("--pairs {kind}"))?;
+            let asked = self.step.hits_until(kind, self.separation, &mut || true);
+            asked.map_err(|error| match error {
+                Error::Parameter { allowed, .. } => {
+                    anyhow::anyhow!("--pairs {kind} is not allowed: {allowed}")
+                }
+                error => error.into(),
+            })?;
         }
         let Some(kind) = self.request.pairs else {
             return Ok(());

@@ -30,9 +30,7 @@ pub(super) fn html(
         page.body(&body.name, mesh.vertices(), mesh.triangles(), mesh.lines());
     }
     page.fact("Completeness", summary::completeness(report));
-    if let Some(first) = summary::first_impact(report) {
-        page.fact("First impact", first);
-    }
+    page.fact("First impact", summary::first_impact(report));
     page.fact("Time", elapsed(head));
     let every = report.pairs.len().div_ceil(LISTED).max(1);
     let listed = report.pairs.iter().step_by(every);

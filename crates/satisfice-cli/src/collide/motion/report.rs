@@ -42,7 +42,7 @@ pub(super) struct ImpactLine {
     pub(super) at_start: Option<bool>,
     pub(super) point_a: Option<[f64; 3]>,
     pub(super) point_b: Option<[f64; 3]>,
-    /// From b towards a, of length 1; `null` where the features leave it open.
+    /// From a towards b just before the impact, of length 1, as at rest; `null` where the features leave it open.
     pub(super) normal: Option<[f64; 3]>,
 }
 

@@ -31,9 +31,7 @@ pub(super) fn summary(report: &MotionReport<'_>) -> String {
         lines.line("pairs", &count(report));
         lines.line("completeness", completeness(report));
     }
-    if let Some(first) = first_impact(report) {
-        lines.line("first impact", &first);
-    }
+    lines.line("first impact", &first_impact(report));
     lines.line("time", &elapsed(head));
     if report.frames.bodies.len() > 1 && !report.touching.is_empty() {
         lines.line("bodies", &body_names(&report.frames.bodies, &report.touching));
@@ -55,13 +53,22 @@ pub(super) fn summary(report: &MotionReport<'_>) -> String {
         lines.line(&format!("pair {}", index + 1), &pair);
     }
     if report.pairs.len() > SHOWN_PAIRS {
-        let more = shown::count((report.pairs.len() - SHOWN_PAIRS) as u64);
-        lines.line(
-            "",
-            &format!("and {more} more, later ones; --json FILE or --out FILE.csv lists all"),
-        );
+        let more = (report.pairs.len() - SHOWN_PAIRS) as u64;
+        lines.line("", &not_shown(more, report.head.unmeasured));
     }
     lines.text()
+}
+
+/// What is said of listed pairs that are not shown. One without a time may be earlier than those shown.
+fn not_shown(more: u64, untimed: u64) -> String {
+    let order = match untimed {
+        0 => ", later ones".to_owned(),
+        some => format!(", {} of them without a time", shown::count(some.min(more))),
+    };
+    format!(
+        "and {} more{order}; --json FILE or --out FILE.csv lists all",
+        shown::count(more)
+    )
 }
 
 fn count(report: &MotionReport<'_>) -> String {
@@ -83,11 +90,13 @@ pub(super) fn completeness(report: &MotionReport<'_>) -> &'static str {
     }
 }
 
-pub(super) fn first_impact(report: &MotionReport<'_>) -> Option<String> {
-    let first = report.first_impact?;
+pub(super) fn first_impact(report: &MotionReport<'_>) -> String {
+    let Some(first) = report.first_impact else {
+        return unknown_first(report.head.hits, report.head.unmeasured);
+    };
     let [low, high] = first.time;
     let found = !report.pairs.is_empty();
-    Some(match (first.proved, found) {
+    match (first.proved, found) {
         (true, false) => "none: the step is free, that is proved".to_owned(),
         (true, true) if high == 0.0 => "at the start, that is proved".to_owned(),
         (true, true) => format!("{}, that is proved", bounds(first)),
@@ -97,7 +106,20 @@ pub(super) fn first_impact(report: &MotionReport<'_>) -> Option<String> {
             "not before {} of the step; none found so far",
             bound(low, Towards::Below)
         ),
-    })
+    }
+}
+
+/// Why the listed pairs do not tell the first impact.
+fn unknown_first(listed: u64, untimed: u64) -> String {
+    let why = match untimed {
+        0 => "an earlier pair may not be listed".to_owned(),
+        some => format!(
+            "the times of {} of the {} listed pairs were not computed",
+            shown::count(some),
+            shown::count(listed)
+        ),
+    };
+    format!("not known: {why}; --first finds it")
 }
 
 /// A time as a part of the step, and in seconds where the ends of the step are times of animations.
@@ -163,6 +185,22 @@ fn side(report: &MotionReport<'_>, kind: FeatureKind, side: &Side) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pairs_without_a_time_are_not_called_later_ones() {
+        assert_eq!(
+            not_shown(7, 0),
+            "and 7 more, later ones; --json FILE or --out FILE.csv lists all"
+        );
+        assert_eq!(
+            not_shown(113_849, 87_102),
+            "and 113,849 more, 87,102 of them without a time; --json FILE or --out FILE.csv lists all"
+        );
+        assert_eq!(
+            unknown_first(113_854, 87_102),
+            "not known: the times of 87,102 of the 113,854 listed pairs were not computed; --first finds it"
+        );
+    }
 
     #[test]
     fn bounds_have_few_digits_and_remain_bounds() {

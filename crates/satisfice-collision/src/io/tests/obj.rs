@@ -145,11 +145,15 @@ fn obj_errors_name_the_line_and_the_element() {
     );
     assert_eq!(
         say("v 0 0 0\nl 1 1\nl 1 -2"),
-        "line 3: edge 1 names vertex -1, but the mesh has 1 vertices (0 to 0)"
+        "line 3: not a valid OBJ file: edge 1 names vertex -2, counted backwards, but only 1 vertex stands before it"
     );
     assert_eq!(
         say("v 0 0 0\np -2"),
-        "line 2: point 0 names vertex -1, but the mesh has 1 vertices (0 to 0)"
+        "line 2: not a valid OBJ file: point 0 names vertex -2, counted backwards, but only 1 vertex stands before it"
+    );
+    assert_eq!(
+        say("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4"),
+        "line 4: not a valid OBJ file: face 0 names vertex -4, counted backwards, but only 3 vertices stand before it"
     );
     assert_eq!(
         say("v 0 0 0\nf 1 x 1"),

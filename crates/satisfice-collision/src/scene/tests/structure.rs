@@ -81,8 +81,17 @@ fn what_is_refused_changes_nothing() {
     assert!(before.len() > 500, "{}", before.len());
     // a mesh without triangles, where triangles are asked for
     let dust = Mesh::new(vec![[0.0; 3]; 4], vec![], vec![]).unwrap();
-    is_refused(world.add(Body::fixed(dust.clone())), "mesh");
-    is_refused(world.replace(ids[7], dust.clone()), "mesh");
+    for refused in [
+        world.add(Body::fixed(dust.clone())).map(|_| ()),
+        world.replace(ids[7], dust.clone()),
+    ] {
+        let error = refused.unwrap_err();
+        assert!(matches!(error, Error::NoFeature { .. }));
+        assert_eq!(
+            error.to_string(),
+            "the mesh has no triangle: each mesh needs a triangle for triangle-triangle pairs"
+        );
+    }
     // NaN and infinity
     is_refused(Placement::from_translation([f64::NAN, 0.0, 0.0]), "translation");
     let far = Placement::from_translation([f64::MAX; 3]).unwrap();

@@ -24,7 +24,7 @@ class Impacts:
     time : ndarray of float64, shape (m, 2)
         A lower and an upper bound of the time of impact, both proved; 0 is the start of the step and 1 its end.
     point_a, point_b, normal : ndarray of float64, shape (m, 3)
-        Closest points at the upper bound, and a unit vector from the second feature towards the first at about that time (0
+        Closest points at the upper bound, and a unit vector from the first feature towards the second at about that time (0
         where the features leave it open).
     complete : bool
         Whether these are all.

@@ -76,7 +76,7 @@ pub(super) struct Given<'a, S> {
 
 /// A point that is proposed and not told yet.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Pending {
+pub(super) struct PendingPoint {
     pub(super) x: Vec<f64>,
     /// How probable the model takes a hit to be; 0 where it has not said.
     pub(super) probability: f64,
@@ -244,7 +244,7 @@ impl Model {
     pub(super) fn choose<S: Real>(
         &mut self,
         given: &mut Given<'_, S>,
-        pending: &[Pending],
+        pending: &[PendingPoint],
         rng: &mut SearchRng,
     ) -> Option<ModelProposal> {
         let ranking = self.pool.ranking(&self.process);
@@ -288,7 +288,7 @@ impl Model {
     }
 
     /// Whether scores are logarithms of probabilities.
-    fn has_logarithms(&self, pending: &[Pending]) -> bool {
+    fn has_logarithms(&self, pending: &[PendingPoint]) -> bool {
         !self.pool.limits.is_empty() || !pending.is_empty()
     }
 
@@ -311,7 +311,7 @@ impl Model {
     fn descend<S: Real>(
         &mut self,
         given: &mut Given<'_, S>,
-        pending: &[Pending],
+        pending: &[PendingPoint],
         (mut last, mut at): (Score, Vec<f64>),
         best: &mut (Score, Vec<f64>),
     ) {
@@ -340,7 +340,7 @@ impl Model {
         &mut self,
         given: &mut Given<'_, S>,
         ranking: impl Iterator<Item = (Score, Place)>,
-        pending: &[Pending],
+        pending: &[PendingPoint],
         than: Option<Score>,
     ) -> Option<(Score, Vec<f64>)> {
         let (mut x, mut rounded) = (Vec::new(), Vec::new());

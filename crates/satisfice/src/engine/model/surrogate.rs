@@ -1,6 +1,6 @@
 //! The engine `surrogate`: a Gaussian process says where the next hit probably is.
 
-use super::local::{Given, Model, ModelProposal, Pending, design_size};
+use super::local::{Given, Model, ModelProposal, PendingPoint, design_size};
 use super::one_answer::OneAnswer;
 use super::promise::Promise;
 use super::record::{PointKind, Record};
@@ -93,7 +93,7 @@ pub(in crate::engine) struct ModelledSearch<S> {
     /// First points that were looked at.
     started: usize,
     /// Points that are proposed and not told yet.
-    pending: Vec<Pending>,
+    pending: Vec<PendingPoint>,
     model: Option<Model>,
     skill: Skill,
     /// What it expects of its proposals.
@@ -320,7 +320,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             self.units
                 .of_position(context.space(), &self.position, &mut rounded);
             out.push(&self.position);
-            self.pending.push(Pending {
+            self.pending.push(PendingPoint {
                 x: rounded,
                 probability,
             });
