@@ -125,10 +125,12 @@ impl Trees<'_> {
         ]
     }
 
-    /// What knows of the far coordinates in the groups of a visit, if there are any.
-    #[inline(always)]
-    fn far_at(&self, at: Visit) -> Option<&FarBoxes> {
-        self.far.filter(|far| far.concern(self, at))
+    /// The pairs of boxes of a visit that may be within the threshold, if it has far coordinates.
+    #[cold]
+    #[inline(never)]
+    fn far_within(&self, at: Visit) -> Option<u64> {
+        let far = self.far?;
+        far.concern(self, at).then(|| far.within(self, at))
     }
 
     /// The pairs of lanes of two groups that count: bit `8 i + j` is lane `i` of the first and lane `j` of the second.
@@ -285,8 +287,10 @@ fn columns(of: &[Eight; 3]) -> [&Eight; 3] {
 
 #[inline(always)]
 fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
-    if let Some(far) = trees.far_at(at) {
-        return far.within(&trees, at);
+    if trees.far.is_some()
+        && let Some(near) = trees.far_within(at)
+    {
+        return near;
     }
     let mut rooms = [Group::EMPTY; 3];
     let [room_a, room_b, room] = &mut rooms;
@@ -310,8 +314,10 @@ fn near_in_leaf<L: Lanes, C: CandidateSink>(lanes: L, trees: Trees<'_>, at: Visi
     if !C::POINTS {
         return boxes_within(lanes, trees, at);
     }
-    if let Some(far) = trees.far_at(at) {
-        return far.within(&trees, at);
+    if trees.far.is_some()
+        && let Some(near) = trees.far_within(at)
+    {
+        return near;
     }
     let Trees { a, b, filter, .. } = trees;
     let mut room = [[0.0; 8]; 3];
@@ -348,7 +354,7 @@ fn deliver<L: Lanes, C: CandidateSink>(
     if near == 0 {
         return;
     }
-    let is_far = trees.far_at(Visit::leaf(at_a, at_b)).is_some();
+    let is_far = trees.far.is_some() && trees.far_within(Visit::leaf(at_a, at_b)).is_some();
     let mut room = [[0.0; 8]; 3];
     let (points_a, points_b) = if C::POINTS {
         (trees.relative.points(a.points(at_a), &mut room), b.points(at_b))
