@@ -3,7 +3,7 @@
 //! such, in half the memory.
 
 use super::clip::{four, greater, lesser, wide};
-use super::frame::LocalFrame;
+use super::frame::{EDGE, LocalFrame};
 use crate::simd::{Eight, Lanes, Work, dispatch};
 
 /// A box of `f32` coordinates; empty if a lower side lies above its upper one.
@@ -340,6 +340,11 @@ impl Work for PlacePoints<'_> {
                 rows[lane] = lanes.place(&point, &origin, self.frame.scale, axes);
             }
             *group = lanes.columns(&rows);
+            if self.frame.has_far {
+                for c in group.as_flattened_mut() {
+                    *c = c.clamp(-EDGE, EDGE);
+                }
+            }
         }
     }
 }

@@ -4,7 +4,6 @@
 //! Equal distances are ordered by number. Boxes cannot tell them apart, so that a search that goes on for long also asks for the
 //! numbers in a subtree: see [`Subtrees`].
 
-mod gaps;
 mod subtrees;
 
 use std::cmp::Ordering;
@@ -12,6 +11,7 @@ use std::collections::BinaryHeap;
 
 use super::boxes::{Dirty, Group};
 use super::features::FeatureTree;
+use super::gaps::Gaps;
 use super::pair::Pair;
 use super::pair_query::{Keep, PairQuery};
 use super::traverse::{Trees, Visit, next};
@@ -19,7 +19,6 @@ use super::watch::Watch;
 use crate::distance::{self, ACCURACY, Proximity, Threshold};
 use crate::simd::{Lanes, Work, dispatch};
 use crate::{Error, Placement, Shape};
-use gaps::Gaps;
 use subtrees::Subtrees;
 
 /// Visits between two looks at the watch.

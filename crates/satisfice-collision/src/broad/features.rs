@@ -118,7 +118,7 @@ impl FeatureTree {
             topology: Arc::clone(mesh.topology()),
             vertices: mesh.vertices().to_vec(),
             runs: BlockBounds::default(),
-            frame: LocalFrame::unit(&bounds),
+            frame: LocalFrame::unit(&bounds, mesh.vertices()),
             boxes: Vec::new(),
             placed: Vec::new(),
             directions: Vec::new(),
@@ -131,7 +131,7 @@ impl FeatureTree {
         tree.measure(mesh.vertices());
         let points: Vec<Box32>;
         let boxes = if kind == FeatureKind::Vertex {
-            let at = |vertex| tree.frame.place(vertex);
+            let at = |vertex| tree.frame.held(tree.frame.place(vertex));
             points = tree
                 .vertices
                 .iter()
@@ -167,7 +167,7 @@ impl FeatureTree {
         }
         self.runs.measure(vertices, 1)?;
         if let Some(bounds) = self.runs.whole() {
-            self.frame = LocalFrame::unit(&bounds);
+            self.frame = LocalFrame::unit(&bounds, vertices);
         }
         // first what reads them in the order of the tree, while they are in the cache
         self.measure(vertices);
@@ -220,6 +220,11 @@ impl FeatureTree {
         }
         placed.clear();
         placed.extend(vertices.iter().map(|vertex| frame.place(vertex)));
+        if frame.has_far {
+            for place in &mut *placed {
+                *place = frame.held(*place);
+            }
+        }
         let at = |v: u32| placed[v as usize];
         boxes.clear();
         directions.clear();
@@ -239,7 +244,7 @@ impl FeatureTree {
 
     /// A radius around the frame's origin that holds every vertex.
     pub(crate) fn radius(&self) -> f64 {
-        1.7321 * self.frame.half / self.frame.scale
+        1.7321 * self.frame.farthest
     }
 
     /// The number of features.

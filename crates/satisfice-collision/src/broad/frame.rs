@@ -7,7 +7,11 @@
 //! 1 +- 4u, or by less than 2^-72 where squares underflow. So, with E = 2 sqrt(3) e + 2^-70 and d = delta s:
 //! below `definitely_inside_sq` = ((d - E)(1 - 5u))^2 every pair is a hit, from `definitely_outside_sq` = ((d + E)(1 + 5u))^2 on none is, and only what lies
 //! between has to be decided exactly. The same holds for the gap between boxes whose sides are wrong by at most e.
+//!
+//! If few points are far from all others, M is that of the others, the core. A coordinate beyond it is wrong in proportion to
+//! its own size, and boxes with such a one are compared in `f64`: see `gaps`.
 
+use super::robust::Core;
 use crate::Aabb;
 
 /// Unit roundoff of `f32`.
@@ -21,11 +25,18 @@ pub(crate) struct LocalFrame {
     pub(crate) scale: f64,
     /// Which world axis each local axis is.
     axes: [usize; 3],
-    /// Coordinates in the frame are at most this, in absolute value.
+    /// Coordinates in the frame are at most this, in absolute value, unless they are far.
     pub(crate) half: f64,
-    /// Coordinates in the frame are wrong by at most this.
+    /// Coordinates in the frame are wrong by at most this, unless they are far.
     pub(crate) error: f64,
+    /// Whether some are far: they are beyond `half`, wrong in proportion to their size, and held at [`EDGE`].
+    pub(crate) has_far: bool,
+    /// The largest absolute coordinate from the origin, in the unit of the world.
+    pub(crate) farthest: f64,
 }
+
+/// Coordinates beyond this are held at it. Whatever a box has there may reach to infinity.
+pub(crate) const EDGE: f32 = (1_u128 << 100) as f32;
 
 /// What `f32` squared distances in a frame allow to conclude.
 #[derive(Debug, Clone, Copy)]
@@ -51,17 +62,34 @@ impl LocalFrame {
     }
 
     /// The frame for points inside `bounds` in which coordinates are below 2, and at least 1 for the largest of them unless all
-    /// are denormal; axes as in the world.
-    pub(crate) fn unit(bounds: &Aabb) -> Self {
-        Self::new(bounds, 1022, 0)
+    /// are denormal; axes as in the world. If few of many points are far away, this is the frame of the others.
+    pub(crate) fn unit(bounds: &Aabb, points: &[[f64; 3]]) -> Self {
+        let core = if points.len() < FEW {
+            None
+        } else {
+            Core::find(points.len(), |point| points[point], bounds)
+        };
+        match core {
+            None => Self::new(bounds, 1022, 0),
+            Some(Core { centre, half }) => {
+                let farthest = largest_from(&centre, bounds);
+                Self {
+                    has_far: true,
+                    farthest,
+                    ..Self::around(centre, half, 1022, 0)
+                }
+            }
+        }
     }
 
     /// Scaled by `2^wanted`, but so that coordinates stay below `2^(most + 1)`.
     fn new(bounds: &Aabb, wanted: i32, most: i32) -> Self {
         let origin: [f64; 3] = std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0);
-        let half = (0..3)
-            .map(|k| (bounds.max[k] - origin[k]).max(origin[k] - bounds.min[k]))
-            .fold(0.0, f64::max);
+        Self::around(origin, largest_from(&origin, bounds), wanted, most)
+    }
+
+    fn around(origin: [f64; 3], half: f64, wanted: i32, most: i32) -> Self {
+        let farthest = half;
         let scale = power_of_two(wanted.min(most - exponent(half)).clamp(-1022, 1022));
         let half = half * scale;
         let error = half * (U + U * U) + power_of_two(-149);
@@ -71,6 +99,18 @@ impl LocalFrame {
             axes: [0, 1, 2],
             half,
             error,
+            has_far: false,
+            farthest,
+        }
+    }
+
+    /// A place in the frame, held at the edge if it lies beyond.
+    #[inline(always)]
+    pub(crate) fn held(&self, place: [f32; 3]) -> [f32; 3] {
+        if self.has_far {
+            place.map(|c| c.clamp(-EDGE, EDGE))
+        } else {
+            place
         }
     }
 
@@ -116,6 +156,16 @@ impl Filter {
             reach: ((outer + 2.0 * half * U) * (1.0 + 2.0 * U)) as f32,
         }
     }
+}
+
+/// Of fewer points, none is told from the others.
+const FEW: usize = 32;
+
+/// The largest absolute coordinate in a box, from an origin inside it.
+fn largest_from(origin: &[f64; 3], bounds: &Aabb) -> f64 {
+    (0..3)
+        .map(|k| (bounds.max[k] - origin[k]).max(origin[k] - bounds.min[k]))
+        .fold(0.0, f64::max)
 }
 
 /// `floor(log2(x))` of a positive `x`; the least exponent for zero and subnormal numbers.

@@ -2,10 +2,11 @@
 
 use super::boxes::Dirty;
 use super::features::FeatureTree;
+use super::gaps::FarBoxes;
 use super::pair::Pair;
 use super::relative::{Composition, Relative};
 use super::separating_axis::Triangles;
-use super::traverse::{CandidateSink, Descend, TreeWork, Trees, Visit};
+use super::traverse::{CandidateSink, Descend, Known, TreeWork, Trees, Visit};
 use crate::distance::{self, Decision, EdgeBatch, Point, Threshold, TriangleBatch, VertexBatch};
 use crate::mesh::{Features, all_finite};
 use crate::simd::dispatch;
@@ -69,6 +70,7 @@ impl PairQuery<'_> {
                     b: &a.tree,
                     relative,
                     filter,
+                    far: FarBoxes::new(self, None).as_ref(),
                     one_body: true,
                     moved: self.moved,
                     neighbours: self.shares_mesh.then(|| [a.corners_in_order(); 2]),
@@ -95,6 +97,7 @@ impl PairQuery<'_> {
                 b: &b.tree,
                 relative,
                 filter,
+                far: FarBoxes::new(self, Some(&way)).as_ref(),
                 one_body: false,
                 moved,
                 neighbours,
@@ -293,7 +296,7 @@ impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
     }
 
     #[inline(always)]
-    fn candidate(&mut self, first: u32, second: u32, sure: bool) {
+    fn candidate(&mut self, first: u32, second: u32, known: Known) {
         let swap = if self.query.one_body {
             first > second
         } else {
@@ -305,6 +308,7 @@ impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
             return;
         }
         if let Some(axes) = &self.axes
+            && known != Known::Far
             && axes
                 .first
                 .apart(first, &axes.second, second, axes.relative, axes.apart)
@@ -312,7 +316,7 @@ impl<const POINTS: bool> CandidateSink for Visitor<'_, POINTS> {
             return;
         }
         let (pair, found) = (Pair { a, b }, &mut *self.found);
-        if sure {
+        if known == Known::Within {
             found.push(pair);
             return;
         }
@@ -354,8 +358,7 @@ fn apart(
 
 /// Checks that a pose takes no vertex out of the range of `f64`.
 fn check_pose(tree: &FeatureTree, pose: &Placement) -> Result<(), Error> {
-    let farthest =
-        tree.frame.half / tree.frame.scale + tree.frame.origin.iter().fold(0.0, |m, c| c.abs().max(m));
+    let farthest = tree.frame.farthest + tree.frame.origin.iter().fold(0.0, |m, c| c.abs().max(m));
     let moved = pose.translation().iter().fold(0.0_f64, |m, c| c.abs().max(m));
     if (4.0 * farthest + moved).is_finite() {
         return Ok(());

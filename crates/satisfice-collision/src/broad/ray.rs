@@ -10,7 +10,8 @@ use std::collections::BinaryHeap;
 
 use super::boxes::Group;
 use super::features::FeatureTree;
-use super::frame::power_of_two;
+use super::frame::{LocalFrame, power_of_two};
+use super::gaps::outwards;
 use crate::Placement;
 use crate::distance::first_point::FirstPoint;
 use crate::distance::{Segment, Triangle};
@@ -39,14 +40,15 @@ impl Slabs {
 
     /// The part of the way on which a box is entered, rounded down; `None` if the segment misses it.
     #[inline(always)]
-    pub(crate) fn entry(&self, lower: [f32; 3], upper: [f32; 3]) -> Option<f64> {
+    pub(crate) fn entry<T: Into<f64>>(&self, lower: [T; 3], upper: [T; 3]) -> Option<f64> {
         if self.error == f64::INFINITY {
             return Some(0.0);
         }
         let (mut enter, mut leave) = (0.0, 1.0);
+        let (lower, upper) = (lower.map(T::into), upper.map(T::into));
         for k in 0..3 {
-            let low = f64::from(lower[k]) - self.error - self.from[k];
-            let high = f64::from(upper[k]) + self.error - self.from[k];
+            let low = lower[k] - self.error - self.from[k];
+            let high = upper[k] + self.error - self.from[k];
             let way = self.way[k];
             if way.abs() <= self.error {
                 if low > self.error || high < -self.error {
@@ -113,8 +115,7 @@ impl<T: Ord + Copy> FirstHit<T> {
             let mut room = Group::EMPTY;
             let boxes = tree.tree.group(level, group, &mut room);
             for lane in 0..tree.tree.lanes(level, group) {
-                let side = |of: &[[f32; 8]; 3]| std::array::from_fn(|k| of[k][lane]);
-                let entry = slabs.entry(side(&boxes.lower), side(&boxes.upper));
+                let entry = enter(&slabs, &tree.frame, boxes, lane);
                 let Some(entry) = entry.filter(|&entry| entry <= self.bound()) else {
                     continue;
                 };
@@ -150,8 +151,7 @@ pub(crate) fn near_segment(
         let mut room = Group::EMPTY;
         let boxes = tree.tree.group(level, group, &mut room);
         for lane in 0..tree.tree.lanes(level, group) {
-            let side = |of: &[[f32; 8]; 3]| std::array::from_fn(|k| of[k][lane]);
-            if slabs.entry(side(&boxes.lower), side(&boxes.upper)).is_none() {
+            if enter(&slabs, &tree.frame, boxes, lane).is_none() {
                 continue;
             }
             let below = group * 8 + lane as u32;
@@ -160,6 +160,19 @@ pub(crate) fn near_segment(
                 None => visit(tree.tree.order[below as usize]),
             }
         }
+    }
+}
+
+/// The part of the way on which one of eight boxes of a frame is entered.
+#[inline(always)]
+fn enter(slabs: &Slabs, frame: &LocalFrame, boxes: &Group, lane: usize) -> Option<f64> {
+    let side = |of: &[[f32; 8]; 3]| std::array::from_fn(|k| of[k][lane]);
+    let (lower, upper) = (side(&boxes.lower), side(&boxes.upper));
+    if frame.has_far {
+        let [lower, upper] = outwards(frame, &lower, &upper);
+        slabs.entry(lower, upper)
+    } else {
+        slabs.entry(lower, upper)
     }
 }
 

@@ -31,6 +31,8 @@ pub(crate) struct Composition {
     pub(crate) b_half: f64,
     pub(crate) a_error: f64,
     pub(crate) b_error: f64,
+    /// Whether either body has coordinates that are far.
+    pub(crate) has_far: bool,
 }
 
 impl Composition {
@@ -80,6 +82,7 @@ impl Composition {
             b_half: b.half,
             a_error: a.error,
             b_error: b.error,
+            has_far: a.has_far || b.has_far,
         }
     }
 }

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::boxes::{BoxTree, Dirty, Group};
 use super::frame::Filter;
+use super::gaps::FarBoxes;
 use super::relative::Relative;
 use crate::simd::{Eight, Lanes, Work};
 
@@ -42,12 +43,23 @@ pub struct TreeWork {
     pub neighbours: u64,
 }
 
+/// What boxes say of a pair of items.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Known {
+    /// It is within the threshold.
+    Within,
+    /// It may be.
+    Nothing,
+    /// It may be, and the frame is too coarse for one of the two.
+    Far,
+}
+
 /// Receives the pairs of items that can be within the threshold.
 pub(crate) trait CandidateSink {
     /// Whether items are points, so that the squared distance itself is known.
     const POINTS: bool;
-    /// Receives a pair of items; `sure` if it is certainly within the threshold.
-    fn candidate(&mut self, a: u32, b: u32, sure: bool);
+    /// Receives a pair of items.
+    fn candidate(&mut self, a: u32, b: u32, known: Known);
     /// Receives how many pairs were left out because they share a vertex.
     fn neighbours(&mut self, count: u32);
     /// Whether enough has been found.
@@ -66,6 +78,8 @@ pub(crate) struct Trees<'a> {
     pub(crate) b: &'a BoxTree,
     pub(crate) relative: &'a Relative,
     pub(crate) filter: &'a Filter,
+    /// If there are far coordinates, for which the filter does not hold.
+    pub(crate) far: Option<&'a FarBoxes>,
     /// Whether both are the same tree, and each pair of different items is wanted once.
     pub(crate) one_body: bool,
     /// Pairs of which neither item moved are not visited.
@@ -99,6 +113,24 @@ impl Trees<'_> {
                 b: 0,
             });
         }
+    }
+
+    /// The groups of a visit; `rooms` are for those of points.
+    #[inline(always)]
+    pub(super) fn groups<'g>(&'g self, at: Visit, rooms: &'g mut [Group; 2]) -> [&'g Group; 2] {
+        let [room_a, room_b] = rooms;
+        [
+            self.a.group(at.level_a, at.a, room_a),
+            self.b.group(at.level_b, at.b, room_b),
+        ]
+    }
+
+    /// The pairs of boxes of a visit that may be within the threshold, if it has far coordinates.
+    #[cold]
+    #[inline(never)]
+    fn far_within(&self, at: Visit) -> Option<u64> {
+        let far = self.far?;
+        far.concern(self, at).then(|| far.within(self, at))
     }
 
     /// The pairs of lanes of two groups that count: bit `8 i + j` is lane `i` of the first and lane `j` of the second.
@@ -255,6 +287,11 @@ fn columns(of: &[Eight; 3]) -> [&Eight; 3] {
 
 #[inline(always)]
 fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
+    if trees.far.is_some()
+        && let Some(near) = trees.far_within(at)
+    {
+        return near;
+    }
     let mut rooms = [Group::EMPTY; 3];
     let [room_a, room_b, room] = &mut rooms;
     let a = trees
@@ -276,6 +313,11 @@ fn boxes_within<L: Lanes>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
 fn near_in_leaf<L: Lanes, C: CandidateSink>(lanes: L, trees: Trees<'_>, at: Visit) -> u64 {
     if !C::POINTS {
         return boxes_within(lanes, trees, at);
+    }
+    if trees.far.is_some()
+        && let Some(near) = trees.far_within(at)
+    {
+        return near;
     }
     let Trees { a, b, filter, .. } = trees;
     let mut room = [[0.0; 8]; 3];
@@ -312,6 +354,7 @@ fn deliver<L: Lanes, C: CandidateSink>(
     if near == 0 {
         return;
     }
+    let is_far = trees.far.is_some() && trees.far_within(Visit::leaf(at_a, at_b)).is_some();
     let mut room = [[0.0; 8]; 3];
     let (points_a, points_b) = if C::POINTS {
         (trees.relative.points(a.points(at_a), &mut room), b.points(at_b))
@@ -321,11 +364,16 @@ fn deliver<L: Lanes, C: CandidateSink>(
     let (ids_a, ids_b) = (&a.order[at_a as usize * 8..], &b.order[at_b as usize * 8..]);
     while near != 0 {
         let (i, j) = next(&mut near);
-        let sure = C::POINTS && {
+        let sure = C::POINTS && !is_far && {
             let d: [f32; 3] = std::array::from_fn(|k| points_b[k][j] - points_a[k][i]);
             d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < filter.definitely_inside_sq
         };
-        visit.candidate(ids_a[i], ids_b[j], sure);
+        let known = match (sure, is_far) {
+            (true, _) => Known::Within,
+            (false, true) => Known::Far,
+            (false, false) => Known::Nothing,
+        };
+        visit.candidate(ids_a[i], ids_b[j], known);
     }
 }
 

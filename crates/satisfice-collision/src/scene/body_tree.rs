@@ -18,7 +18,7 @@ pub(super) use follow::Change;
 use super::extent::{Extent, largest};
 use super::whereabouts::Room;
 use crate::Aabb;
-use crate::broad::{Box32, exponent, order_by_median, power_of_two};
+use crate::broad::{Box32, Core, exponent, order_by_median, power_of_two};
 use begun::Search;
 use node::{NONE, Node, at_lane, lane_in, lanes, node_of};
 
@@ -221,7 +221,8 @@ impl BodyTree {
         }
     }
 
-    /// Coordinates count from the middle of all boxes, in a unit in which `f32` overflows last.
+    /// Coordinates count from the middle of all boxes, in a unit in which `f32` overflows last; if few boxes are far away, from the
+    /// middle of the others, near which `f32` is finest.
     fn choose_frame(&mut self, boxes: &[(u32, Aabb)]) {
         let mut all = boxes.iter().map(|(_, bounds)| bounds);
         let Some(first) = all.next() else {
@@ -233,8 +234,15 @@ impl BodyTree {
             whole.include(bounds.max);
             whole
         });
-        let origin = std::array::from_fn(|k| whole.min[k] / 2.0 + whole.max[k] / 2.0);
-        let half = (0..3).fold(0.0_f64, |half, k| half.max(whole.max[k] - origin[k]));
+        let middle = |of: &Aabb| std::array::from_fn(|k| of.min[k] / 2.0 + of.max[k] / 2.0);
+        let (origin, half) = match Core::find(boxes.len(), |at| middle(&boxes[at].1), &whole) {
+            Some(core) => (core.centre, core.half),
+            None => {
+                let origin = middle(&whole);
+                let half = (0..3).fold(0.0_f64, |half, k| half.max(whole.max[k] - origin[k]));
+                (origin, half)
+            }
+        };
         let scale = match exponent(half) {
             _ if half == 0.0 => 1.0,
             -60..=60 => 1.0,

@@ -68,6 +68,8 @@ impl World {
     /// # Ok::<(), satisfice_collision::Error>(())
     /// ```
     ///
+    /// Cost: linear in the number of pairs at distance 0, where many touch.
+    ///
     /// # Errors
     /// As [`World::update`].
     pub fn nearest(&mut self, k: usize) -> Result<Vec<(Contact, Proximity)>, Error> {
