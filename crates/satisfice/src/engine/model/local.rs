@@ -356,11 +356,12 @@ impl Model {
                 self.pool.exclude(place);
                 continue;
             }
-            if pending
-                .iter()
-                .filter(|pending| pending.probability >= LIKELY)
-                .any(|pending| is_within(given.units, &pending.x, &x, &self.reach, 1.0))
-            {
+            let is_out = |pending: &PendingPoint| {
+                pending.x == rounded
+                    || pending.probability >= LIKELY
+                        && is_within(given.units, &pending.x, &x, &self.reach, 1.0)
+            };
+            if pending.iter().any(is_out) {
                 continue;
             }
             let mut score = spread(score, bar, &x, &slope, given);
