@@ -30,11 +30,11 @@ impl Wide {
         };
         let mut largest = [0.0_f64; 8];
         for k in 0..3 {
-            for l in 0..8 {
+            for (l, largest) in largest.iter_mut().enumerate() {
                 wide.lower[k][l] = -outside(-group.lower[k][l], core);
                 wide.upper[k][l] = outside(group.upper[k][l], core);
                 let most = wide.lower[k][l].abs().max(wide.upper[k][l].abs());
-                largest[l] = largest[l].max(most);
+                *largest = largest.max(most);
             }
         }
         (wide, largest)
@@ -150,11 +150,11 @@ impl Gaps {
         let is_far = |group: &Group, core: f64| {
             let mut most = [0.0_f32; 8];
             for k in 0..3 {
-                for l in 0..8 {
+                for (l, most) in most.iter_mut().enumerate() {
                     // an empty box has none
                     let (low, high) = (-group.lower[k][l], group.upper[k][l]);
                     let side = if low > high { low } else { high };
-                    most[l] = if side > most[l] { side } else { most[l] };
+                    *most = if side > *most { side } else { *most };
                 }
             }
             most.iter().any(|&side| f64::from(side) > core)
