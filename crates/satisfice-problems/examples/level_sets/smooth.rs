@@ -7,7 +7,7 @@ use satisfice::{Axis, SearchRng, Space, from_fn};
 use super::Named;
 
 /// A problem on a cube: the separation is that of two answers on every axis.
-fn cube(
+pub(super) fn cube(
     name: &'static str,
     (axes, lower, upper): (usize, f64, f64),
     (level, separation): (f64, f64),
@@ -156,15 +156,15 @@ fn pid() -> Result<Named, satisfice::Error> {
     Ok(("controller", problem.separation(0.05)))
 }
 
-fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     x.iter().map(|&x| f(x)).sum()
 }
 
-fn mean(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn mean(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     sum(x, f) / x.len() as f64
 }
 
-fn distance(x: &[f64], centre: &[f64]) -> f64 {
+pub(super) fn distance(x: &[f64], centre: &[f64]) -> f64 {
     x.iter()
         .zip(centre)
         .map(|(x, c)| (x - c).powi(2))
@@ -176,14 +176,14 @@ fn root_mean_square(a: &[f64], b: &[f64]) -> f64 {
     distance(a, b) / (a.len() as f64).sqrt()
 }
 
-fn centres(count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
+pub(super) fn centres(count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut rng = SearchRng::new(seed);
     let mut point = || (0..axes).map(|_| rng.uniform()).collect();
     (0..count).map(|_| point()).collect()
 }
 
 /// A point about `centre`, turned in every plane of two axes by an angle of the seed.
-fn turned(x: &[f64], centre: f64, seed: u64) -> Vec<f64> {
+pub(super) fn turned(x: &[f64], centre: f64, seed: u64) -> Vec<f64> {
     let mut rng = SearchRng::new(seed);
     let mut y: Vec<f64> = x.iter().map(|x| x - centre).collect();
     for i in 0..y.len() {

@@ -17,6 +17,9 @@ const PRIOR_HITS: f64 = 0.15;
 /// Largest share of all evaluations for one source without a hit, and for all such sources together.
 const BARREN_SHARE: f64 = 0.04;
 const BARREN_SHARES: f64 = 0.18;
+/// The share of all evaluations that swarms have on continuous axes until their first hit: they hit when they have converged, which takes
+/// a thousand evaluations or more.
+const SHARE_OF_SWARMS: f64 = 0.2;
 /// Largest share of the evaluations that do not hit for all of them together while a model of F is at work: the model learns less from
 /// their evaluations than from its own.
 const SHARE_BESIDE_MODEL: f64 = 0.06;
@@ -136,6 +139,11 @@ impl Credit {
     pub(super) fn is_within(&self, all: &Self, trial: Trial) -> bool {
         let most = trial.start + trial.share * all.total_cost;
         self.total_hits > 0 || self.total_cost <= most
+    }
+
+    /// Whether this source, the swarms, has no hit and has cost less than swarms may until they converge.
+    pub(super) fn is_converging(&self, all: &Self) -> bool {
+        self.total_hits == 0 && self.total_cost < SHARE_OF_SWARMS * all.total_cost
     }
 
     /// The share of recent evaluations that were no hits.

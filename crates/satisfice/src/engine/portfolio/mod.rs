@@ -83,7 +83,8 @@ engine_settings! {
     ///
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger share until
     /// something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together 18 %, except
-    /// for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit. Where time alone is
+    /// for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit; and on continuous
+    /// axes swarms may take a fifth before they hit, for they have to converge first. Where time alone is
     /// limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000 evaluations and then competes as the
     /// others do. Outside the search for a first hit it has the bound of a source without a hit once it is known to predict less than a quarter of
     /// the variance of F; until then the others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the
@@ -113,9 +114,9 @@ engine_settings! {
         /// Under a limit of time alone, one more each 256 evaluations of an F below 2 microseconds.
         pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.
-        pub swarms: usize = 6, 1..=1000;
+        pub swarms: usize = 2, 1..=1000;
         /// Particles N of each swarm.
-        pub particles: usize = 5, 1..=1000;
+        pub particles: usize = 10, 1..=1000;
         /// Contraction-expansion coefficient alpha of the swarms, which stay bounded below 1.781.
         pub alpha: f64 = 0.75, 0.0..=10.0;
         /// Evaluations without a hit after which a swarm starts anew.

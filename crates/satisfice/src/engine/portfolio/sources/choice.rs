@@ -19,6 +19,8 @@ const BLIND: f64 = 4.0;
 const BLIND_SWARMS: f64 = 20.0;
 /// The weight of swarms if such a problem names neighbours: then descents have something to descend.
 const BLIND_SWARMS_BESIDE_NEIGHBOURS: f64 = 3.0;
+/// The weight of swarms that have not converged yet.
+const UNCONVERGED: f64 = 4.0;
 /// Share of the choices that is niching's while no source finds anything.
 const NICHING: f64 = 0.5;
 
@@ -69,6 +71,7 @@ impl<S: Real> Sources<S> {
         let price = self.whole.price();
         let modelled = self.guests.model_leads(&self.whole);
         let steps = !self.has_slopes();
+        let is_lattice = self.visited.is_some();
         let [uniform, swarm] = match (steps, self.has_neighbours) {
             (false, _) => [0.3, 0.5],
             (true, false) => [BLIND, BLIND_SWARMS],
@@ -104,10 +107,12 @@ impl<S: Real> Sources<S> {
         if steps || is_worth(0) {
             offer(self.arms[0].draw(price, uniform, rng), (Source::Uniform, 0));
         }
-        if (self.visited.is_some() && !modelled) || is_worth(DESCENT) {
+        if (is_lattice && !modelled) || is_worth(DESCENT) {
             offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
         }
-        if uses(Omitted::Swarms) && (steps || is_worth(1)) {
+        let converges = !modelled && !steps && !is_lattice && self.arms[1].is_converging(&self.whole);
+        if uses(Omitted::Swarms) && (steps || converges || is_worth(1)) {
+            let swarm = if converges { UNCONVERGED } else { swarm };
             offer(self.arms[1].draw(price, swarm, rng), (Source::Swarm, 0));
         }
         let hits = self.hit_count();
