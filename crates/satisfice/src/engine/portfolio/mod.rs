@@ -90,7 +90,7 @@ engine_settings! {
     /// the variance of F; until then the others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the
     /// components of F, the model comes first, and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do
     /// not hit; while the model itself expects no hit of its latest proposals, descents come first. Elsewhere on continuous axes the first 50
-    /// evaluations are the model's; then it and descents, by quadratic models and without, look for the first hit together. So do the model and
+    /// evaluations are the model's, or a quarter of up to 1,000 planned ones if that is more; then it and descents, by quadratic models and without, look for the first hit together. So do the model and
     /// descents over neighbours, where the problem names some, with up to half of the evaluations. The more a source has lowered the least F, the
     /// more it is asked, and the model comes first whenever it takes a hit to be more probable than not. After the first hit, on continuous axes,
     /// the model competes by how probable it takes a hit of its next proposal to be. These probabilities count as far as the model's word was true

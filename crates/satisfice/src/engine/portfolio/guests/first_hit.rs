@@ -11,8 +11,10 @@ use crate::seed::SearchRng;
 /// Share of the planned evaluations in which the model and descents look for the first hit, unless F is known to be no more than smooth:
 /// then they go on until there is one.
 const FIRST_SHARE: f64 = 0.5;
-/// Evaluations of a smooth F that are the model's before descents take part in the search for the first hit.
+/// Evaluations of a smooth F that are the model's before descents take part in the search for the first hit: so many, or this share of the
+/// planned ones if that is more.
 const MODEL_FIRST: u64 = 50;
+const MODEL_FIRST_SHARE: f64 = 0.25;
 /// The model comes before descents if it takes a hit to be more probable than this, as far as its word can be trusted.
 const CREDIBLE: f64 = 0.5;
 
@@ -29,6 +31,8 @@ pub(in crate::engine::portfolio) struct Expectation {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::engine::portfolio) struct Seekers {
     pub(in crate::engine::portfolio) ground: Ground,
+    /// Evaluations that are the model's, where F is smooth.
+    alone: u64,
     pub(in crate::engine::portfolio) model: usize,
     /// Descents by quadratic models; the model, where there are none.
     pub(in crate::engine::portfolio) quadratic: usize,
@@ -71,8 +75,15 @@ impl<S: Real> Guests<S> {
         let quadratic = find(GuestKind::Quadratic);
         // Without descents by quadratic models, or while all of them await answers, the model proposes.
         let takes_over = self.in_any_order || ground == Ground::Neighbours;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a thousand at most"
+        )]
+        let alone = MODEL_FIRST.max((MODEL_FIRST_SHARE * most) as u64);
         Some(Seekers {
             ground,
+            alone,
             model,
             quadratic: quadratic.or(takes_over.then_some(model))?,
         })
@@ -122,7 +133,7 @@ impl Seekers {
         evaluations: u64,
         expectation: Option<Expectation>,
     ) -> Option<Seeker> {
-        let is_early = self.ground == Ground::Smooth && evaluations < MODEL_FIRST;
+        let is_early = self.ground == Ground::Smooth && evaluations < self.alone;
         let is_sure = expectation.is_some_and(|expectation| expectation.hit > CREDIBLE);
         (is_early || is_sure).then_some(Seeker::Model)
     }
@@ -137,6 +148,7 @@ mod tests {
         let first = |ground, evaluations, hit: Option<f64>| {
             let seekers = Seekers {
                 ground,
+                alone: 50,
                 model: 3,
                 quadratic: 4,
             };
