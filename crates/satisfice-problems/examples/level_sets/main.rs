@@ -28,7 +28,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             Some(("seeds", count)) => seeds = count.parse()?,
             Some(("only", text)) => only = text.to_owned(),
             Some(("list", "smooth")) => problems = smooth::problems()?,
-            Some(("without", text)) => without = engine::find(text)?.name.to_owned(),
+            Some(("without", text)) => {
+                let engine = engine::find(text).map_err(|error| error.to_string())?;
+                without = engine.name.to_owned();
+            }
             Some(("list", "multimodal")) => problems = multimodal::problems()?,
             Some(("list", "lattices")) => problems = lattices::problems()?,
             _ => {
