@@ -351,4 +351,20 @@ mod tests {
         assert!(!evaluations(0).is_worth_trying(&evaluations(999), beside));
         assert!(evaluations(0).is_worth_trying(&evaluations(1001), beside));
     }
+
+    #[test]
+    fn swarms_have_a_fifth_until_they_hit() {
+        let (mut swarms, mut all) = (Credit::default(), Credit::default());
+        for _ in 0..1000 {
+            all.count(false, 1.0);
+            if swarms.is_converging(&all) {
+                swarms.count(false, 1.0);
+            }
+        }
+        assert_eq!(swarms.evaluations(), 200);
+        all.count(false, 1000.0);
+        assert!(swarms.is_converging(&all));
+        swarms.count(true, 1.0);
+        assert!(!swarms.is_converging(&all));
+    }
 }

@@ -82,23 +82,23 @@ engine_settings! {
     ///   hits.
     ///
     /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger share until
-    /// something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together 18 %, except
-    /// for descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit; and on continuous
-    /// axes swarms may take a fifth before they hit, for they have to converge first. Where time alone is
-    /// limited, shares and yields are of time, the sources' own thinking included. The model leads for 1,000 evaluations and then competes as the
-    /// others do. Outside the search for a first hit it has the bound of a source without a hit once it is known to predict less than a quarter of
-    /// the variance of F; until then the others together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the
-    /// components of F, the model comes first, and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do
-    /// not hit; while the model itself expects no hit of its latest proposals, descents come first. Elsewhere on continuous axes the first 50
-    /// evaluations are the model's, or a quarter of up to 1,000 planned ones if that is more; then it and descents, by quadratic models and without, look for the first hit together. So do the model and
-    /// descents over neighbours, where the problem names some, with up to half of the evaluations. The more a source has lowered the least F, the
-    /// more it is asked, and the model comes first whenever it takes a hit to be more probable than not. After the first hit, on continuous axes,
-    /// the model competes by how probable it takes a hit of its next proposal to be. These probabilities count as far as the model's word was true
-    /// so far. Not so on continuous axes where most values of F repeat others: of a step function swarms and uniform points know more than
-    /// descents, unless the problem names neighbours, and more than the model until it is known to predict F; sources without a hit together
-    /// take at most 6 % of the evaluations that do not hit there, too. On continuous axes, when no source has found a hit for 400 evaluations an
-    /// axis and 2,000 more, and for 200 a hit, every other choice is niching's until one does. All sources
-    /// learn the hits of the others. No parameter depends on the problem.
+    /// something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together 18 %, except for
+    /// descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit; and on continuous axes
+    /// swarms may take a fifth before they hit, for they have to converge first. Where time alone is limited, shares and yields are of time, the
+    /// sources' own thinking included. The model leads for 1,000 evaluations and then competes as the others do. Outside the search for a first hit
+    /// it has the bound of a source without a hit once it is known to predict less than a quarter of the variance of F; until then the others
+    /// together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the components of F, the model comes first,
+    /// and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do not hit; while the model itself expects
+    /// no hit of its latest proposals, descents come first. Elsewhere on continuous axes the first 50 evaluations are the model's, or a quarter of
+    /// up to 1,000 planned ones if that is more; then it and descents, by quadratic models and without, look for the first hit together. So do the
+    /// model and descents over neighbours, where the problem names some, with up to half of the evaluations. The more a source has lowered the least
+    /// F, the more it is asked, and the model comes first whenever it takes a hit to be more probable than not. After the first hit, on continuous
+    /// axes, the model competes by how probable it takes a hit of its next proposal to be. These probabilities count as far as the model's word was
+    /// true so far. Not so on continuous axes where most values of F repeat others: of a step function swarms and uniform points know more than
+    /// descents, unless the problem names neighbours, and more than the model until it is known to predict F; sources without a hit together take at
+    /// most 6 % of the evaluations that do not hit there, too. On continuous axes, when no source has found a hit for 400 evaluations an axis and
+    /// 2,000 more, and for 200 a hit, every other choice is niching's until one does. All sources learn the hits of the others. No parameter depends
+    /// on the problem.
     ///
     /// ```
     /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};

@@ -75,15 +75,9 @@ impl<S: Real> Guests<S> {
         let quadratic = find(GuestKind::Quadratic);
         // Without descents by quadratic models, or while all of them await answers, the model proposes.
         let takes_over = self.in_any_order || ground == Ground::Neighbours;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a thousand at most"
-        )]
-        let alone = MODEL_FIRST.max((MODEL_FIRST_SHARE * most) as u64);
         Some(Seekers {
             ground,
-            alone,
+            alone: alone(most),
             model,
             quadratic: quadratic.or(takes_over.then_some(model))?,
         })
@@ -139,6 +133,16 @@ impl Seekers {
     }
 }
 
+/// Evaluations that are the model's of so many in which a first hit is looked for.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a thousand at most"
+)]
+fn alone(most: f64) -> u64 {
+    MODEL_FIRST.max((MODEL_FIRST_SHARE * most) as u64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,5 +170,10 @@ mod tests {
             assert_eq!(first(ground, 60, Some(0.51)), Some(Seeker::Model));
             assert_eq!(first(ground, 60, Some(0.1)), None);
         }
+    }
+
+    #[test]
+    fn the_model_has_fifty_evaluations_or_a_quarter_alone() {
+        assert_eq!([20.0, 200.0, 400.0, 1000.0].map(alone), [50, 50, 100, 250]);
     }
 }
