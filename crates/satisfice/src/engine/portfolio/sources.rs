@@ -250,7 +250,7 @@ impl<S: Real> Engine<S> for Sources<S> {
                 tag.is_some_and(|tag| tag.0 != Source::Guest)
             };
             for (i, position) in batch.points().enumerate() {
-                if !own(i) {
+                if !own(i) || outcomes[i].is_hit() {
                     visited.insert(space, position);
                 }
             }

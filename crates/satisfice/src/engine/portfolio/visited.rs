@@ -231,6 +231,11 @@ impl Visited {
         shard.slots[shard.slot(hash, key)] == key
     }
 
+    /// Whether points are looked up in tables.
+    pub(super) fn is_large(&self) -> bool {
+        self.bits.is_empty()
+    }
+
     /// Whether every point of the space has been proposed.
     pub(super) fn is_all(&self) -> bool {
         !self.forgot && self.cardinality == Some(self.points as u64)

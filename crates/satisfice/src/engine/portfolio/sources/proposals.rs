@@ -142,7 +142,12 @@ impl<S: Real> Sources<S> {
                 if !is_there {
                     return false;
                 }
-                if !self.is_fresh(context) {
+                let is_fresh = if self.remembers(source) {
+                    self.is_fresh(context)
+                } else {
+                    !(self.has_hits_of_others(context) && context.is_deleted(&self.position))
+                };
+                if !is_fresh {
                     return true;
                 }
                 out.push(&self.position);
@@ -164,12 +169,23 @@ impl<S: Real> Sources<S> {
         context.hits() * self.position.len() > self.hits.len()
     }
 
+    /// Whether points of a source are remembered among those visited, and no point is proposed twice. Of a large lattice that takes longer
+    /// than a quick F, and descents and neighbours seldom repeat a point.
+    fn remembers(&self, source: Source) -> bool {
+        let may_forget = matches!(source, Source::Descent | Source::Neighbour);
+        !(may_forget && self.is_quick && self.visited.as_ref().is_some_and(Visited::is_large))
+    }
+
     /// Takes back the last proposal of a swarm or a descent if that point was visited before. Its source is told of a point
     /// without a new hit, and a miss is counted.
     fn is_repeated(&mut self, context: &dyn Context<S>, (source, index): Tag, out: &mut Batch<S>) -> bool {
         let space = context.space();
         let has_others = self.has_hits_of_others(context);
         let last = out.len() - 1;
+        if !self.remembers(source) {
+            space.keep_inside(out.point_mut(last));
+            return false;
+        }
         let Some(visited) = &mut self.visited else {
             return false;
         };
