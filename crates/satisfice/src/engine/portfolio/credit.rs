@@ -7,9 +7,10 @@ use crate::seed::SearchRng;
 
 /// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
 const MEMORY: f64 = 12.0;
-/// Where time alone is limited, so many evaluations are remembered at least: where many points hit, the memory above is a single turn, and
-/// sources change at random.
-const MEMORY_WHERE_TIMED: f64 = 256.0;
+/// Where time alone is limited, so many evaluations are remembered at least, eight of the longest turns: where many points hit, the memory above
+/// is a single turn, and sources change at random. More of a quick F, whose turns are longer.
+const MEMORY_WHERE_TIMED: f64 = 64.0;
+const MEMORY_WHERE_QUICK: f64 = 256.0;
 
 /// Prior of an arm, in hits. Its prior evaluations are what the whole search has lately needed for as many hits: an untried arm
 /// is expected to be as good as the others.
@@ -108,6 +109,15 @@ impl Credit {
             remembered: if timed { MEMORY_WHERE_TIMED } else { 0.0 },
             ..Self::default()
         }
+    }
+
+    /// Changes how much is remembered where time alone is limited. `quick`: whether F is.
+    pub(super) fn remember(&mut self, quick: bool) {
+        self.remembered = if quick {
+            MEMORY_WHERE_QUICK
+        } else {
+            MEMORY_WHERE_TIMED
+        };
     }
 
     /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to
@@ -285,16 +295,18 @@ mod tests {
         assert!(arm.hits / arm.evaluations < 0.02, "{arm:?}");
     }
 
-    /// Where every third point hits, twelve hits are 36 evaluations: where time alone is limited, 256 are remembered.
+    /// Where every third point hits, twelve hits are 36 evaluations: where time alone is limited, 64 are remembered, of a quick F 256.
     #[test]
     fn many_hits_are_not_forgotten_within_a_turn() {
-        let remembered = |timed: bool| {
-            let mut arm = Credit::new(timed);
+        let remembered = |mut arm: Credit| {
             (0..5000).for_each(|i| arm.count(i % 3 == 0, 1.0));
             arm.evaluations
         };
-        assert!((30.0..42.0).contains(&remembered(false)));
-        assert!((250.0..262.0).contains(&remembered(true)));
+        let mut timed = Credit::new(true);
+        assert!((30.0..42.0).contains(&remembered(Credit::new(false))));
+        assert!((60.0..70.0).contains(&remembered(timed)));
+        timed.remember(true);
+        assert!((250.0..262.0).contains(&remembered(timed)));
     }
 
     /// Ten hits and a hundred evaluations follow each hit in a new place.

@@ -309,6 +309,11 @@ impl<S: Real> Guests<S> {
         drawn.map(|guest| &guest.arm)
     }
 
+    /// The credits of all engines.
+    pub(super) fn all_credits(&mut self) -> impl Iterator<Item = &mut Credit> {
+        self.guests.iter_mut().map(|guest| &mut guest.arm)
+    }
+
     /// The credits and weights of the engines that are worth trying and have no part of the batch yet. `modelled`: whether a model of F is
     /// at work. `steps`: whether F is a step function.
     pub(super) fn arms<'a>(

@@ -26,12 +26,11 @@ use crate::{engine_choice, engine_settings};
 engine_choice! {
     /// When the neighbours that a problem names become candidates of [`Portfolio`].
     pub enum NeighbourTiming {
-        /// At once under a limit of evaluations, late under one of time alone.
+        /// Late where evaluations are not limited and F takes less than 10 microseconds when the first hit is found, at once elsewhere.
         Auto = "auto",
-        /// At once: most hits for each evaluation.
+        /// At once, best first by the mean of F at all evaluated points next to them: most hits for each evaluation.
         AtOnce = "at-once",
-        /// When it is their turn: a fraction of the time, for a fitness of less than a few microseconds with dozens of
-        /// neighbours.
+        /// When it is their turn, all those of the point with the least F first: a fraction of the time.
         Late = "late",
     }
 }
@@ -74,7 +73,8 @@ engine_settings! {
     ///   4,096 points is enumerated at once, a larger one once it is half visited, or the search finds no more than that would, or under a limit
     ///   of evaluations once it would no longer fit later;
     /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
-    ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness;
+    ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness or, where F is cheap and only
+    ///   time is limited, by the fitness of the point that they are next to;
     /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012;
     /// - uniform points, on a lattice without repetition, on continuous axes evenly and somewhat denser in the middle, of a step function on
     ///   finer and finer grids that no box inside the bounds slips through, unless the problem names neighbours;
@@ -122,7 +122,7 @@ engine_settings! {
         /// Evaluations without a hit after which a swarm starts anew.
         pub restart: usize = 1000, 1..=1_000_000_000;
         /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time
-        /// on a cheap fitness with dozens of neighbours.
+        /// where F takes less than 10 microseconds. By default as the budget and the price of F ask.
         pub neighbours: NeighbourTiming = NeighbourTiming::Auto;
         /// A source to leave out, for ablation.
         pub without: Omitted = Omitted::Nothing;

@@ -20,7 +20,7 @@ use super::source::{ARMS, PLACES, Source, Tag, Tally, arm_of};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
-use super::{NeighbourTiming, Omitted, Portfolio};
+use super::{Omitted, Portfolio};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::local::descent::RestartedDescent;
@@ -50,7 +50,6 @@ pub(super) struct Sources<S> {
     has_neighbours: bool,
     /// The source chosen last, and how many more candidates are to come from it.
     chosen: Option<(Tag, u64)>,
-    timing: NeighbourTiming,
     without: Omitted,
     arms: [Credit; ARMS],
     /// All arms and guests together.
@@ -124,8 +123,7 @@ impl<S: Real> Sources<S> {
                 settings.restart,
             ),
             steps: None,
-            neighbourhoods: Neighbourhoods::default(),
-            timing: settings.neighbours,
+            neighbourhoods: Neighbourhoods::new(settings.neighbours),
             near_misses: NearMisses::new(),
             tags: Vec::new(),
             awaited: PointsAwaited::default(),
@@ -192,16 +190,12 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.awaited = PointsAwaited::default();
         self.planned = context.evaluations_planned();
         self.guests.begin(context, self.without == Omitted::Recombination);
-        let late = match self.timing {
-            NeighbourTiming::Auto => context.evaluations_planned().is_none(),
-            timing => timing == NeighbourTiming::Late,
-        };
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
             Some(steps) => steps.begin(),
             None => self.steps = Some(Translations::new(space)),
         }
-        self.neighbourhoods.begin(late);
+        self.neighbourhoods.begin();
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
@@ -336,7 +330,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.scan.save(state);
         self.swarms.save(state);
         self.steps.save(state);
-        self.neighbourhoods.save(state);
+        self.neighbourhoods.save(state, self.position.len());
         self.near_misses.save(state);
         (self.tags.clone(), self.trials.clone()).save(state);
         self.awaited.save(state);

@@ -24,6 +24,18 @@ const QUICK: f64 = 2e-6;
 const SLOW_WHERE_QUICK: usize = 256;
 
 impl<S: Real> Sources<S> {
+    /// Where time alone is limited, notes whether F is quick.
+    fn look_at_price(&mut self, context: &dyn Context<S>) {
+        self.is_quick = false;
+        if context.is_timed() {
+            self.is_quick = context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
+            let arms = core::iter::once(&mut self.whole).chain(&mut self.arms);
+            for credit in arms.chain(self.guests.all_credits()) {
+                credit.remember(self.is_quick);
+            }
+        }
+    }
+
     /// Fills a batch.
     pub(super) fn fill(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
         self.swarms.begin_batch();
@@ -42,8 +54,7 @@ impl<S: Real> Sources<S> {
         let at_once = context.parallel().max(first);
         let wanted = self.asked_for.unwrap_or(if in_any_order { 1 } else { at_once });
         self.has_neighbours = context.offers_neighbours();
-        self.is_quick =
-            context.is_timed() && context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
+        self.look_at_price(context);
         let slow = if self.is_quick { SLOW_WHERE_QUICK } else { SLOW };
         self.batch = self
             .asked_for

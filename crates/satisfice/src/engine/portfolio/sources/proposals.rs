@@ -142,12 +142,7 @@ impl<S: Real> Sources<S> {
                 if !is_there {
                     return false;
                 }
-                let is_fresh = if self.remembers(source) {
-                    self.is_fresh(context)
-                } else {
-                    !(self.has_hits_of_others(context) && context.is_deleted(&self.position))
-                };
-                if !is_fresh {
+                if !self.is_fresh(context) {
                     return true;
                 }
                 out.push(&self.position);
@@ -170,10 +165,10 @@ impl<S: Real> Sources<S> {
     }
 
     /// Whether points of a source are remembered among those visited, and no point is proposed twice. Of a large lattice that takes longer
-    /// than a quick F, and descents and neighbours seldom repeat a point.
+    /// than a quick F, and descents seldom repeat a point.
     fn remembers(&self, source: Source) -> bool {
-        let may_forget = matches!(source, Source::Descent | Source::Neighbour);
-        !(may_forget && self.is_quick && self.visited.as_ref().is_some_and(Visited::is_large))
+        let may_forget = source == Source::Descent && self.is_quick;
+        !(may_forget && self.visited.as_ref().is_some_and(Visited::is_large))
     }
 
     /// Takes back the last proposal of a swarm or a descent if that point was visited before. Its source is told of a point
