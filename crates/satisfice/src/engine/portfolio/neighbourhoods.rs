@@ -162,3 +162,37 @@ impl<S: Real> Neighbourhoods<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_come_late_where_evaluations_are_cheap_and_not_limited() {
+        let is_late = |timing, planned, seconds_an_evaluation| {
+            let context = rooks::Rooks {
+                planned,
+                seconds_an_evaluation,
+                ..rooks::rooks()
+            };
+            let mut batch = Batch::new(2);
+            batch.push(&[3.0, 5.0]);
+            let mut all = Neighbourhoods::new(timing);
+            all.expand_all(&context, &batch, &[Outcome::Miss(2.0)], |_| false);
+            assert!(matches!(all.neighbours, ByTiming::Undecided));
+            all.expand_all(&context, &batch, &[Outcome::Hit(0.5)], |_| false);
+            assert!(all.has_more() && all.fit(2));
+            let mut state = State::default();
+            all.save(&mut state, 2);
+            all.begin();
+            assert!(!all.has_more());
+            all.restore(&mut Reader::new(&state)).unwrap();
+            matches!(all.neighbours, ByTiming::Late(_))
+        };
+        let auto = |planned, price| is_late(NeighbourTiming::Auto, planned, price);
+        assert!(auto(None, None) && auto(None, Some(1e-6)));
+        assert!(!auto(None, Some(2e-5)) && !auto(Some(100), None));
+        assert!(is_late(NeighbourTiming::Late, Some(100), Some(1.0)));
+        assert!(!is_late(NeighbourTiming::AtOnce, None, Some(1e-6)));
+    }
+}

@@ -6,7 +6,7 @@ use crate::engine::portfolio::credit::Credit;
 use crate::scalar::Real;
 
 /// The model is opened where an evaluation takes more seconds than this and at most `MODELLED` have been made.
-const EXPENSIVE: f64 = 5e-3;
+const EXPENSIVE: f64 = 2e-3;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
 /// about half as long. Those by components always run.
 const QUADRATIC: f64 = 2e-5;

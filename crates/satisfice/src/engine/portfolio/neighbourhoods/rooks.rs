@@ -12,6 +12,8 @@ pub(super) struct Rooks {
     pub(super) space: Space<f64>,
     /// Calls of `neighbours`.
     pub(super) calls: Cell<u64>,
+    pub(super) planned: Option<u64>,
+    pub(super) seconds_an_evaluation: Option<f64>,
 }
 
 pub(super) const SIDE: usize = 200;
@@ -28,6 +30,12 @@ impl Context<f64> for Rooks {
     }
     fn evaluations(&self) -> u64 {
         0
+    }
+    fn evaluations_planned(&self) -> Option<u64> {
+        self.planned
+    }
+    fn seconds_an_evaluation(&self) -> Option<f64> {
+        self.seconds_an_evaluation
     }
     fn hits(&self) -> usize {
         0
@@ -73,5 +81,7 @@ pub(super) fn rooks() -> Rooks {
         ])
         .unwrap(),
         calls: Cell::new(0),
+        planned: None,
+        seconds_an_evaluation: None,
     }
 }
