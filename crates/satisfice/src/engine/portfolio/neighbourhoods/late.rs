@@ -9,8 +9,16 @@ use crate::error::Error;
 use crate::scalar::{Real, ordered};
 use crate::state::{Reader, Saved, State, read_rows, write_rows};
 
-/// So many points that miss wait at least, the best ones, and up to twice as many; hits all wait. A checkpoint holds them.
+/// So many points that miss wait at least, the best ones, and up to twice as many, or as all hits that wait if these are more; hits all wait. A
+/// checkpoint holds them. Fewer of many axes: so many coordinates are 64 MB in double precision.
 const MOST: usize = 1 << 15;
+const MOST_COORDINATES: usize = 1 << 23;
+
+/// Points that miss and wait, of so many axes.
+fn most(dimension: usize) -> usize {
+    MOST.min(MOST_COORDINATES / dimension.max(1)).max(1)
+}
+
 /// Outside lattices, so many points are known not to be expanded twice; then only hits are expanded.
 const MOST_KNOWN: usize = 1 << 20;
 
@@ -33,8 +41,9 @@ struct Waiting {
 #[derive(Debug, Default)]
 pub(super) struct LateNeighbours<S> {
     queue: BinaryHeap<Reverse<Waiting>>,
-    /// How many have been entered.
+    /// How many have been entered, and how many misses since the worst were forgotten.
     entries: u64,
+    misses: usize,
     /// The points that wait, each in its row, and the rows that are free.
     rows: Vec<S>,
     free: Vec<u32>,
@@ -77,17 +86,21 @@ impl<S: Real> LateNeighbours<S> {
             part: 0,
             row,
         }));
-        if self.queue.len() >= 2 * MOST && !is_hit {
-            self.forget_worst(ordered(context.threshold().f64()));
+        self.misses += usize::from(!is_hit);
+        let most = most(dimension);
+        if self.misses >= most.max(self.queue.len() / 2) {
+            self.misses = 0;
+            self.forget_worst(most, ordered(context.threshold().f64()));
         }
     }
 
-    /// Forgets the worst misses. Cost: O(n log n) for each `MOST` entered.
-    fn forget_worst(&mut self, threshold: u64) {
+    /// Forgets the worst misses beyond `most`. Cost: O(n log n) for n points that wait, at most once for n/2 misses that
+    /// are entered.
+    fn forget_worst(&mut self, most: usize, threshold: u64) {
         // The best come last.
         let mut waiting = core::mem::take(&mut self.queue).into_sorted_vec();
         let misses = waiting.partition_point(|Reverse(point)| point.fitness >= threshold);
-        let forgotten = waiting.drain(..misses.saturating_sub(MOST));
+        let forgotten = waiting.drain(..misses.saturating_sub(most));
         self.free.extend(forgotten.map(|Reverse(point)| point.row));
         self.queue = waiting.into();
     }
@@ -135,7 +148,7 @@ impl<S: Real> LateNeighbours<S> {
             point.row = row;
         }
         Saved::save(&waiting, state);
-        Saved::save(&self.entries, state);
+        Saved::save(&(self.entries, self.misses), state);
         write_rows(state, &rows, dimension);
         write_rows(state, &self.listed[self.proposed..], dimension);
         Saved::save(&self.known, state);
@@ -146,9 +159,12 @@ impl<S: Real> LateNeighbours<S> {
         // Whatever a damaged state says.
         let renumbered = waiting.into_iter().zip(0..);
         let renumbered = renumbered.map(|(point, row)| Reverse(Waiting { row, ..point }));
+        let queue = renumbered.collect();
+        let (entries, misses) = from.read()?;
         Ok(Self {
-            queue: renumbered.collect(),
-            entries: from.read()?,
+            queue,
+            entries,
+            misses,
             rows: read_rows(from)?,
             free: Vec::new(),
             listed: read_rows(from)?,
@@ -255,7 +271,12 @@ mod tests {
                 late.expand(&context, &[1.0, 2.0], -miss, true);
             }
         }
-        assert!(late.queue.len() <= 3 * MOST && late.rows.len() <= 2 * 3 * MOST);
+        // A third of them hits.
+        assert!(late.queue.len() <= 4 * MOST && late.rows.len() <= 2 * (4 * MOST + 1));
+        assert_eq!(
+            [most(0), most(2), most(1 << 20), most(1 << 40)],
+            [MOST, MOST, 8, 1]
+        );
         misses.sort_by(f64::total_cmp);
         let kept: Vec<u64> = late
             .queue
