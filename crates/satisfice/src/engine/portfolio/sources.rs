@@ -238,7 +238,8 @@ impl<S: Real> Engine<S> for Sources<S> {
             }
         }
         if let Some(visited) = &mut self.visited {
-            // Its own candidates are in it since they were proposed, but for those of whole engines.
+            // Its own candidates are in it since they were proposed, but for those of whole engines, and of descents where a look-up takes
+            // longer than F. Hits always are.
             let own = |i: usize| {
                 let tag = self.tags.get(i).filter(|_| is_own);
                 tag.is_some_and(|tag| tag.0 != Source::Guest)

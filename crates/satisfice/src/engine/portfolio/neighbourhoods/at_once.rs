@@ -41,8 +41,8 @@ struct Queue {
 /// first.
 ///
 /// A candidate's fitness is predicted by the mean of its evaluated neighbours', shrunk by one observation towards the mean of
-/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits. Cost: an entry for each neighbour of
-/// an evaluated point, some 100 ns.
+/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits. Cost: a look-up and an entry for
+/// each neighbour of an evaluated point.
 ///
 /// A checkpoint holds the [journal](Journal) and which candidates were proposed; the rest is [made again](Self::make_again).
 #[derive(Debug, Default)]
