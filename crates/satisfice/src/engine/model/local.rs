@@ -126,8 +126,8 @@ impl Model {
         };
         pool.reset();
         let raw: Vec<f64> = region.known.iter().map(|&i| record.values[i]).collect();
-        let target = Target::new(given.context.threshold().f64(), &raw);
-        let target = target.with_components(record, &region.known);
+        let threshold = given.context.threshold().f64();
+        let target = Target::new(threshold, &raw).with_components(record, &region.known, threshold);
         let values = outputs(record, &target, &region.known);
         pool.limits = target.limits();
         let inputs: Vec<&[f64]> = region.known.iter().map(|&i| record.point(i)).collect();

@@ -7,6 +7,7 @@ mod gaussian_process;
 mod kernel;
 mod lanes;
 mod likelihood;
+mod limits;
 mod local;
 mod one_answer;
 mod points;

@@ -1,13 +1,11 @@
 //! Candidates that are kept and rated.
 
 use super::lanes::{LANES, Lanes};
+use super::limits::ComponentLimits;
 use super::process::{Block, Process};
 
 /// Deviations below the mean at which a candidate is still taken for a possible hit.
 const HOPE: f64 = 2.0;
-/// Square of the deviation of a normal weight with the mass of a box, in squares of half its width.
-pub(super) const WIDTH: f64 = core::f64::consts::FRAC_2_PI;
-
 /// Blocks of candidates around the best ones that are kept, beside those that are drawn anywhere: those of two proposals.
 pub(super) const REFINED: usize = 24;
 
@@ -41,20 +39,12 @@ impl Score {
         }
     }
 
-    /// By the components: the logarithm of the expectation of a normal weight as wide as the limits, which has a closed form. Where a
-    /// prediction is nearly certain, the weight has a tail that its limits do not have: a sure miss a few limits away from a known root
-    /// would seem better than a point of which little is known. Chernoff's bound on the probability to be within the limits has no such
-    /// tail, and counts where it is lower.
-    fn of_components(means: &[f64], variances: &[f64], limits: &[f64]) -> Self {
-        let mut value = 0.0;
-        for ((mean, variance), limit) in means.iter().zip(variances).zip(limits) {
-            let square = WIDTH * limit * limit;
-            let sum = variance + square;
-            let beyond = (mean.abs() - limit).max(0.0);
-            let distance = (mean * mean / sum).max(beyond * beyond / variance);
-            value += 0.5 * (square / sum).ln() - 0.5 * distance;
+    /// By the components.
+    fn of_components(means: &[f64], variances: &[f64], limits: &ComponentLimits) -> Self {
+        Self {
+            hopeful: true,
+            value: limits.score(means, variances),
         }
-        Self { hopeful: true, value }
     }
 
     /// The score of a candidate whose variance is known to become smaller, down to the share `left`, when the points that are out are
@@ -146,8 +136,8 @@ pub(super) struct Pool {
     excluded: Vec<[bool; LANES]>,
     /// The block of either part to be replaced next, counted from the first of that part.
     next: [usize; 2],
-    /// Limits of the components; none where F itself is modelled.
-    pub(super) limits: Vec<f64>,
+    /// ComponentLimits of the components; none where F itself is modelled.
+    pub(super) limits: ComponentLimits,
 }
 
 impl Pool {
@@ -286,7 +276,7 @@ impl Pool {
                 .collect(),
             excluded: marks.to_vec(),
             next,
-            limits: Vec::new(),
+            limits: ComponentLimits::default(),
         })
     }
 }
@@ -294,40 +284,7 @@ impl Pool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The normal weight has the mass of the box, and its expectation under a normal distribution is the integral.
-    #[test]
-    fn components_are_scored_by_the_integral_of_a_weight() {
-        let (mean, variance, limit): (f64, f64, f64) = (0.7, 0.09, 0.2);
-        let square = WIDTH * limit * limit;
-        let (mut mass, mut expected) = (0.0, 0.0);
-        for i in -40_000..40_000 {
-            let x = f64::from(i) * 1e-4;
-            let weight = (-x * x / 2.0 / square).exp();
-            mass += weight * 1e-4;
-            let density =
-                (-(x - mean).powi(2) / 2.0 / variance).exp() / (core::f64::consts::TAU * variance).sqrt();
-            expected += weight * density * 1e-4;
-        }
-        approx::assert_relative_eq!(mass, 2.0 * limit, max_relative = 1e-6);
-        let one = Score::of_components(&[mean], &[variance], &[limit]);
-        approx::assert_relative_eq!(one.value.exp(), expected, max_relative = 1e-6);
-        let two = Score::of_components(&[mean; 2], &[variance; 2], &[limit; 2]);
-        approx::assert_relative_eq!(two.value, 2.0 * one.value);
-    }
-
-    /// A point that is three limits away for certain is worse than one of which little is known.
-    #[test]
-    fn a_certain_miss_beside_a_root_is_no_candidate() {
-        let limit = 0.003;
-        let certain = Score::of_components(&[0.01], &[1e-7], &[limit]);
-        let unknown = Score::of_components(&[0.5], &[0.1], &[limit]);
-        assert!(unknown.order(&certain).is_gt());
-        // Chernoff: P(|y| < limit) <= exp(-(0.01 - limit)² / 2 / variance).
-        assert!(certain.value <= -(0.007_f64.powi(2)) / 2.0 / 1e-7);
-        let within = Score::of_components(&[0.002], &[1e-7], &[limit]);
-        assert!(within.order(&unknown).is_gt() && within.value > -2.5);
-    }
+    use crate::engine::model::limits::Norm;
 
     /// By a table of the normal distribution: P(z < 1) = 0.8413, P(z < -1) = 0.1587.
     #[test]
@@ -361,7 +318,8 @@ mod tests {
         let means = [-30.0, -9.0, -1.0, 0.0, 1.9, 2.1, 5.0];
         let scores = means.map(|mean| Score::beside(mean, 1.0, 1.0));
         assert!(scores.is_sorted_by(|a, b| a.order(b).is_gt()));
-        let of_components = Score::of_components(&[0.1], &[0.3], &[0.2]);
+        let of_components =
+            Score::of_components(&[0.1], &[0.3], &ComponentLimits::new(Norm::Greatest, vec![0.2]));
         approx::assert_relative_eq!(
             of_components.less(0.0).value.exp(),
             of_components.value.exp().powi(2)
@@ -385,7 +343,8 @@ mod tests {
         assert!((certain.believed(0.5, false).value).abs() < 1e-9);
         let hopeless = certain.believed(0.02, false);
         assert!(Score::new(10.0, 1.0).order(&hopeless).is_gt());
-        let component = Score::of_components(&[0.1], &[0.3], &[0.2]);
+        let component =
+            Score::of_components(&[0.1], &[0.3], &ComponentLimits::new(Norm::Greatest, vec![0.2]));
         approx::assert_relative_eq!(
             component.believed(0.3, true).probability(true),
             0.3 * component.probability(true)

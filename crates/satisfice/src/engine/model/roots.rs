@@ -1,7 +1,7 @@
 //! Newton steps to the roots of the modelled components.
 
 use super::lanes::{LANES, Lanes};
-use super::pool::WIDTH;
+use super::limits::ComponentLimits;
 use super::process::{Block, Process};
 use super::units::{Shape, Units};
 
@@ -14,7 +14,7 @@ const DIFFERENCE: f64 = 1e-3;
 
 /// The block of points that damped Gauss-Newton steps from `x` lead to (Levenberg 1944, doi 10.1090/qam/10666), for residuals that count
 /// by their deviations, limits included.
-pub(super) fn steps(process: &Process, units: &Units, limits: &[f64], x: &[f64]) -> Vec<Lanes> {
+pub(super) fn steps(process: &Process, units: &Units, limits: &ComponentLimits, x: &[f64]) -> Vec<Lanes> {
     let moving: Vec<usize> = (0..x.len())
         .filter(|&j| matches!(units.axes[j].shape, Shape::Line | Shape::Circle))
         .collect();
@@ -32,7 +32,7 @@ pub(super) fn steps(process: &Process, units: &Units, limits: &[f64], x: &[f64])
         process.update(&mut block);
         for k in 0..outputs {
             let (means, variances) = process.predictions(&block, k);
-            let deviation = (variances[0] + WIDTH * limits[k] * limits[k]).sqrt();
+            let deviation = (variances[0] + limits.square(k)).sqrt();
             residuals[k] = means[0] / deviation;
             for lane in 0..some.len() {
                 slopes[from * (LANES - 1) + lane][k] = (means[lane + 1] - means[0]) / DIFFERENCE / deviation;
@@ -95,6 +95,7 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>, damping: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::model::limits::Norm;
     use crate::engine::model::scales::Scales;
     use crate::space::{Axis, Space};
 
@@ -124,7 +125,8 @@ mod tests {
         ];
         let inputs: Vec<&[f64]> = points.iter().map(|x| &x[..]).collect();
         let process = Process::new(scales, &inputs, &values);
-        let steps = steps(&process, &units, &[1.0; 2], &[0.9, 0.5, 0.2]);
+        let limits = ComponentLimits::new(Norm::Greatest, vec![1.0; 2]);
+        let steps = steps(&process, &units, &limits, &[0.9, 0.5, 0.2]);
         let distance = |lane: usize| (steps[0][lane] - 0.4).hypot(steps[2][lane] - 0.6);
         assert!(distance(0) < 5e-3 && distance(LANES - 1) > 0.1, "{steps:?}");
         assert!(steps[1].iter().all(|&x| x == 0.5));

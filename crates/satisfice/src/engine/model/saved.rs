@@ -35,6 +35,7 @@ impl Model {
         Part::save(&self.target.delta, state);
         Part::save(&self.target.clip, state);
         Part::save(&self.target.units, state);
+        Part::save(&self.target.norm, state);
         Part::save(&self.region.known, state);
         Part::save(&self.region.lower, state);
         Part::save(&self.region.upper, state);
@@ -59,6 +60,7 @@ impl Model {
             delta: from.read()?,
             clip: from.read()?,
             units: from.read()?,
+            norm: from.read()?,
         };
         let region = TrustRegion {
             known: from.read()?,

@@ -30,7 +30,8 @@ engine_settings! {
     /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad. Where F takes few values, such as a
     ///   number of violated constraints, delta is taken to be halfway between those of hits and of misses.
     /// - Where the problem tells the [components](crate::Components) of F, each is modelled, with length scales in common, and the score
-    ///   is the probability that all are within their limits. Damped Gauss-Newton steps lead from candidates to roots of the models.
+    ///   is the probability that all are within their limits; that the sum of their squares is at most 1, where F turns out to be their
+    ///   Euclidean norm or its square. Damped Gauss-Newton steps lead from candidates to roots of the models.
     /// - Points that turn out to be the same as a hit only once they are evaluated are no part of the model; from them the
     ///   engine learns how far apart distinct hits are.
     /// - Logarithmic axes are seen by their logarithm, periodic ones as circles, permutations by the ranks of their keys. Integers are rounded

@@ -1,5 +1,6 @@
 //! What the model learns in place of F, or of its components.
 
+use super::limits::{ComponentLimits, Norm};
 use super::record::Record;
 
 /// Share of the misses whose excess over delta is not clipped.
@@ -26,6 +27,8 @@ pub(super) struct Target {
     pub(super) clip: f64,
     /// The units of the components; none where F itself is learned.
     pub(super) units: Vec<f64>,
+    /// Which of them are those of a hit.
+    pub(super) norm: Norm,
 }
 
 impl Target {
@@ -40,17 +43,20 @@ impl Target {
             delta,
             clip: clip.or(last.filter(|&last| last > 0.0)).unwrap_or(1.0),
             units: Vec::new(),
+            norm: Norm::Greatest,
         }
     }
 
-    /// The same with units for the components at these points, if the record has them. No unit is below a component's limit.
-    pub(super) fn with_components(mut self, record: &Record, known: &[usize]) -> Self {
+    /// The same with units for the components at these points, if the record has them. No unit is below a component's limit. `threshold`: F is
+    /// below it at hits.
+    pub(super) fn with_components(mut self, record: &Record, known: &[usize], threshold: f64) -> Self {
         let unit = |k: usize| {
             let magnitudes = known.iter().map(|&i| record.components(i)[k].abs());
             let mut all: Vec<f64> = magnitudes.filter(|x| x.is_finite()).collect();
             at_share(&mut all, IN_UNIT).map_or(1.0, |unit| unit.max(1.0))
         };
         self.units = (0..record.component_count()).map(unit).collect();
+        self.norm = Norm::of(record, known, threshold);
         self
     }
 
@@ -70,8 +76,9 @@ impl Target {
     }
 
     /// The limits of the components' values at a hit.
-    pub(super) fn limits(&self) -> Vec<f64> {
-        self.units.iter().map(|unit| (1.0 / unit).asinh()).collect()
+    pub(super) fn limits(&self) -> ComponentLimits {
+        let values = self.units.iter().map(|unit| (1.0 / unit).asinh());
+        ComponentLimits::new(self.norm, values.collect())
     }
 
     /// The value to learn, from -1 to 1: negative for a hit. A missing value counts as bad.
@@ -180,13 +187,17 @@ mod tests {
         }
         record.add(&[0.95], f64::NAN, PointKind::Miss);
         record.add_components(&[f64::NAN, f64::NEG_INFINITY]);
-        let target = Target::new(1.0, &record.values).with_components(&record, &(0..11).collect::<Vec<_>>());
+        let target =
+            Target::new(1.0, &record.values).with_components(&record, &(0..11).collect::<Vec<_>>(), 1.0);
         // The ninth of ten magnitudes; and never less than the limit.
         assert_eq!(target.units, [400.0, 1.0]);
         assert_eq!(target.of_point(&record, 5), [0.0, 0.05_f64.asinh()]);
         assert_eq!(target.of_point(&record, 0), [-(1.25_f64.asinh()), 0.0]);
         assert_eq!(target.of_point(&record, 10), [FARTHEST, -FARTHEST]);
-        assert_eq!(target.limits(), [0.0025_f64.asinh(), 1.0_f64.asinh()]);
+        let squares = [0, 1].map(|k| target.limits().square(k) / core::f64::consts::FRAC_2_PI);
+        let limits = squares.map(f64::sqrt);
+        approx::assert_relative_eq!(limits[0], 0.0025_f64.asinh(), max_relative = 1e-12);
+        approx::assert_relative_eq!(limits[1], 1.0_f64.asinh(), max_relative = 1e-12);
     }
 
     #[test]
