@@ -327,7 +327,11 @@ impl<S: Real> Engine<S> for Sources<S> {
 
     fn save(&self, state: &mut State) {
         (self.tally, self.arms, self.hits.clone()).save(state);
-        self.visited.save(state);
+        if self.pace.is_timed() {
+            self.visited.as_ref().map(Visited::shortened).save(state);
+        } else {
+            self.visited.save(state);
+        }
         self.scan.save(state);
         self.swarms.save(state);
         self.steps.save(state);

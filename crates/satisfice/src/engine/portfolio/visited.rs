@@ -9,6 +9,8 @@ const SHARDS: usize = 16;
 /// Slots of a table at first, and at most: half of them are used, so 2^21 points are remembered exactly, in 32 MiB.
 const FIRST: usize = 1 << 6;
 const MOST: usize = 1 << 18;
+/// Points of a table in a checkpoint of a search that cannot be repeated: some 300 KB in all tables.
+const MOST_SAVED: usize = 1 << 12;
 /// An empty slot; every key of a point is less.
 const EMPTY: u64 = u64::MAX;
 /// A lattice of at most this many points has a bit for each: at most 1 MiB, of which only the parts in use take memory.
@@ -98,6 +100,20 @@ impl Shard {
         Entered::Replacing
     }
 
+    /// The keys, in the order of their slots.
+    fn keys(&self) -> impl Iterator<Item = u64> {
+        self.slots.iter().copied().filter(|&key| key != EMPTY)
+    }
+
+    /// The same with the first of its keys.
+    fn first(&self, count: usize) -> Self {
+        let mut first = Self::new();
+        for key in self.keys().take(count) {
+            first.insert(spread(key), key);
+        }
+        first
+    }
+
     /// Puts a key into the slot where it belongs, and moves larger ones on.
     fn put(&mut self, mut slot: usize, mut key: u64) {
         let last = self.slots.len() - 1;
@@ -124,8 +140,7 @@ struct Keys {
 impl From<Visited> for Keys {
     fn from(visited: Visited) -> Self {
         let differences = |shard: Shard| {
-            let mut keys = shard.slots;
-            keys.retain(|&key| key != EMPTY);
+            let mut keys: Vec<u64> = shard.keys().collect();
             keys.sort_unstable();
             let mut before = 0;
             for key in &mut keys {
@@ -229,6 +244,21 @@ impl Visited {
         let hash = spread(key);
         let shard = &self.shards[shard_of(hash)];
         shard.slots[shard.slot(hash, key)] == key
+    }
+
+    /// The same with the points that a checkpoint has room for, if it need not repeat the search: some may then be proposed once more.
+    pub(super) fn shortened(&self) -> Self {
+        let mut short = Self {
+            shards: self.shards.iter().map(|shard| shard.first(MOST_SAVED)).collect(),
+            bits: self.bits.clone(),
+            cells: self.cells.clone(),
+            ..*self
+        };
+        if self.is_large() {
+            short.points = short.shards.iter().map(|shard| shard.points).sum();
+            short.forgot |= short.points < self.points;
+        }
+        short
     }
 
     /// Whether points are looked up in tables.
@@ -414,6 +444,37 @@ mod tests {
             remembered += u32::from(known);
         }
         assert!(remembered > 2_000_000, "{remembered}");
+    }
+
+    #[test]
+    fn a_short_one_has_some_of_the_points() {
+        let space = Space::<f64>::lattice(2, 4096).unwrap();
+        let (mut visited, mut position) = (Visited::new(&space), [0.0; 2]);
+        for index in 0..200_000 {
+            Visited::point(&space, 2 * index, &mut position);
+            visited.insert(&space, &position);
+            if index == 1_000 {
+                let short = visited.shortened();
+                assert_eq!((short.points, short.forgot), (visited.points, false));
+            }
+        }
+        let short = visited.shortened();
+        let points = (0..400_000).filter(|&index| {
+            Visited::point(&space, index, &mut position);
+            short.contains(&space, &position)
+        });
+        let points: Vec<u64> = points.collect();
+        assert_eq!(points.len(), SHARDS * MOST_SAVED);
+        assert!(points.iter().all(|index| index % 2 == 0));
+        assert!(short.points == points.len() && short.forgot);
+        // Of a small lattice all points are kept: a bit for each.
+        let space = Space::<f64>::lattice(2, 1000).unwrap();
+        let mut all = Visited::new(&space);
+        for index in 0..1_000_000 {
+            Visited::point(&space, index, &mut position);
+            all.insert(&space, &position);
+        }
+        assert!(all.shortened().is_all());
     }
 
     #[test]
