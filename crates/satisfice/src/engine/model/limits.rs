@@ -80,17 +80,11 @@ impl ComponentLimits {
             let (square, limit) = (self.square(k), self.values[k]);
             let sum = variance + square;
             value += 0.5 * (square / sum).ln();
-            let by_weight = mean * mean / sum;
-            distance += match self.norm {
-                Norm::Greatest => {
-                    let beyond = (mean.abs() - limit).max(0.0);
-                    by_weight.max(beyond * beyond / variance)
-                }
-                Norm::Euclidean => {
-                    tail.add(*mean, *variance, limit);
-                    by_weight
-                }
-            };
+            let beyond = (mean.abs() - limit).max(0.0);
+            distance += (mean * mean / sum).max(beyond * beyond / variance);
+            if self.norm == Norm::Euclidean {
+                tail.add(*mean, *variance, limit);
+            }
         }
         value - 0.5 * distance.max(tail.distance())
     }
