@@ -136,7 +136,7 @@ pub(super) struct Pool {
     excluded: Vec<[bool; LANES]>,
     /// The block of either part to be replaced next, counted from the first of that part.
     next: [usize; 2],
-    /// ComponentLimits of the components; none where F itself is modelled.
+    /// Limits of the components; none where F itself is modelled.
     pub(super) limits: ComponentLimits,
 }
 
