@@ -9,7 +9,7 @@ const SHARDS: usize = 16;
 /// Slots of a table at first, and at most: half of them are used, so 2^21 points are remembered exactly, in 32 MiB.
 const FIRST: usize = 1 << 6;
 const MOST: usize = 1 << 18;
-/// Points of a table in a checkpoint of a search that cannot be repeated: some 300 KB in all tables.
+/// Points of a table in a checkpoint of a search that cannot be repeated.
 const MOST_SAVED: usize = 1 << 12;
 /// An empty slot; every key of a point is less.
 const EMPTY: u64 = u64::MAX;
