@@ -121,8 +121,9 @@ engine_settings! {
         pub alpha: f64 = 0.75, 0.0..=10.0;
         /// Evaluations without a hit after which a swarm starts anew.
         pub restart: usize = 1000, 1..=1_000_000_000;
-        /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time
-        /// where F takes less than 10 microseconds. By default as the budget and the price of F ask.
+        /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time.
+        /// By default late where 200,000 evaluations or more are left at the first hit, or time alone is limited and F takes
+        /// less than 10 microseconds.
         pub neighbours: NeighbourTiming = NeighbourTiming::Auto;
         /// A source to leave out, for ablation.
         pub without: Omitted = Omitted::Nothing;

@@ -18,6 +18,8 @@ use crate::state::{Reader, Saved, State};
 
 /// Neighbours come late where an evaluation takes less than so many seconds: to predict each of dozens takes about as long.
 const CHEAP: f64 = 1e-5;
+/// Neighbours come late where so many evaluations are left at the first hit: they then find as much, in less time and memory.
+const MANY: u64 = 200_000;
 
 /// The graph that the problem's neighbours span, explored from the hits.
 #[derive(Debug)]
@@ -89,7 +91,8 @@ impl<S: Real> Neighbourhoods<S> {
             let is_late = match self.timing {
                 NeighbourTiming::Auto => {
                     let is_cheap = || context.seconds_an_evaluation().is_none_or(|price| price < CHEAP);
-                    context.evaluations_planned().is_none() && is_cheap()
+                    let planned = context.evaluations_planned();
+                    planned.map_or_else(is_cheap, |planned| planned >= MANY)
                 }
                 timing => timing == NeighbourTiming::Late,
             };
@@ -168,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_come_late_where_evaluations_are_cheap_and_not_limited() {
+    fn neighbours_come_late_where_evaluations_are_cheap_and_not_limited_or_many() {
         let is_late = |timing, planned, seconds_an_evaluation| {
             let context = rooks::Rooks {
                 planned,
@@ -192,6 +195,7 @@ mod tests {
         let auto = |planned, price| is_late(NeighbourTiming::Auto, planned, price);
         assert!(auto(None, None) && auto(None, Some(1e-6)));
         assert!(!auto(None, Some(2e-5)) && !auto(Some(100), None));
+        assert!(auto(Some(MANY), None) && !auto(Some(MANY - 1), Some(1e-6)));
         assert!(is_late(NeighbourTiming::Late, Some(100), Some(1.0)));
         assert!(!is_late(NeighbourTiming::AtOnce, None, Some(1e-6)));
     }
