@@ -18,8 +18,6 @@ use crate::state::{Reader, Saved, State};
 
 /// Neighbours come late where an evaluation takes less than so many seconds: to predict each of dozens takes about as long.
 const CHEAP: f64 = 1e-5;
-/// Neighbours come late where so many evaluations are left at the first hit: they then find as much, in less time and memory.
-const MANY: u64 = 200_000;
 
 /// The graph that the problem's neighbours span, explored from the hits.
 #[derive(Debug)]
@@ -72,12 +70,11 @@ impl<S: Real> Neighbourhoods<S> {
                 Outcome::Miss(fitness) if is_near(i) => (fitness, false),
                 _ => continue,
             };
+            self.hand_over(context);
             match self.decided(context) {
                 ByTiming::Undecided => {}
-                ByTiming::AtOnce(neighbours) => {
-                    neighbours.expand(context, position, fitness.f64(), is_hit);
-                }
-                ByTiming::Late(neighbours) => neighbours.expand(context, position, fitness, is_hit),
+                ByTiming::AtOnce(neighbours) => neighbours.expand(context, position, fitness.f64(), is_hit),
+                ByTiming::Late(neighbours) => neighbours.expand(context, position, fitness.f64(), is_hit),
             }
         }
         if let ByTiming::AtOnce(neighbours) = &mut self.neighbours {
@@ -91,8 +88,7 @@ impl<S: Real> Neighbourhoods<S> {
             let is_late = match self.timing {
                 NeighbourTiming::Auto => {
                     let is_cheap = || context.seconds_an_evaluation().is_none_or(|price| price < CHEAP);
-                    let planned = context.evaluations_planned();
-                    planned.map_or_else(is_cheap, |planned| planned >= MANY)
+                    context.evaluations_planned().is_none() && is_cheap()
                 }
                 timing => timing == NeighbourTiming::Late,
             };
@@ -103,6 +99,24 @@ impl<S: Real> Neighbourhoods<S> {
             };
         }
         &mut self.neighbours
+    }
+
+    /// Lets neighbours come late from here on once as many candidates are known as there is room for. Only of a lattice, where it is known
+    /// which points were visited: elsewhere late neighbours repeat them.
+    fn hand_over(&mut self, context: &dyn Context<S>) {
+        if let ByTiming::AtOnce(at_once) = &self.neighbours
+            && at_once.is_full()
+            && context.space().is_lattice()
+        {
+            let mut late = LateNeighbours::default();
+            let threshold = context.threshold().f64();
+            for (position, fitness) in at_once.evaluated(context.space().dimension()) {
+                if fitness < threshold {
+                    late.expand(context, position, fitness, true);
+                }
+            }
+            self.neighbours = ByTiming::Late(late);
+        }
     }
 
     /// Writes the best candidate; `false` when there is none.
@@ -171,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_come_late_where_evaluations_are_cheap_and_not_limited_or_many() {
+    fn neighbours_come_late_where_evaluations_are_cheap_and_not_limited() {
         let is_late = |timing, planned, seconds_an_evaluation| {
             let context = rooks::Rooks {
                 planned,
@@ -195,8 +209,37 @@ mod tests {
         let auto = |planned, price| is_late(NeighbourTiming::Auto, planned, price);
         assert!(auto(None, None) && auto(None, Some(1e-6)));
         assert!(!auto(None, Some(2e-5)) && !auto(Some(100), None));
-        assert!(auto(Some(MANY), None) && !auto(Some(MANY - 1), Some(1e-6)));
         assert!(is_late(NeighbourTiming::Late, Some(100), Some(1.0)));
         assert!(!is_late(NeighbourTiming::AtOnce, None, Some(1e-6)));
+    }
+
+    #[test]
+    fn neighbours_at_once_are_late_ones_from_some_number_on_and_no_hit_is_lost() {
+        let enter = |context: &rooks::Rooks| {
+            let mut all = Neighbourhoods::new(NeighbourTiming::AtOnce);
+            for i in 0..rooks::SIDE * rooks::SIDE {
+                let mut batch = Batch::new(2);
+                #[expect(clippy::cast_precision_loss, reason = "small")]
+                batch.push(&[(i % rooks::SIDE) as f64, (i / rooks::SIDE) as f64]);
+                let outcome = if i == 4321 {
+                    Outcome::Hit(-0.5)
+                } else {
+                    Outcome::Miss(2.0)
+                };
+                all.expand_all(context, &batch, &[outcome], |_| true);
+            }
+            all
+        };
+        let mut context = rooks::rooks();
+        let mut all = enter(&context);
+        assert!(matches!(all.neighbours, ByTiming::Late(_)));
+        let mut position = [0.0; 2];
+        for _ in 0..398 {
+            assert!(all.propose(&context, &mut position));
+            assert!((position[0] == 121.0) != (position[1] == 21.0), "{position:?}");
+        }
+        // Late ones would be evaluated again where no visited points are known.
+        context.space = crate::Space::new([crate::Axis::continuous(0.0, 200.0); 2]).unwrap();
+        assert!(matches!(enter(&context).neighbours, ByTiming::AtOnce(_)));
     }
 }

@@ -11,6 +11,9 @@ use crate::state::{Reader, Saved, State};
 /// Once this many candidates are known, only hits are expanded: some 110 MB at two axes.
 const MOST: usize = 1 << 20;
 
+/// The same once so many entries of the queue were made: half a second.
+const MOST_ENTRIES: u64 = 1 << 21;
+
 /// Most coordinates of candidates, which bounds the memory of many axes: 128 MB in double precision.
 const MOST_COORDINATES: usize = 1 << 24;
 
@@ -83,11 +86,26 @@ impl<S: Real> NeighboursAtOnce<S> {
         }
     }
 
+    /// Whether no more misses are expanded.
+    pub(super) fn is_full(&self) -> bool {
+        self.candidates.len() >= MOST
+            || self.queue.entries >= MOST_ENTRIES
+            || self.candidates.coordinates() >= MOST_COORDINATES
+    }
+
+    /// The evaluated candidates with their fitness, in the order in which they were met.
+    pub(super) fn evaluated(&self, dimension: usize) -> impl Iterator<Item = (&[S], f64)> {
+        let mut evaluated = self.candidates.evaluated();
+        evaluated.sort_unstable_by_key(|&(index, _)| index);
+        let with_position = move |(index, fitness)| (self.candidates.position(index, dimension), fitness);
+        evaluated.into_iter().map(with_position)
+    }
+
     /// Takes note of an evaluated point, whose neighbours become candidates. After some of these, candidates are to be
     /// [passed over](Self::pass_over).
     pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: f64, is_hit: bool) {
         let room = self.candidates.coordinates() < MOST_COORDINATES;
-        if room && (is_hit || self.candidates.len() < MOST) {
+        if room && (is_hit || !self.is_full()) {
             self.expand_as(Visit::First, context, position, fitness);
         }
     }

@@ -112,6 +112,13 @@ impl<S: Real> CandidateTable<S> {
         indices
     }
 
+    /// The indices of evaluated candidates with their fitness, in any order.
+    pub(super) fn evaluated(&self) -> Vec<(u32, f64)> {
+        let known = self.slots.iter().filter(|slot| slot.index != EMPTY);
+        let evaluated = known.filter(|slot| slot.is_evaluated());
+        evaluated.map(|slot| (slot.index, slot.sum)).collect()
+    }
+
     /// Makes room for so many more.
     pub(super) fn reserve(&mut self, more: usize) {
         let wanted = (self.count + more).saturating_mul(4) / 3;

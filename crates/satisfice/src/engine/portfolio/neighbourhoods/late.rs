@@ -9,15 +9,9 @@ use crate::error::Error;
 use crate::scalar::{Real, ordered};
 use crate::state::{Reader, Saved, State, read_rows, write_rows};
 
-/// So many points that miss wait at least, the best ones, and up to twice as many, or as all hits that wait if these are more; hits all wait. A
-/// checkpoint holds them. Fewer of many axes: so many coordinates are 64 MB in double precision.
-const MOST: usize = 1 << 15;
-const MOST_COORDINATES: usize = 1 << 23;
-
-/// Points that miss and wait, of so many axes.
-fn most(dimension: usize) -> usize {
-    MOST.min(MOST_COORDINATES / dimension.max(1)).max(1)
-}
+/// So many points that miss wait at least, the best ones, and up to twice as many, or as all hits that wait if these are more; hits all wait. With
+/// more, neighbours of ever worse points come before anything else is tried.
+const MOST: usize = 1 << 4;
 
 /// Outside lattices, so many points are known not to be expanded twice; then only hits are expanded.
 const MOST_KNOWN: usize = 1 << 20;
@@ -60,7 +54,7 @@ impl<S: Real> LateNeighbours<S> {
     }
 
     /// Enters an evaluated point.
-    pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: S, is_hit: bool) {
+    pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: f64, is_hit: bool) {
         if !context.space().is_lattice() {
             let room = is_hit || self.known.len() < MOST_KNOWN;
             if !room || !self.known.insert(key(position)) {
@@ -81,27 +75,31 @@ impl<S: Real> LateNeighbours<S> {
         };
         self.entries += 1;
         self.queue.push(Reverse(Waiting {
-            fitness: ordered(fitness.f64()),
+            fitness: ordered(fitness),
             age: self.entries,
             part: 0,
             row,
         }));
         self.misses += usize::from(!is_hit);
-        let most = most(dimension);
-        if self.misses >= most.max(self.queue.len() / 2) {
+        if self.misses >= MOST.max(self.queue.len() / 2) {
             self.misses = 0;
-            self.forget_worst(most, ordered(context.threshold().f64()));
+            self.forget_worst(ordered(context.threshold().f64()));
         }
     }
 
-    /// Forgets the worst misses beyond `most`. Cost: O(n log n) for n points that wait, at most once for n/2 misses that
-    /// are entered.
-    fn forget_worst(&mut self, most: usize, threshold: u64) {
-        // The best come last.
-        let mut waiting = core::mem::take(&mut self.queue).into_sorted_vec();
-        let misses = waiting.partition_point(|Reverse(point)| point.fitness >= threshold);
-        let forgotten = waiting.drain(..misses.saturating_sub(most));
-        self.free.extend(forgotten.map(|Reverse(point)| point.row));
+    /// Forgets the worst misses beyond [`MOST`]. Cost: O(n) for n points that wait, at most once for n/2 misses that are entered.
+    fn forget_worst(&mut self, threshold: u64) {
+        let mut waiting = core::mem::take(&mut self.queue).into_vec();
+        let misses = waiting
+            .iter()
+            .filter(|point| point.0.fitness >= threshold)
+            .count();
+        if let Some(last) = misses.checked_sub(MOST + 1) {
+            // The worst come first.
+            waiting.select_nth_unstable(last);
+            let forgotten = waiting.drain(..=last);
+            self.free.extend(forgotten.map(|Reverse(point)| point.row));
+        }
         self.queue = waiting.into();
     }
 
@@ -273,10 +271,6 @@ mod tests {
         }
         // A third of them hits.
         assert!(late.queue.len() <= 4 * MOST && late.rows.len() <= 2 * (4 * MOST + 1));
-        assert_eq!(
-            [most(0), most(2), most(1 << 20), most(1 << 40)],
-            [MOST, MOST, 8, 1]
-        );
         misses.sort_by(f64::total_cmp);
         let kept: Vec<u64> = late
             .queue
