@@ -91,11 +91,10 @@ impl Progress {
             if expected[i] == 0.0 {
                 continue;
             }
-            let drawn = draw(
-                rng,
-                self.gains[i] + expected[i],
-                self.evaluations[i] + evaluations,
-            );
+            // What a model has gained that expects nothing, it has gained by chance: F is steep, or few points were known.
+            let is_chance = ground == Ground::Unpromising && seeker == Seeker::Model;
+            let gains = if is_chance { 0.0 } else { self.gains[i] };
+            let drawn = draw(rng, gains + expected[i], self.evaluations[i] + evaluations);
             if drawn > best.0 {
                 best = (drawn, seeker);
             }
@@ -115,6 +114,18 @@ mod tests {
             counts[progress.choose(ground, &mut rng) as usize] += 1;
         }
         counts
+    }
+
+    #[test]
+    fn what_a_model_gained_that_expects_nothing_is_chance() {
+        let mut progress = Progress::default();
+        for i in 0..20 {
+            progress.count(Some(Seeker::Model), Outcome::Miss(1.0 + 0.1_f64.powi(i)), 1.0);
+        }
+        let [model, quadratic, _] = shares(&progress, Ground::Components);
+        assert!(model > 10 * quadratic, "{model} {quadratic}");
+        let [model, quadratic, _] = shares(&progress, Ground::Unpromising);
+        assert!(quadratic > 4 * model && model > 0, "{model} {quadratic}");
     }
 
     #[test]
