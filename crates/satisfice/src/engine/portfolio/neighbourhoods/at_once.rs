@@ -11,7 +11,7 @@ use crate::state::{Reader, Saved, State};
 /// Once this many candidates are known, only hits are expanded: some 110 MB at two axes.
 const MOST: usize = 1 << 20;
 
-/// The same once so many entries of the queue were made: half a second.
+/// The same once so many entries of the queue were made: of few candidates that are met often, or many that are met twice.
 const MOST_ENTRIES: u64 = 1 << 21;
 
 /// Most coordinates of candidates, which bounds the memory of many axes: 128 MB in double precision.
