@@ -65,6 +65,41 @@ fn the_bottom_of_a_rugged_cusp_is_found() {
     assert_eq!(hits("none", 60_000, &space, 1e-3, cusp), 3);
 }
 
+/// A source that is left out proposes nothing; beside the others each of these does.
+#[test]
+fn a_source_can_be_left_out() {
+    let rings = |x: &[f64]| (x[0].hypot(x[1]) - 1.0).abs().min((x[0] - 2.0).hypot(x[1]));
+    let proposed = |without: &str| {
+        let problem = from_fn(Space::cube(2, -4.0, 4.0).unwrap(), 0.02, rings)
+            .boxed()
+            .separation(0.01);
+        let report = Search::named("portfolio")
+            .unwrap()
+            .set("without", without)
+            .unwrap()
+            .run(&problem, &Budget::evaluations(4_000))
+            .unwrap();
+        let last = report.sources.rows.last().unwrap();
+        let proposed = last.proposed.iter().copied();
+        let counts: Vec<(String, u64)> = report.sources.names.iter().cloned().zip(proposed).collect();
+        counts
+    };
+    let all = proposed("none");
+    for (without, name) in [
+        ("swarms", "swarms"),
+        ("recombination", "recombination"),
+        ("descents", "descents"),
+        ("cma-es", "CMA-ES"),
+        ("flood-fill", "flood fill"),
+        ("model", "model"),
+        ("quadratic-descents", "quadratic descents"),
+    ] {
+        let count = |counts: &[(String, u64)]| counts.iter().find(|(source, _)| source == name).unwrap().1;
+        assert!(count(&all) > 0, "{name} {all:?}");
+        assert_eq!(count(&proposed(without)), 0, "{name}");
+    }
+}
+
 /// The first example of the README: 9,216 points, for which 20,000 evaluations have room.
 #[test]
 fn a_lattice_that_the_budget_has_room_for_is_proved_complete() {

@@ -18,6 +18,7 @@ use share::Share;
 use sizes::{MOST_PROPOSALS, Sizes};
 use weights::Situation;
 
+use super::Omitted;
 use super::credit::{Credit, Trial};
 use super::progress::Ground;
 use super::source::{Role, Source, Tag};
@@ -61,6 +62,20 @@ enum GuestKind {
     Niching,
 }
 
+impl GuestKind {
+    /// Whether a user wants to do without it.
+    fn is_left_out(self, without: Omitted) -> bool {
+        match self {
+            Self::Cma => matches!(without, Omitted::CmaEs | Omitted::Recombination),
+            Self::Flood => without == Omitted::FloodFill,
+            Self::Regions => without == Omitted::Regions,
+            Self::Model => without == Omitted::Model,
+            Self::Quadratic => without == Omitted::QuadraticDescents,
+            Self::Niching => matches!(without, Omitted::Niching | Omitted::Recombination),
+        }
+    }
+}
+
 /// An engine and its credit.
 struct Guest<S> {
     kind: GuestKind,
@@ -76,6 +91,8 @@ struct Guest<S> {
 /// The engines.
 pub(super) struct Guests<S> {
     guests: Vec<Guest<S>>,
+    /// Which one to do without.
+    without: Omitted,
     sizes: Sizes,
     /// Whether all axes are continuous, and F may be smooth along them.
     continuous: bool,
@@ -161,9 +178,11 @@ impl<S> Guest<S> {
 }
 
 impl<S: Real> Guests<S> {
-    pub(super) fn new() -> Self {
+    /// All but the one to do without.
+    pub(super) fn new(without: Omitted) -> Self {
         Self {
             guests: Vec::new(),
+            without,
             sizes: Sizes::default(),
             continuous: false,
             ground: None,
@@ -174,8 +193,8 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// Begins a slice, on request without the engines that recombine hits.
-    pub(super) fn begin(&mut self, context: &dyn Context<S>, without_recombination: bool) {
+    /// Begins a slice.
+    pub(super) fn begin(&mut self, context: &dyn Context<S>) {
         let space = context.space();
         let continuous = space.axes().iter().any(|axis| !axis.is_integer());
         let all = space
@@ -204,10 +223,8 @@ impl<S: Real> Guests<S> {
             GuestKind::Niching,
         ] {
             let is_of_use = match kind {
-                GuestKind::Cma => continuous && !without_recombination && space.dimension() <= CMA_AXES,
-                GuestKind::Niching => {
-                    self.continuous && !without_recombination && space.dimension() <= CMA_AXES
-                }
+                GuestKind::Cma => continuous && space.dimension() <= CMA_AXES,
+                GuestKind::Niching => self.continuous && space.dimension() <= CMA_AXES,
                 GuestKind::Flood => continuous,
                 GuestKind::Quadratic => {
                     is_smooth(context) && (self.components || context.evaluations_planned().is_some())
@@ -225,8 +242,12 @@ impl<S: Real> Guests<S> {
         }
     }
 
-    /// Opens the engine of a kind; several side by side, where it works on several points one after another and answers come one by one.
+    /// Opens the engine of a kind, unless it is left out; several side by side, where it works on several points one after another and answers
+    /// come one by one.
     fn open(&mut self, kind: GuestKind, context: &dyn Context<S>) {
+        if kind.is_left_out(self.without) {
+            return;
+        }
         let engines = match kind {
             GuestKind::Cma | GuestKind::Quadratic => self.sizes.engines,
             GuestKind::Flood | GuestKind::Regions | GuestKind::Model | GuestKind::Niching => 1,

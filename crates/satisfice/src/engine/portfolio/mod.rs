@@ -53,6 +53,20 @@ engine_choice! {
         Neighbours = "neighbours",
         /// The near misses of the slice before.
         NearMisses = "near-misses",
+        /// Descents over neighbours and compass steps.
+        Descents = "descents",
+        /// (1+1)-CMA-ES with recombination of hits.
+        CmaEs = "cma-es",
+        /// The flood fill on continuous axes.
+        FloodFill = "flood-fill",
+        /// Regions by the problem's bounds.
+        Regions = "regions",
+        /// The Gaussian process, which takes most of the time where evaluations are limited.
+        Model = "model",
+        /// Descents by quadratic models.
+        QuadraticDescents = "quadratic-descents",
+        /// Niching in a drought.
+        Niching = "niching",
     }
 }
 

@@ -112,7 +112,7 @@ impl<S: Real> Sources<S> {
             grid: InnerGrid::default(),
             progress: Progress::default(),
             planned: None,
-            guests: Guests::new(),
+            guests: Guests::new(settings.without),
             hits: Vec::new(),
             visited: None,
             scan: Scan::default(),
@@ -189,7 +189,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.trials.clear();
         self.awaited = PointsAwaited::default();
         self.planned = context.evaluations_planned();
-        self.guests.begin(context, self.without == Omitted::Recombination);
+        self.guests.begin(context);
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
             Some(steps) => steps.begin(),

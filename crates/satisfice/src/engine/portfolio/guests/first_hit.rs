@@ -74,7 +74,9 @@ impl<S: Real> Guests<S> {
         let model = find(GuestKind::Model)?;
         let quadratic = find(GuestKind::Quadratic);
         // Without descents by quadratic models, or while all of them await answers, the model proposes.
-        let takes_over = self.in_any_order || ground == Ground::Neighbours;
+        let takes_over = self.in_any_order
+            || ground == Ground::Neighbours
+            || GuestKind::Quadratic.is_left_out(self.without);
         Some(Seekers {
             ground,
             alone: alone(most),

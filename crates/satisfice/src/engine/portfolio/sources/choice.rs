@@ -80,9 +80,9 @@ impl<S: Real> Sources<S> {
         if let Some(seekers) = seekers {
             let first = seekers.first(self.whole.evaluations(), expectation);
             return match first.unwrap_or_else(|| self.progress.choose(seekers.ground, rng)) {
-                Seeker::Model => (Source::Guest, seekers.model),
+                Seeker::Direct if uses(Omitted::Descents) => (Source::Descent, 0),
+                Seeker::Model | Seeker::Direct => (Source::Guest, seekers.model),
                 Seeker::Quadratic => (Source::Guest, seekers.quadratic),
-                Seeker::Direct => (Source::Descent, 0),
             };
         }
         if self.drought.is_long(self.position.len(), self.hit_count())
@@ -107,7 +107,7 @@ impl<S: Real> Sources<S> {
         if steps || is_worth(0) {
             offer(self.arms[0].draw(price, uniform, rng), (Source::Uniform, 0));
         }
-        if (is_lattice && !modelled) || is_worth(DESCENT) {
+        if uses(Omitted::Descents) && ((is_lattice && !modelled) || is_worth(DESCENT)) {
             offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
         }
         let converges = !modelled && !steps && !is_lattice && self.arms[1].is_converging(&self.whole);
