@@ -35,11 +35,6 @@ pub trait Context<S: Real> {
     /// are many.
     fn neighbours(&self, of: &[S], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[S]));
 
-    /// As [`neighbours`](Self::neighbours), but not counted as a call: for an engine that makes again what it knew before it was saved.
-    fn neighbours_again(&self, of: &[S], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[S])) {
-        self.neighbours(of, indices, visit);
-    }
-
     /// Number of [components](crate::Components) of F; 0 where the problem declares none.
     fn component_count(&self) -> usize {
         0

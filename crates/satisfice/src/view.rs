@@ -244,14 +244,6 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         visit: &mut dyn FnMut(usize, &[P::Scalar]),
     ) {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
-        self.neighbours_again(of, indices, visit);
-    }
-    fn neighbours_again(
-        &self,
-        of: &[P::Scalar],
-        indices: Range<usize>,
-        visit: &mut dyn FnMut(usize, &[P::Scalar]),
-    ) {
         let space = self.problem.space();
         let own = self.with_own_neighbourhood(of, |own, solution, values, neighbour| {
             let neighbour = neighbour.get_or_insert_with(|| solution.clone());

@@ -121,7 +121,7 @@ impl Neighbourhood<Vec<u8>> for Queens {
     }
 }
 
-/// A million neighbours may be known, of which a checkpoint need not say more than how they came about.
+/// Millions of neighbours are predicted, of which only the best are kept.
 #[test]
 fn neighbours_take_no_room_in_a_checkpoint() {
     let queens = Queens {

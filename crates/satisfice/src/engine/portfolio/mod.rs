@@ -29,7 +29,7 @@ engine_choice! {
         /// Late where evaluations are not limited and F takes less than 10 microseconds when the first hit is found, at once elsewhere.
         Auto = "auto",
         /// At once, best first by the mean of F at all evaluated points next to them: most hits for each evaluation. On a lattice late
-        /// once a million candidates are known, or two million were predicted.
+        /// once two million were predicted.
         AtOnce = "at-once",
         /// When it is their turn, all those of the point with the least F first: a fraction of the time.
         Late = "late",
@@ -138,7 +138,7 @@ engine_settings! {
         pub restart: usize = 1000, 1..=1_000_000_000;
         /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time.
         /// By default late where time alone is limited and F takes less than 10 microseconds. On a lattice all are late
-        /// once a million are known, or two million were predicted.
+        /// once two million were predicted.
         pub neighbours: NeighbourTiming = NeighbourTiming::Auto;
         /// A source to leave out, for ablation.
         pub without: Omitted = Omitted::Nothing;

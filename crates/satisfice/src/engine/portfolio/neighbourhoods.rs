@@ -2,7 +2,7 @@
 
 mod at_once;
 mod candidates;
-mod journal;
+mod evaluated;
 mod late;
 #[cfg(test)]
 mod rooks;
@@ -10,6 +10,7 @@ mod rooks;
 use self::at_once::NeighboursAtOnce;
 use self::late::LateNeighbours;
 use super::NeighbourTiming;
+use super::visited::Visited;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::error::Error;
@@ -60,8 +61,8 @@ impl<S: Real> Neighbourhoods<S> {
     pub(super) fn expand_all(
         &mut self,
         context: &dyn Context<S>,
-        batch: &Batch<S>,
-        outcomes: &[Outcome<S>],
+        visited: Option<&Visited>,
+        (batch, outcomes): (&Batch<S>, &[Outcome<S>]),
         is_near: impl Fn(usize) -> bool,
     ) {
         for (i, (position, outcome)) in batch.points().zip(outcomes).enumerate() {
@@ -73,12 +74,11 @@ impl<S: Real> Neighbourhoods<S> {
             self.hand_over(context);
             match self.decided(context) {
                 ByTiming::Undecided => {}
-                ByTiming::AtOnce(neighbours) => neighbours.expand(context, position, fitness.f64(), is_hit),
+                ByTiming::AtOnce(neighbours) => {
+                    neighbours.expand(context, visited, position, (fitness.f64(), is_hit));
+                }
                 ByTiming::Late(neighbours) => neighbours.expand(context, position, fitness.f64(), is_hit),
             }
-        }
-        if let ByTiming::AtOnce(neighbours) = &mut self.neighbours {
-            neighbours.pass_over(context.space().dimension());
         }
     }
 
@@ -101,7 +101,7 @@ impl<S: Real> Neighbourhoods<S> {
         &mut self.neighbours
     }
 
-    /// Lets neighbours come late from here on once as many candidates are known as there is room for. Only of a lattice, where it is known
+    /// Lets neighbours come late from here on once as many predictions were made as there is time for. Only of a lattice, where it is known
     /// which points were visited: elsewhere late neighbours repeat them.
     fn hand_over(&mut self, context: &dyn Context<S>) {
         if let ByTiming::AtOnce(at_once) = &self.neighbours
@@ -109,21 +109,23 @@ impl<S: Real> Neighbourhoods<S> {
             && context.space().is_lattice()
         {
             let mut late = LateNeighbours::default();
-            let threshold = context.threshold().f64();
-            for (position, fitness) in at_once.evaluated(context.space().dimension()) {
-                if fitness < threshold {
-                    late.expand(context, position, fitness, true);
-                }
+            for (position, fitness) in at_once.hits(context.space().dimension()) {
+                late.expand(context, position, fitness, true);
             }
             self.neighbours = ByTiming::Late(late);
         }
     }
 
     /// Writes the best candidate; `false` when there is none.
-    pub(super) fn propose(&mut self, context: &dyn Context<S>, position: &mut [S]) -> bool {
+    pub(super) fn propose(
+        &mut self,
+        context: &dyn Context<S>,
+        visited: Option<&Visited>,
+        position: &mut [S],
+    ) -> bool {
         match &mut self.neighbours {
             ByTiming::Undecided => false,
-            ByTiming::AtOnce(neighbours) => neighbours.propose(context, position),
+            ByTiming::AtOnce(neighbours) => neighbours.propose(context, visited, position),
             ByTiming::Late(neighbours) => neighbours.propose(context, position),
         }
     }
@@ -135,19 +137,12 @@ impl<S: Real> Neighbourhoods<S> {
         }
     }
 
-    /// Makes again what was not saved because it follows from the rest.
-    pub(super) fn make_again(&mut self, context: &dyn Context<S>) {
-        if let ByTiming::AtOnce(neighbours) = &mut self.neighbours {
-            neighbours.make_again(context);
-        }
-    }
-
     pub(super) fn save(&self, state: &mut State, dimension: usize) {
         match &self.neighbours {
             ByTiming::Undecided => Saved::save(&0_u8, state),
             ByTiming::AtOnce(neighbours) => {
                 Saved::save(&1_u8, state);
-                neighbours.save(state);
+                neighbours.save(state, dimension);
             }
             ByTiming::Late(neighbours) => {
                 Saved::save(&2_u8, state);
@@ -195,9 +190,9 @@ mod tests {
             let mut batch = Batch::new(2);
             batch.push(&[3.0, 5.0]);
             let mut all = Neighbourhoods::new(timing);
-            all.expand_all(&context, &batch, &[Outcome::Miss(2.0)], |_| false);
+            all.expand_all(&context, None, (&batch, &[Outcome::Miss(2.0)]), |_| false);
             assert!(matches!(all.neighbours, ByTiming::Undecided));
-            all.expand_all(&context, &batch, &[Outcome::Hit(0.5)], |_| false);
+            all.expand_all(&context, None, (&batch, &[Outcome::Hit(0.5)]), |_| false);
             assert!(all.has_more() && all.fit(2));
             let mut state = State::default();
             all.save(&mut state, 2);
@@ -226,7 +221,7 @@ mod tests {
                 } else {
                     Outcome::Miss(2.0)
                 };
-                all.expand_all(context, &batch, &[outcome], |_| true);
+                all.expand_all(context, None, (&batch, &[outcome]), |_| true);
             }
             all
         };
@@ -235,7 +230,7 @@ mod tests {
         assert!(matches!(all.neighbours, ByTiming::Late(_)));
         let mut position = [0.0; 2];
         for _ in 0..398 {
-            assert!(all.propose(&context, &mut position));
+            assert!(all.propose(&context, None, &mut position));
             assert!((position[0] == 121.0) != (position[1] == 21.0), "{position:?}");
         }
         // Late ones would be evaluated again where no visited points are known.

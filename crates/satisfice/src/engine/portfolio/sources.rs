@@ -199,7 +199,6 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
-        self.neighbourhoods.make_again(context);
         self.tags.clear();
         self.trials.clear();
         let answer = self.fill(context, rng, out);
@@ -211,7 +210,6 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
-        self.neighbourhoods.make_again(context);
         let space = context.space();
         let is_own = match origin {
             Origin::Engine => true,
@@ -252,9 +250,11 @@ impl<S: Real> Engine<S> for Sources<S> {
         }
         if self.without != Omitted::Neighbours && context.offers_neighbours() {
             let tags = &self.tags;
-            self.neighbourhoods.expand_all(context, batch, outcomes, |i| {
-                !is_own || matches!(tags[i].0, Source::Neighbour | Source::NearMiss)
-            });
+            let visited = self.visited.as_ref();
+            self.neighbourhoods
+                .expand_all(context, visited, (batch, outcomes), |i| {
+                    !is_own || matches!(tags[i].0, Source::Neighbour | Source::NearMiss)
+                });
         }
         if origin == Origin::Start {
             self.grow_descents(1);

@@ -2,169 +2,176 @@
 
 use std::collections::BinaryHeap;
 
-use super::candidates::{CandidateTable, MOST_PARTS, key};
-use super::journal::{Entry, Journal};
+use super::candidates::{Candidate, CandidateTable, key};
+use super::evaluated::Evaluated;
 use crate::context::{Context, points_at_once};
+use crate::engine::portfolio::visited::Visited;
+use crate::error::Error;
 use crate::scalar::{Real, ordered};
-use crate::state::{Reader, Saved, State};
+use crate::state::{Reader, Saved, State, read_rows, write_rows};
 
-/// Once this many candidates are known, only hits are expanded: some 110 MB at two axes.
-const MOST: usize = 1 << 20;
+/// So many candidates wait at least, the best ones, and up to twice as many.
+const MOST: usize = 1 << 12;
 
-/// The same once so many entries of the queue were made: of few candidates that are met often, or many that are met twice.
-const MOST_ENTRIES: u64 = 1 << 21;
+/// After so many predictions only hits are expanded.
+const MOST_PREDICTIONS: u64 = 1 << 21;
 
-/// Most coordinates of candidates, which bounds the memory of many axes: 128 MB in double precision.
-const MOST_COORDINATES: usize = 1 << 24;
-
-/// The count of an entry for an evaluated point whose neighbours are not entered yet: this bit, and how many
-/// [parts](points_at_once) of them are.
-const UNEXPANDED: u32 = 1 << 31;
+/// The queue is made anew after so many entries, which bounds its memory: most of it may be replaced ones by then.
+const MOST_ENTRIES: usize = 8 * MOST;
 
 /// An entry of the queue, best first: predicted fitness as ordered bits, then the order of entry.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 struct Queued {
     /// Complemented, because the heap gives its greatest.
     unfitness: u64,
     unage: u64,
-    candidate: u32,
-    /// The candidate's count at entry: an entry that a later one has replaced is passed over. Or [`UNEXPANDED`] and a part.
-    count: u32,
-}
-
-/// What waits to be proposed or expanded, best first.
-#[derive(Debug, Default)]
-struct Queue {
-    heap: BinaryHeap<Queued>,
-    /// How many have been entered.
-    entries: u64,
+    row: u32,
 }
 
 /// The graph that the problem's neighbours span, explored from the hits, the candidate with the least predicted fitness
 /// first.
 ///
 /// A candidate's fitness is predicted by the mean of its evaluated neighbours', shrunk by one observation towards the mean of
-/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits. Cost: a look-up and an entry for
-/// each neighbour of an evaluated point.
-///
-/// A checkpoint holds the [journal](Journal) and which candidates were proposed; the rest is [made again](Self::make_again).
+/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits. Only the best candidates are kept, and
+/// the neighbours of poor points are not entered; so of a candidate that seems to have one evaluated neighbour the others are looked up when it
+/// is its turn. Once none is left, those next to hits are entered again. Cost: two look-ups for each neighbour of an evaluated point, and for
+/// each neighbour of every other candidate that is tried.
 #[derive(Debug, Default)]
 pub(super) struct NeighboursAtOnce<S> {
     candidates: CandidateTable<S>,
-    queue: Queue,
+    /// Entries of candidates; one that a later one has replaced is passed over.
+    queue: BinaryHeap<Queued>,
+    /// How many neighbours were predicted.
+    predictions: u64,
+    /// How many entries there were, and how many of these since the queue was made anew.
+    entries: u64,
+    recent: usize,
+    /// The greatest `unfitness` that was forgotten.
+    bound: u64,
     /// Sum and number of the fitness of evaluated candidates.
     sum: f64,
     count: f64,
-    journal: Journal<S>,
-    /// What was restored, and which candidates were proposed and not entered as evaluated by then.
-    restored: Option<(Journal<S>, Vec<u32>)>,
+    evaluated: Evaluated,
+    /// The hits, with their fitness.
+    hits: Vec<S>,
+    hit_fitness: Vec<f64>,
+    /// Whether a candidate was forgotten since hits were last entered again, and the next hit that is.
+    forgot: bool,
+    again: usize,
     /// The neighbours of a point, and their keys. Not saved: filled anew each time.
     listed: Vec<S>,
     keys: Vec<u64>,
 }
 
 impl<S: Real> NeighboursAtOnce<S> {
-    /// Whether there is a candidate to try.
+    /// Whether there may be a candidate to try.
     pub(super) fn has_more(&self) -> bool {
-        !self.queue.heap.is_empty()
-    }
-
-    /// Takes entries that others have replaced from the top of the queue. How many there are depends on whether the candidates were
-    /// [made again](Self::make_again), so that they must not count as candidates to try.
-    pub(super) fn pass_over(&mut self, dimension: usize) {
-        while let Some(&Queued { candidate, count, .. }) = self.queue.heap.peek() {
-            let candidate = self.candidates.get(candidate, dimension);
-            let waits = if count & UNEXPANDED == 0 {
-                candidate.waits(count)
-            } else {
-                candidate.waits_to_expand(count & !UNEXPANDED)
-            };
-            if waits {
-                return;
-            }
-            self.queue.heap.pop();
-        }
+        self.candidates.len() > 0 || self.forgot || self.again < self.hit_fitness.len()
     }
 
     /// Whether no more misses are expanded.
     pub(super) fn is_full(&self) -> bool {
-        self.candidates.len() >= MOST
-            || self.queue.entries >= MOST_ENTRIES
-            || self.candidates.coordinates() >= MOST_COORDINATES
+        self.predictions >= MOST_PREDICTIONS
     }
 
-    /// The evaluated candidates with their fitness, in the order in which they were met.
-    pub(super) fn evaluated(&self, dimension: usize) -> impl Iterator<Item = (&[S], f64)> {
-        let mut evaluated = self.candidates.evaluated();
-        evaluated.sort_unstable_by_key(|&(index, _)| index);
-        let with_position = move |(index, fitness)| (self.candidates.position(index, dimension), fitness);
-        evaluated.into_iter().map(with_position)
+    /// The hits with their fitness.
+    pub(super) fn hits(&self, dimension: usize) -> impl Iterator<Item = (&[S], f64)> {
+        let hits = self.hits.chunks_exact(dimension);
+        hits.zip(self.hit_fitness.iter().copied())
     }
 
-    /// Takes note of an evaluated point, whose neighbours become candidates. After some of these, candidates are to be
-    /// [passed over](Self::pass_over).
-    pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: f64, is_hit: bool) {
-        let room = self.candidates.coordinates() < MOST_COORDINATES;
-        if room && (is_hit || !self.is_full()) {
-            self.expand_as(Visit::First, context, position, fitness);
+    /// Takes note of an evaluated point, whose neighbours become candidates. `visited`: the points of a lattice that were proposed.
+    pub(super) fn expand(
+        &mut self,
+        context: &dyn Context<S>,
+        visited: Option<&Visited>,
+        position: &[S],
+        (fitness, is_hit): (f64, bool),
+    ) {
+        let key = key(position);
+        if let Some(row) = self.candidates.find(key) {
+            self.candidates.remove(row);
+        }
+        if is_hit {
+            // A hit is entered again after it was forgotten what is next to it, not before.
+            if self.again == self.hit_fitness.len() {
+                self.again += 1;
+            }
+            self.hits.extend_from_slice(position);
+            self.hit_fitness.push(fitness);
+        }
+        if is_hit || !self.is_full() {
+            self.evaluated.insert(key, fitness);
+            self.expand_part(context, visited, position, fitness, 0);
         }
     }
 
-    fn expand_as(&mut self, visit: Visit, context: &dyn Context<S>, position: &[S], fitness: f64) {
-        let known = self.candidates.len();
-        self.candidates.reserve(1);
-        let candidate = self.candidates.enter(key(position), position);
-        if candidate.is_evaluated() {
-            // It says nothing new.
-            return;
-        }
-        candidate.evaluate(fitness);
-        let index = candidate.index;
-        self.journal
-            .point(index, fitness, (index as usize == known).then_some(position));
-        self.expand_part(context, index, 0, visit);
-    }
-
-    /// Makes candidates of a part of the neighbours of an evaluated point, and enters it once more if more are left.
-    fn expand_part(&mut self, context: &dyn Context<S>, index: u32, part: u32, visit: Visit) {
-        let dimension = context.space().dimension();
-        let candidate = self.candidates.get(index, dimension);
-        candidate.expand(part);
-        let fitness = candidate.sum;
-        if part > 0 {
-            self.journal.part(index, part);
-        }
+    /// Makes candidates of a part of the neighbours of an evaluated point, and enters it if more are left.
+    fn expand_part(
+        &mut self,
+        context: &dyn Context<S>,
+        visited: Option<&Visited>,
+        position: &[S],
+        fitness: f64,
+        part: u32,
+    ) {
+        let has_more = self.list(context, position, part);
         let prior = self.prior(fitness);
-        let size = points_at_once(dimension);
-        let start = part as usize * size;
-        let position = self.candidates.position(index, dimension);
+        let midpoint = f64::midpoint(fitness, prior);
+        self.predictions += self.keys.len() as u64;
+        // What is worse than all that wait would be forgotten before it is its turn.
+        let is_poor = self.candidates.len() >= MOST && !ordered(midpoint) < self.bound;
+        self.forgot |= is_poor;
+        let (keys, listed) = (core::mem::take(&mut self.keys), core::mem::take(&mut self.listed));
+        for (&key, neighbour) in keys.iter().zip(listed.chunks_exact(position.len())) {
+            if let Some(row) = self.candidates.find(key) {
+                let candidate = self.candidates.get_mut(row);
+                candidate.sum += fitness;
+                candidate.count += 1;
+                let predicted = candidate.predicted(prior);
+                self.enter(row, predicted);
+            } else if !is_poor && !self.is_known(context, visited, key, neighbour) {
+                let row = self.candidates.add(Candidate::next_to(fitness, key), neighbour);
+                self.enter(row, midpoint);
+            }
+        }
+        (self.keys, self.listed) = (keys, listed);
+        if has_more {
+            let row = self.candidates.add(Candidate::rest(fitness, part + 1), position);
+            self.enter(row, midpoint);
+        }
+        if self.recent >= MOST_ENTRIES || self.candidates.len() >= 2 * MOST {
+            self.make_queue_anew();
+        }
+    }
+
+    /// Lists a part of the neighbours of a point, and their keys; `true` if more are left.
+    fn list(&mut self, context: &dyn Context<S>, position: &[S], part: u32) -> bool {
+        let size = points_at_once(position.len());
+        let start = (part as usize).saturating_mul(size);
+        let end = start.saturating_add(size);
         let (listed, keys) = (&mut self.listed, &mut self.keys);
         listed.clear();
         keys.clear();
-        let mut list = |_, neighbour: &[S]| {
+        context.neighbours(position, start..end, &mut |_, neighbour: &[S]| {
             listed.extend_from_slice(neighbour);
             keys.push(key(neighbour));
-        };
-        match visit {
-            Visit::First => context.neighbours(position, start..start + size, &mut list),
-            Visit::Again => context.neighbours_again(position, start..start + size, &mut list),
-        }
-        let has_more =
-            part + 1 < MOST_PARTS && context.neighbour_count(position) > start.saturating_add(size);
-        self.candidates.reserve(self.keys.len());
-        self.candidates.fetch(&self.keys);
-        for (&key, neighbour) in self.keys.iter().zip(self.listed.chunks_exact(dimension)) {
-            let candidate = self.candidates.enter(key, neighbour);
-            if !candidate.is_proposed() {
-                let count = candidate.meet(fitness);
-                let predicted = (candidate.sum + prior) / (f64::from(count) + 1.0);
-                self.queue.push(candidate.index, predicted, count);
-            }
-        }
-        if has_more {
-            self.queue
-                .push(index, f64::midpoint(fitness, prior), UNEXPANDED | (part + 1));
-        }
+        });
+        part < u32::MAX && context.neighbour_count(position) > end
+    }
+
+    /// Whether a point was proposed before.
+    fn is_known(
+        &self,
+        context: &dyn Context<S>,
+        visited: Option<&Visited>,
+        key: u64,
+        position: &[S],
+    ) -> bool {
+        visited.map_or_else(
+            || self.evaluated.contains(key),
+            |visited| visited.contains(context.space(), position),
+        )
     }
 
     /// The prior of a candidate's fitness: the mean of all candidates so far, or the given one before there are any.
@@ -176,109 +183,177 @@ impl<S: Real> NeighboursAtOnce<S> {
         }
     }
 
-    /// Writes the best candidate; `false` when there is none. The first of the queue is never one that another has replaced.
-    pub(super) fn propose(&mut self, context: &dyn Context<S>, position: &mut [S]) -> bool {
-        let dimension = position.len();
-        while let Some(queued) = self.queue.heap.pop() {
-            let index = queued.candidate;
-            let is_point = queued.count & UNEXPANDED == 0;
-            if is_point {
-                self.candidates.get(index, dimension).propose();
-                position.copy_from_slice(self.candidates.position(index, dimension));
-            } else {
-                self.expand_part(context, index, queued.count & !UNEXPANDED, Visit::First);
+    /// Enters a candidate, in place of its last entry.
+    fn enter(&mut self, row: u32, predicted: f64) {
+        self.entries += 1;
+        self.recent += 1;
+        self.candidates.get_mut(row).entry = self.entries;
+        self.queue.push(Queued {
+            unfitness: !ordered(predicted),
+            unage: !self.entries,
+            row,
+        });
+    }
+
+    /// Whether no later entry has replaced this one.
+    fn is_latest(&self, queued: &Queued) -> bool {
+        self.candidates.get(queued.row).entry == !queued.unage
+    }
+
+    /// Forgets the entries that others have replaced and, if there are too many, the worst candidates.
+    fn make_queue_anew(&mut self) {
+        let mut entries = core::mem::take(&mut self.queue).into_vec();
+        entries.retain(|queued| self.is_latest(queued));
+        if entries.len() >= 2 * MOST {
+            // The worst come first.
+            let last = entries.len() - MOST - 1;
+            let (_, best_forgotten, _) = entries.select_nth_unstable(last);
+            self.bound = best_forgotten.unfitness;
+            self.forgot = true;
+            for forgotten in entries.drain(..=last) {
+                self.candidates.remove(forgotten.row);
             }
-            self.pass_over(dimension);
-            if is_point {
+        }
+        self.recent = 0;
+        self.queue = entries.into();
+    }
+
+    /// Writes the best candidate; `false` when there is none, or none next to the hit that was entered again.
+    pub(super) fn propose(
+        &mut self,
+        context: &dyn Context<S>,
+        visited: Option<&Visited>,
+        position: &mut [S],
+    ) -> bool {
+        loop {
+            let Some(queued) = self.queue.pop() else {
+                // One hit at a time: its neighbours may all be known, and time may be out.
+                if self.enter_again(context, visited, position) && !self.queue.is_empty() {
+                    continue;
+                }
+                return false;
+            };
+            if !self.is_latest(&queued) {
+                continue;
+            }
+            let candidate = *self.candidates.get(queued.row);
+            position.copy_from_slice(self.candidates.position(queued.row, position.len()));
+            if candidate.part > 0 {
+                self.candidates.remove(queued.row);
+                self.expand_part(context, visited, position, candidate.sum, candidate.part);
+            } else if candidate.count > 1 || !self.is_worse(context, queued, position) {
+                self.candidates.remove(queued.row);
+                if visited.is_none() {
+                    self.evaluated.insert(candidate.key, f64::NAN);
+                }
                 return true;
             }
         }
-        false
+    }
+
+    /// Looks up what was known of a candidate before it was entered. Enters it once more if it is worse than it seemed, and says so.
+    fn is_worse(&mut self, context: &dyn Context<S>, queued: Queued, position: &[S]) -> bool {
+        self.list(context, position, 0);
+        let (sum, count) = self.evaluated.sum_and_count(&self.keys);
+        let prior = self.prior(sum);
+        let candidate = self.candidates.get_mut(queued.row);
+        if count <= candidate.count {
+            return false;
+        }
+        (candidate.sum, candidate.count) = (sum, count);
+        let predicted = candidate.predicted(prior);
+        let is_worse = !ordered(predicted) < queued.unfitness;
+        if is_worse {
+            self.enter(queued.row, predicted);
+        }
+        is_worse
+    }
+
+    /// Enters the neighbours of the next hit once more, if candidates were forgotten; `false` when all were.
+    fn enter_again(
+        &mut self,
+        context: &dyn Context<S>,
+        visited: Option<&Visited>,
+        position: &mut [S],
+    ) -> bool {
+        if self.again >= self.hit_fitness.len() && core::mem::take(&mut self.forgot) {
+            self.again = 0;
+        }
+        let Some(&fitness) = self.hit_fitness.get(self.again) else {
+            return false;
+        };
+        let start = self.again * position.len();
+        position.copy_from_slice(&self.hits[start..start + position.len()]);
+        self.again += 1;
+        self.expand_part(context, visited, position, fitness, 0);
+        true
     }
 
     /// Counts a candidate and its fitness.
     pub(super) fn count(&mut self, fitness: S) {
         if fitness.is_finite() {
-            self.count_finite(fitness.f64());
+            self.sum += fitness.f64();
+            self.count += 1.0;
         }
     }
 
-    fn count_finite(&mut self, fitness: f64) {
-        self.sum += fitness;
-        self.count += 1.0;
-        self.journal.count(fitness);
+    pub(super) fn save(&self, state: &mut State, dimension: usize) {
+        let mut entries: Vec<Queued> = self.queue.iter().copied().collect();
+        entries.retain(|queued| self.is_latest(queued));
+        entries.sort_unstable();
+        let candidates: Vec<Candidate> = entries
+            .iter()
+            .map(|queued| *self.candidates.get(queued.row))
+            .collect();
+        let position = |queued: &Queued| self.candidates.position(queued.row, dimension);
+        let positions: Vec<S> = entries.iter().flat_map(position).copied().collect();
+        let unfitness: Vec<u64> = entries.iter().map(|queued| queued.unfitness).collect();
+        Saved::save(&(candidates, unfitness), state);
+        write_rows(state, &positions, dimension);
+        Saved::save(&(self.predictions, self.entries, self.recent, self.bound), state);
+        Saved::save(&(self.sum, self.count, self.forgot, self.again), state);
+        self.evaluated.save(state);
+        write_rows(state, &self.hits, dimension);
+        write_rows(state, &self.hit_fitness, 1);
     }
 
-    /// Makes the candidates of a restored search again, by the same steps. What is then queued besides, because it was proposed or
-    /// entered by then, is passed over.
-    pub(super) fn make_again(&mut self, context: &dyn Context<S>) {
-        let Some((journal, proposed)) = self.restored.take() else {
-            return;
-        };
-        let dimension = context.space().dimension();
-        journal.replay(dimension, |entry| {
-            match entry {
-                Entry::Point(Ok(index), fitness) => {
-                    let position = self.candidates.position(index, dimension).to_vec();
-                    self.expand_as(Visit::Again, context, &position, fitness);
-                }
-                Entry::Point(Err(position), fitness) => {
-                    self.expand_as(Visit::Again, context, position, fitness);
-                }
-                Entry::Part(index, part) => self.expand_part(context, index, part, Visit::Again),
-                Entry::Count(fitness) => self.count_finite(fitness),
-            }
-            self.candidates.len()
-        });
-        for index in proposed {
-            if (index as usize) < self.candidates.len() {
-                self.candidates.get(index, dimension).propose();
-            }
-        }
-        self.pass_over(dimension);
-    }
-
-    pub(super) fn save(&self, state: &mut State) {
-        if let Some((journal, proposed)) = &self.restored {
-            journal.save(state);
-            proposed.save(state);
-        } else {
-            self.journal.save(state);
-            self.candidates.only_proposed().save(state);
-        }
-    }
-
-    pub(super) fn restore(from: &mut Reader<'_>) -> Result<Self, crate::Error> {
-        Ok(Self {
-            restored: Some((Journal::restore(from)?, from.read()?)),
+    pub(super) fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
+        let (candidates, unfitness): (Vec<Candidate>, Vec<u64>) = from.read()?;
+        let positions: Vec<S> = read_rows(from)?;
+        let (predictions, entries, recent, bound) = from.read()?;
+        let (sum, count, forgot, again) = from.read()?;
+        let mut restored = Self {
+            predictions,
+            entries,
+            recent,
+            bound,
+            sum,
+            count,
+            forgot,
+            again,
+            evaluated: Evaluated::restore(from)?,
+            hits: read_rows(from)?,
+            hit_fitness: read_rows(from)?,
             ..Self::default()
-        })
+        };
+        let dimension = (positions.len() / candidates.len().max(1)).max(1);
+        let rows = candidates.into_iter().zip(positions.chunks_exact(dimension));
+        for ((candidate, position), unfitness) in rows.zip(unfitness) {
+            let key = key(position);
+            let row = restored.candidates.add(Candidate { key, ..candidate }, position);
+            restored.queue.push(Queued {
+                unfitness,
+                unage: !candidate.entry,
+                row,
+            });
+        }
+        Ok(restored)
     }
 
     /// Whether restored parts fit each other and the space.
     pub(super) fn fit(&self, dimension: usize) -> bool {
-        self.restored
-            .as_ref()
-            .is_none_or(|(journal, _)| journal.fits(dimension))
-    }
-}
-
-/// Whether neighbours are visited for the first time, or to make candidates again.
-#[derive(Debug, Clone, Copy)]
-enum Visit {
-    First,
-    Again,
-}
-
-impl Queue {
-    fn push(&mut self, candidate: u32, predicted: f64, count: u32) {
-        self.entries += 1;
-        self.heap.push(Queued {
-            unfitness: !ordered(predicted),
-            unage: !self.entries,
-            candidate,
-            count,
-        });
+        let hits = self.hit_fitness.len().checked_mul(dimension);
+        self.candidates.fit(dimension) && hits == Some(self.hits.len())
     }
 }
 
@@ -286,71 +361,114 @@ impl Queue {
 mod tests {
     use rand::RngExt;
 
-    use super::super::rooks::{Rooks, SIDE, rooks};
+    use super::super::rooks::{SIDE, rooks};
     use super::*;
     use crate::SearchRng;
 
-    /// Proposes a point, evaluates it or not, counts it or not; now and then a point of others.
-    fn step(all: &mut NeighboursAtOnce<f64>, context: &Rooks, rng: &mut SearchRng) -> Option<[f64; 2]> {
+    fn expand(all: &mut NeighboursAtOnce<f64>, position: [f64; 2], fitness: f64, is_hit: bool) {
+        all.expand(&rooks(), None, &position, (fitness, is_hit));
+    }
+
+    fn propose(all: &mut NeighboursAtOnce<f64>) -> Option<[f64; 2]> {
         let mut position = [0.0; 2];
-        let is_own = all.propose(context, &mut position);
-        if !is_own || rng.random_bool(0.1) {
-            position = [0, 1].map(|_| f64::from(rng.random_range(0..SIDE as u32)));
-        }
+        all.propose(&rooks(), None, &mut position).then_some(position)
+    }
+
+    /// Proposes a point, evaluates it or not, counts it or not; now and then a point of others.
+    fn step(all: &mut NeighboursAtOnce<f64>, rng: &mut SearchRng) -> Option<[f64; 2]> {
+        let own = propose(all);
+        let position = own
+            .filter(|_| rng.random_bool(0.9))
+            .unwrap_or_else(|| [0, 1].map(|_| f64::from(rng.random_range(0..SIDE as u32))));
         let fitness = ((7.0 * position[0]).sin() * (3.0 * position[1]).cos() * 100.0).round() / 100.0;
         if rng.random_bool(0.8) {
-            all.expand(context, &position, fitness, false);
-            all.pass_over(2);
+            expand(all, position, fitness, fitness < -0.9);
         }
         if rng.random_bool(0.8) {
             all.count(fitness);
         }
-        is_own.then_some(position)
+        own
+    }
+
+    fn saved(all: &NeighboursAtOnce<f64>) -> State {
+        let mut state = State::default();
+        all.save(&mut state, 2);
+        state
     }
 
     #[test]
-    fn what_is_made_again_goes_on_as_it_would_have() {
-        let context = rooks();
+    fn what_is_restored_goes_on_as_it_would_have() {
         let mut all = NeighboursAtOnce::default();
         let mut rng = SearchRng::new(8);
-        for _ in 0..60 {
-            step(&mut all, &context, &mut rng);
+        for steps in [3, 60, 200] {
+            for _ in 0..steps {
+                step(&mut all, &mut rng);
+            }
+            let state = saved(&all);
+            let mut again = NeighboursAtOnce::restore(&mut Reader::new(&state)).unwrap();
+            assert!(again.fit(2) && saved(&again) == state);
+            let (mut one, mut other) = (rng.clone(), rng.clone());
+            for i in 0..60 {
+                assert_eq!(step(&mut all, &mut one), step(&mut again, &mut other), "{i}");
+            }
         }
-        let mut state = State::default();
-        all.save(&mut state);
-        let calls = context.calls.get();
-        let mut again = NeighboursAtOnce::restore(&mut Reader::new(&state)).unwrap();
-        assert!(again.fit(2));
-        // Saved once more before anything is made again.
-        let mut same = State::default();
-        again.save(&mut same);
-        assert!(same == state);
-        again.make_again(&context);
-        assert_eq!(context.calls.get(), calls, "calls are not counted twice");
-        let mut same = State::default();
-        again.save(&mut same);
-        assert!(same == state);
-        let mut rng_again = rng.clone();
-        for i in 0..60 {
-            let (one, other) = (
-                step(&mut all, &context, &mut rng),
-                step(&mut again, &context, &mut rng_again),
-            );
-            assert_eq!(one, other, "{i}");
-        }
+        assert!(all.forgot, "not all have room");
     }
 
     #[test]
-    fn a_checkpoint_takes_few_bytes_for_each_evaluated_point() {
-        let context = rooks();
+    fn few_candidates_are_kept_and_their_checkpoint_is_small() {
         let mut all = NeighboursAtOnce::default();
         let mut rng = SearchRng::new(3);
-        for _ in 0..100 {
-            step(&mut all, &context, &mut rng);
+        let mut most = 0;
+        for _ in 0..2000 {
+            step(&mut all, &mut rng);
+            most = most.max(all.candidates.len());
         }
-        assert!(all.candidates.len() > 10_000, "{}", all.candidates.len());
-        let mut state = State::default();
-        all.save(&mut state);
-        assert!(state.0.len() < 3000, "{}", state.0.len());
+        assert!((MOST..=2 * MOST + 2 * SIDE).contains(&most), "{most}");
+        assert!(all.queue.len() <= most + MOST_ENTRIES + 2 * SIDE);
+        let size = saved(&all).0.len();
+        assert!(size < 400_000, "{size}");
+    }
+
+    #[test]
+    fn what_was_forgotten_next_to_a_hit_comes_last() {
+        let mut all = NeighboursAtOnce::default();
+        let is_next = |x: &[f64; 2]| (x[0] == 3.0) != (x[1] == 5.0);
+        expand(&mut all, [3.0, 5.0], 9.0, true);
+        for i in 20..60 {
+            expand(&mut all, [f64::from(i); 2], 1.0, false);
+        }
+        assert!(all.forgot && all.candidates.len() >= MOST);
+        let mut seen = Vec::new();
+        while let Some(position) = propose(&mut all) {
+            seen.push(position);
+            all.count(1.0);
+        }
+        assert!(!all.has_more());
+        let next = seen.iter().filter(|x| is_next(x)).count();
+        assert_eq!(next, 398, "each once");
+        assert!(seen[..MOST - 398].iter().all(|x| !is_next(x)));
+        assert!(seen.len() > 2 * MOST);
+    }
+
+    #[test]
+    fn a_candidate_that_a_poor_point_knows_comes_after_one_that_none_does() {
+        let mut all = NeighboursAtOnce::default();
+        for i in 20..60 {
+            expand(&mut all, [f64::from(i); 2], 1.0, false);
+            all.count(1.0);
+        }
+        let known = all.candidates.len();
+        expand(&mut all, [7.0, 9.0], 100.0, false);
+        assert_eq!(
+            all.candidates.len(),
+            known + 1,
+            "only what is left of its neighbours"
+        );
+        expand(&mut all, [3.0, 5.0], 0.5, false);
+        // Those next to the last point, but for those that the poor one knows: (3, 9) and (7, 5).
+        let first: Vec<[f64; 2]> = (0..300).filter_map(|_| propose(&mut all)).collect();
+        assert!(first.iter().all(|x| (x[0] == 3.0) != (x[1] == 5.0)), "{first:?}");
+        assert!(!first.contains(&[3.0, 9.0]) && !first.contains(&[7.0, 5.0]));
     }
 }

@@ -1,179 +1,123 @@
 //! What is known of each candidate, found by its position.
 
+use hashbrown::HashTable;
+
 use crate::scalar::Real;
 
-/// Slots of the table at first.
-const FIRST: usize = 1 << 6;
-/// The index of an empty slot.
-const EMPTY: u32 = u32::MAX;
-/// The bits of a count that say that the candidate has been proposed, and that it is evaluated: then it has both.
-const PROPOSED: u32 = 1 << 31;
-const EVALUATED: u32 = 1 << 30 | PROPOSED;
-/// A candidate has fewer parts.
-pub(super) const MOST_PARTS: u32 = 1 << 30;
-
-/// A neighbour of evaluated points.
-#[derive(Debug, Clone, Copy)]
+/// A neighbour of evaluated points, or an evaluated point some of whose neighbours are not entered yet.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Candidate {
-    key: u64,
-    /// Sum of the fitness of its expanded neighbours; once it is evaluated, its own fitness.
+    /// Of its position, from which it follows.
+    #[serde(skip)]
+    pub(super) key: u64,
+    /// The number of its latest entry in the queue.
+    pub(super) entry: u64,
+    /// Sum of the fitness of its evaluated neighbours, and their number; of an evaluated point its own.
     pub(super) sum: f64,
-    /// How many these neighbours are; once it is evaluated, how many parts of its own neighbours are entered.
-    count: u32,
-    /// Its place in the order in which candidates were met.
-    pub(super) index: u32,
+    pub(super) count: u32,
+    /// Of an evaluated point, the part of its neighbours that is entered next; 0 of a candidate.
+    pub(super) part: u32,
 }
 
 impl Candidate {
-    const NONE: Self = Self {
-        key: 0,
-        sum: 0.0,
-        count: 0,
-        index: EMPTY,
-    };
-
-    pub(super) fn is_proposed(&self) -> bool {
-        self.count & PROPOSED != 0
-    }
-
-    pub(super) fn propose(&mut self) {
-        self.count |= PROPOSED;
-    }
-
-    /// Adds the fitness of an expanded neighbour; returns their number.
-    pub(super) fn meet(&mut self, fitness: f64) -> u32 {
-        self.sum += fitness;
-        self.count += 1;
-        self.count
-    }
-
-    /// Whether it waits to be proposed, and as many neighbours have been met.
-    pub(super) fn waits(&self, count: u32) -> bool {
-        self.count == count
-    }
-
-    pub(super) fn is_evaluated(&self) -> bool {
-        self.count & EVALUATED == EVALUATED
-    }
-
-    pub(super) fn evaluate(&mut self, fitness: f64) {
-        (self.sum, self.count) = (fitness, EVALUATED);
-    }
-
-    /// Whether it is evaluated, and a part of its neighbours is the next to enter.
-    pub(super) fn waits_to_expand(&self, part: u32) -> bool {
-        self.count == EVALUATED | part
-    }
-
-    pub(super) fn expand(&mut self, part: u32) {
-        self.count = EVALUATED | (part + 1);
-    }
-}
-
-/// All candidates, in the order in which they were met, and a table of them with open addressing and linear probing, at most three
-/// quarters full.
-///
-/// The table holds all that is asked for beside each key, so that a look-up among a million candidates waits for one line of
-/// memory; and whoever looks up many has these lines fetched together, by [`fetch`](Self::fetch).
-#[derive(Debug, Default)]
-pub(super) struct CandidateTable<S> {
-    slots: Vec<Candidate>,
-    positions: Vec<S>,
-    count: usize,
-}
-
-impl<S: Real> CandidateTable<S> {
-    pub(super) fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Number of coordinates of all of them.
-    pub(super) fn coordinates(&self) -> usize {
-        self.positions.len()
-    }
-
-    /// The position of a candidate.
-    pub(super) fn position(&self, index: u32, dimension: usize) -> &[S] {
-        &self.positions[index as usize * dimension..(index as usize + 1) * dimension]
-    }
-
-    /// The candidate with an index.
-    pub(super) fn get(&mut self, index: u32, dimension: usize) -> &mut Candidate {
-        let slot = self.slot(key(self.position(index, dimension)));
-        &mut self.slots[slot]
-    }
-
-    /// The indices of candidates that were proposed and are not known to be evaluated, in order.
-    pub(super) fn only_proposed(&self) -> Vec<u32> {
-        let known = self.slots.iter().filter(|slot| slot.index != EMPTY);
-        let proposed = known.filter(|slot| slot.count & EVALUATED == PROPOSED);
-        let mut indices: Vec<u32> = proposed.map(|slot| slot.index).collect();
-        indices.sort_unstable();
-        indices
-    }
-
-    /// The indices of evaluated candidates with their fitness, in any order.
-    pub(super) fn evaluated(&self) -> Vec<(u32, f64)> {
-        let known = self.slots.iter().filter(|slot| slot.index != EMPTY);
-        let evaluated = known.filter(|slot| slot.is_evaluated());
-        evaluated.map(|slot| (slot.index, slot.sum)).collect()
-    }
-
-    /// Makes room for so many more.
-    pub(super) fn reserve(&mut self, more: usize) {
-        let wanted = (self.count + more).saturating_mul(4) / 3;
-        if wanted >= self.slots.len() {
-            let larger = vec![Candidate::NONE; (wanted + 1).max(FIRST).next_power_of_two()];
-            for candidate in core::mem::replace(&mut self.slots, larger) {
-                if candidate.index != EMPTY {
-                    let slot = self.slot(candidate.key);
-                    self.slots[slot] = candidate;
-                }
-            }
+    /// A candidate next to a point of this fitness.
+    pub(super) fn next_to(fitness: f64, key: u64) -> Self {
+        Self {
+            key,
+            sum: fitness,
+            count: 1,
+            ..Self::default()
         }
     }
 
-    /// Has the slots of keys fetched from memory, all at the same time.
-    pub(super) fn fetch(&self, keys: &[u64]) {
-        let read = |all: u32, &key: &u64| all ^ self.slots[self.first(key)].index;
-        core::hint::black_box(keys.iter().fold(0, read));
+    /// An evaluated point of this fitness, of whose neighbours a part is entered next.
+    pub(super) fn rest(fitness: f64, part: u32) -> Self {
+        Self {
+            sum: fitness,
+            part,
+            ..Self::default()
+        }
     }
 
-    /// The candidate with a key and a position, new or known. There has to be [room](Self::reserve).
-    pub(super) fn enter(&mut self, key: u64, position: &[S]) -> &mut Candidate {
-        let slot = self.slot(key);
-        let candidate = &mut self.slots[slot];
-        if candidate.index == EMPTY {
+    /// The mean fitness of its neighbours and of one more with that of the prior.
+    pub(super) fn predicted(&self, prior: f64) -> f64 {
+        (self.sum + prior) / (f64::from(self.count) + 1.0)
+    }
+}
+
+/// The candidates that wait, each in its row.
+#[derive(Debug, Default)]
+pub(super) struct CandidateTable<S> {
+    rows: Vec<Candidate>,
+    positions: Vec<S>,
+    /// The rows that are free.
+    free: Vec<u32>,
+    /// The rows of candidates, by their keys.
+    by_key: HashTable<u32>,
+}
+
+impl<S: Real> CandidateTable<S> {
+    /// How many wait.
+    pub(super) fn len(&self) -> usize {
+        self.rows.len() - self.free.len()
+    }
+
+    /// The row of the candidate with a key.
+    pub(super) fn find(&self, key: u64) -> Option<u32> {
+        let found = self.by_key.find(key, |&row| self.rows[row as usize].key == key);
+        found.copied()
+    }
+
+    pub(super) fn get(&self, row: u32) -> &Candidate {
+        &self.rows[row as usize]
+    }
+
+    pub(super) fn get_mut(&mut self, row: u32) -> &mut Candidate {
+        &mut self.rows[row as usize]
+    }
+
+    pub(super) fn position(&self, row: u32, dimension: usize) -> &[S] {
+        &self.positions[row as usize * dimension..(row as usize + 1) * dimension]
+    }
+
+    /// Adds one that is not known, and returns its row.
+    pub(super) fn add(&mut self, candidate: Candidate, position: &[S]) -> u32 {
+        let row = if let Some(row) = self.free.pop() {
+            let place = row as usize * position.len();
+            self.rows[row as usize] = candidate;
+            self.positions[place..place + position.len()].copy_from_slice(position);
+            row
+        } else {
             #[expect(
                 clippy::cast_possible_truncation,
                 reason = "2^32 candidates do not fit in memory"
             )]
-            let index = self.count as u32;
-            *candidate = Candidate {
-                key,
-                index,
-                ..Candidate::NONE
-            };
-            self.count += 1;
+            let row = self.rows.len() as u32;
+            self.rows.push(candidate);
             self.positions.extend_from_slice(position);
+            row
+        };
+        if candidate.part == 0 {
+            let rows = &self.rows;
+            self.by_key
+                .insert_unique(candidate.key, row, |&row| rows[row as usize].key);
         }
-        candidate
+        row
     }
 
-    /// Where the search for a key begins: by its highest bits, so that a table that grows is copied from end to end.
-    fn first(&self, key: u64) -> usize {
-        #[expect(clippy::cast_possible_truncation, reason = "below the number of slots")]
-        let first = (key >> (64 - self.slots.len().trailing_zeros())) as usize;
-        first
+    /// Whether the rows are of a space of so many axes.
+    pub(super) fn fit(&self, dimension: usize) -> bool {
+        Some(self.positions.len()) == self.rows.len().checked_mul(dimension)
     }
 
-    /// The slot of a key, or the empty one where it would be.
-    fn slot(&self, key: u64) -> usize {
-        let mut slot = self.first(key);
-        while self.slots[slot].index != EMPTY && self.slots[slot].key != key {
-            slot = (slot + 1) & (self.slots.len() - 1);
+    pub(super) fn remove(&mut self, row: u32) {
+        let Candidate { key, part, .. } = core::mem::take(&mut self.rows[row as usize]);
+        if part == 0
+            && let Ok(found) = self.by_key.find_entry(key, |&other| other == row)
+        {
+            found.remove();
         }
-        slot
+        self.free.push(row);
     }
 }
 

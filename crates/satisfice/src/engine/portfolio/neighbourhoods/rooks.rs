@@ -1,6 +1,5 @@
 //! A graph to try neighbours on.
 
-use core::cell::Cell;
 use core::ops::Range;
 
 use crate::Axis;
@@ -10,8 +9,6 @@ use crate::space::{Region, Space};
 /// Two axes; neighbours share one of both coordinates: more than [`points_at_once`].
 pub(super) struct Rooks {
     pub(super) space: Space<f64>,
-    /// Calls of `neighbours`.
-    pub(super) calls: Cell<u64>,
     pub(super) planned: Option<u64>,
     pub(super) seconds_an_evaluation: Option<f64>,
 }
@@ -47,10 +44,6 @@ impl Context<f64> for Rooks {
         2 * SIDE
     }
     fn neighbours(&self, of: &[f64], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[f64])) {
-        self.calls.set(self.calls.get() + 1);
-        self.neighbours_again(of, indices, visit);
-    }
-    fn neighbours_again(&self, of: &[f64], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[f64])) {
         for index in indices.start..indices.end.min(2 * SIDE) {
             let mut neighbour = [of[0], of[1]];
             neighbour[index / SIDE] = (index % SIDE) as f64;
@@ -80,7 +73,6 @@ pub(super) fn rooks() -> Rooks {
             Axis::integer(0, SIDE as i64 - 1),
         ])
         .unwrap(),
-        calls: Cell::new(0),
         planned: None,
         seconds_an_evaluation: None,
     }

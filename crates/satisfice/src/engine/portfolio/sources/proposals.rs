@@ -136,7 +136,10 @@ impl<S: Real> Sources<S> {
             Source::Neighbour | Source::NearMiss => {
                 let position = &mut self.position;
                 let is_there = match source {
-                    Source::Neighbour => self.neighbourhoods.propose(context, position),
+                    Source::Neighbour => {
+                        let visited = self.visited.as_ref();
+                        self.neighbourhoods.propose(context, visited, position)
+                    }
                     _ => self.near_misses.propose(position),
                 };
                 if !is_there {
