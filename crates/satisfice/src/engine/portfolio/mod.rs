@@ -37,7 +37,7 @@ engine_choice! {
 }
 
 engine_choice! {
-    /// A source of candidates that [`Portfolio`] leaves out, for ablation.
+    /// A source of candidates that [`Portfolio`] leaves out.
     pub enum Omitted {
         /// None: all sources compete.
         Nothing = "none",
@@ -140,7 +140,7 @@ engine_settings! {
         /// By default late where time alone is limited and F takes less than 10 microseconds. On a lattice all are late
         /// once two million were predicted.
         pub neighbours: NeighbourTiming = NeighbourTiming::Auto;
-        /// A source to leave out, for ablation.
+        /// A source to leave out: to see what it earns, or where it does not pay, such as the model of a cheap F.
         pub without: Omitted = Omitted::Nothing;
     }
 }
