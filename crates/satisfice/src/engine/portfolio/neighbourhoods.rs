@@ -2,7 +2,6 @@
 
 mod at_once;
 mod candidates;
-mod evaluated;
 mod late;
 #[cfg(test)]
 mod rooks;

@@ -1,9 +1,8 @@
 //! Neighbours that become candidates as soon as their point is evaluated.
 
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use super::candidates::{Candidate, CandidateTable, key};
-use super::evaluated::Evaluated;
 use crate::context::{Context, points_at_once};
 use crate::engine::portfolio::visited::Visited;
 use crate::error::Error;
@@ -32,10 +31,8 @@ struct Queued {
 /// first.
 ///
 /// A candidate's fitness is predicted by the mean of its evaluated neighbours', shrunk by one observation towards the mean of
-/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits. Only the best candidates are kept, and
-/// the neighbours of poor points are not entered; so of a candidate that seems to have one evaluated neighbour the others are looked up when it
-/// is its turn. Once none is left, those next to hits are entered again. Cost: two look-ups for each neighbour of an evaluated point, and for
-/// each neighbour of every other candidate that is tried.
+/// all candidates so far. Unlike breadth-first order, this crosses the gaps between patches of hits. Only the best candidates are kept; once
+/// none is left, those next to hits are entered again. Cost: a look-up and an entry for each neighbour of an evaluated point.
 #[derive(Debug, Default)]
 pub(super) struct NeighboursAtOnce<S> {
     candidates: CandidateTable<S>,
@@ -46,21 +43,17 @@ pub(super) struct NeighboursAtOnce<S> {
     /// How many entries there were, and how many of these since the queue was made anew.
     entries: u64,
     recent: usize,
-    /// The greatest `unfitness` that was forgotten.
-    bound: u64,
     /// Sum and number of the fitness of evaluated candidates.
     sum: f64,
     count: f64,
-    evaluated: Evaluated,
+    /// Outside lattices, where nobody knows which points were visited: keys of the points that were proposed or expanded.
+    known: BTreeSet<u64>,
     /// The hits, with their fitness.
     hits: Vec<S>,
     hit_fitness: Vec<f64>,
     /// Whether a candidate was forgotten since hits were last entered again, and the next hit that is.
     forgot: bool,
     again: usize,
-    /// The neighbours of a point, and their keys. Not saved: filled anew each time.
-    listed: Vec<S>,
-    keys: Vec<u64>,
 }
 
 impl<S: Real> NeighboursAtOnce<S> {
@@ -100,8 +93,10 @@ impl<S: Real> NeighboursAtOnce<S> {
             self.hits.extend_from_slice(position);
             self.hit_fitness.push(fitness);
         }
+        if visited.is_none() {
+            self.known.insert(key);
+        }
         if is_hit || !self.is_full() {
-            self.evaluated.insert(key, fitness);
             self.expand_part(context, visited, position, fitness, 0);
         }
     }
@@ -115,72 +110,50 @@ impl<S: Real> NeighboursAtOnce<S> {
         fitness: f64,
         part: u32,
     ) {
-        let has_more = self.list(context, position, part);
-        let prior = self.prior(fitness);
-        let midpoint = f64::midpoint(fitness, prior);
-        self.predictions += self.keys.len() as u64;
-        // What is worse than all that wait would be forgotten before it is its turn.
-        let is_poor = self.candidates.len() >= MOST && !ordered(midpoint) < self.bound;
-        self.forgot |= is_poor;
-        let (keys, listed) = (core::mem::take(&mut self.keys), core::mem::take(&mut self.listed));
-        for (&key, neighbour) in keys.iter().zip(listed.chunks_exact(position.len())) {
-            if let Some(row) = self.candidates.find(key) {
-                let candidate = self.candidates.get_mut(row);
-                candidate.sum += fitness;
-                candidate.count += 1;
-                let predicted = candidate.predicted(prior);
-                self.enter(row, predicted);
-            } else if !is_poor && !self.is_known(context, visited, key, neighbour) {
-                let row = self.candidates.add(Candidate::next_to(fitness, key), neighbour);
-                self.enter(row, midpoint);
-            }
-        }
-        (self.keys, self.listed) = (keys, listed);
-        if has_more {
+        let size = points_at_once(position.len());
+        let start = (part as usize).saturating_mul(size);
+        let end = start.saturating_add(size);
+        let prior = if self.count > 0.0 {
+            self.sum / self.count
+        } else {
+            fitness
+        };
+        context.neighbours(position, start..end, &mut |_, neighbour| {
+            self.predict(context, visited, neighbour, (fitness, prior));
+        });
+        if part < u32::MAX && context.neighbour_count(position) > end {
             let row = self.candidates.add(Candidate::rest(fitness, part + 1), position);
-            self.enter(row, midpoint);
+            self.enter(row, f64::midpoint(fitness, prior));
         }
         if self.recent >= MOST_ENTRIES || self.candidates.len() >= 2 * MOST {
             self.make_queue_anew();
         }
     }
 
-    /// Lists a part of the neighbours of a point, and their keys; `true` if more are left.
-    fn list(&mut self, context: &dyn Context<S>, position: &[S], part: u32) -> bool {
-        let size = points_at_once(position.len());
-        let start = (part as usize).saturating_mul(size);
-        let end = start.saturating_add(size);
-        let (listed, keys) = (&mut self.listed, &mut self.keys);
-        listed.clear();
-        keys.clear();
-        context.neighbours(position, start..end, &mut |_, neighbour: &[S]| {
-            listed.extend_from_slice(neighbour);
-            keys.push(key(neighbour));
-        });
-        part < u32::MAX && context.neighbour_count(position) > end
-    }
-
-    /// Whether a point was proposed before.
-    fn is_known(
-        &self,
+    /// Predicts the fitness of a neighbour of an evaluated point, unless it was proposed before.
+    fn predict(
+        &mut self,
         context: &dyn Context<S>,
         visited: Option<&Visited>,
-        key: u64,
-        position: &[S],
-    ) -> bool {
-        visited.map_or_else(
-            || self.evaluated.contains(key),
-            |visited| visited.contains(context.space(), position),
-        )
-    }
-
-    /// The prior of a candidate's fitness: the mean of all candidates so far, or the given one before there are any.
-    fn prior(&self, fitness: f64) -> f64 {
-        if self.count > 0.0 {
-            self.sum / self.count
+        neighbour: &[S],
+        (fitness, prior): (f64, f64),
+    ) {
+        self.predictions += 1;
+        let key = key(neighbour);
+        let row = if let Some(row) = self.candidates.find(key) {
+            row
         } else {
-            fitness
-        }
+            let is_known = visited.map_or_else(
+                || self.known.contains(&key),
+                |visited| visited.contains(context.space(), neighbour),
+            );
+            if is_known {
+                return;
+            }
+            self.candidates.add(Candidate::new(key), neighbour)
+        };
+        let predicted = self.candidates.get_mut(row).meet(fitness, prior);
+        self.enter(row, predicted);
     }
 
     /// Enters a candidate, in place of its last entry.
@@ -207,8 +180,7 @@ impl<S: Real> NeighboursAtOnce<S> {
         if entries.len() >= 2 * MOST {
             // The worst come first.
             let last = entries.len() - MOST - 1;
-            let (_, best_forgotten, _) = entries.select_nth_unstable(last);
-            self.bound = best_forgotten.unfitness;
+            entries.select_nth_unstable(last);
             self.forgot = true;
             for forgotten in entries.drain(..=last) {
                 self.candidates.remove(forgotten.row);
@@ -238,35 +210,16 @@ impl<S: Real> NeighboursAtOnce<S> {
             }
             let candidate = *self.candidates.get(queued.row);
             position.copy_from_slice(self.candidates.position(queued.row, position.len()));
+            self.candidates.remove(queued.row);
             if candidate.part > 0 {
-                self.candidates.remove(queued.row);
                 self.expand_part(context, visited, position, candidate.sum, candidate.part);
-            } else if candidate.count > 1 || !self.is_worse(context, queued, position) {
-                self.candidates.remove(queued.row);
-                if visited.is_none() {
-                    self.evaluated.insert(candidate.key, f64::NAN);
-                }
-                return true;
+                continue;
             }
+            if visited.is_none() {
+                self.known.insert(candidate.key);
+            }
+            return true;
         }
-    }
-
-    /// Looks up what was known of a candidate before it was entered. Enters it once more if it is worse than it seemed, and says so.
-    fn is_worse(&mut self, context: &dyn Context<S>, queued: Queued, position: &[S]) -> bool {
-        self.list(context, position, 0);
-        let (sum, count) = self.evaluated.sum_and_count(&self.keys);
-        let prior = self.prior(sum);
-        let candidate = self.candidates.get_mut(queued.row);
-        if count <= candidate.count {
-            return false;
-        }
-        (candidate.sum, candidate.count) = (sum, count);
-        let predicted = candidate.predicted(prior);
-        let is_worse = !ordered(predicted) < queued.unfitness;
-        if is_worse {
-            self.enter(queued.row, predicted);
-        }
-        is_worse
     }
 
     /// Enters the neighbours of the next hit once more, if candidates were forgotten; `false` when all were.
@@ -310,9 +263,9 @@ impl<S: Real> NeighboursAtOnce<S> {
         let unfitness: Vec<u64> = entries.iter().map(|queued| queued.unfitness).collect();
         Saved::save(&(candidates, unfitness), state);
         write_rows(state, &positions, dimension);
-        Saved::save(&(self.predictions, self.entries, self.recent, self.bound), state);
+        Saved::save(&(self.predictions, self.entries, self.recent), state);
         Saved::save(&(self.sum, self.count, self.forgot, self.again), state);
-        self.evaluated.save(state);
+        Saved::save(&self.known, state);
         write_rows(state, &self.hits, dimension);
         write_rows(state, &self.hit_fitness, 1);
     }
@@ -320,18 +273,17 @@ impl<S: Real> NeighboursAtOnce<S> {
     pub(super) fn restore(from: &mut Reader<'_>) -> Result<Self, Error> {
         let (candidates, unfitness): (Vec<Candidate>, Vec<u64>) = from.read()?;
         let positions: Vec<S> = read_rows(from)?;
-        let (predictions, entries, recent, bound) = from.read()?;
+        let (predictions, entries, recent) = from.read()?;
         let (sum, count, forgot, again) = from.read()?;
         let mut restored = Self {
             predictions,
             entries,
             recent,
-            bound,
             sum,
             count,
             forgot,
             again,
-            evaluated: Evaluated::restore(from)?,
+            known: from.read()?,
             hits: read_rows(from)?,
             hit_fitness: read_rows(from)?,
             ..Self::default()
@@ -449,26 +401,5 @@ mod tests {
         assert_eq!(next, 398, "each once");
         assert!(seen[..MOST - 398].iter().all(|x| !is_next(x)));
         assert!(seen.len() > 2 * MOST);
-    }
-
-    #[test]
-    fn a_candidate_that_a_poor_point_knows_comes_after_one_that_none_does() {
-        let mut all = NeighboursAtOnce::default();
-        for i in 20..60 {
-            expand(&mut all, [f64::from(i); 2], 1.0, false);
-            all.count(1.0);
-        }
-        let known = all.candidates.len();
-        expand(&mut all, [7.0, 9.0], 100.0, false);
-        assert_eq!(
-            all.candidates.len(),
-            known + 1,
-            "only what is left of its neighbours"
-        );
-        expand(&mut all, [3.0, 5.0], 0.5, false);
-        // Those next to the last point, but for those that the poor one knows: (3, 9) and (7, 5).
-        let first: Vec<[f64; 2]> = (0..300).filter_map(|_| propose(&mut all)).collect();
-        assert!(first.iter().all(|x| (x[0] == 3.0) != (x[1] == 5.0)), "{first:?}");
-        assert!(!first.contains(&[3.0, 9.0]) && !first.contains(&[7.0, 5.0]));
     }
 }

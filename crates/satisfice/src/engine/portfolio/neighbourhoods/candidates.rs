@@ -20,12 +20,10 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// A candidate next to a point of this fitness.
-    pub(super) fn next_to(fitness: f64, key: u64) -> Self {
+    /// A candidate of which nothing is known.
+    pub(super) fn new(key: u64) -> Self {
         Self {
             key,
-            sum: fitness,
-            count: 1,
             ..Self::default()
         }
     }
@@ -39,8 +37,10 @@ impl Candidate {
         }
     }
 
-    /// The mean fitness of its neighbours and of one more with that of the prior.
-    pub(super) fn predicted(&self, prior: f64) -> f64 {
+    /// Adds the fitness of an evaluated neighbour; returns the mean of all of these and of one more with that of the prior.
+    pub(super) fn meet(&mut self, fitness: f64, prior: f64) -> f64 {
+        self.sum += fitness;
+        self.count += 1;
         (self.sum + prior) / (f64::from(self.count) + 1.0)
     }
 }
