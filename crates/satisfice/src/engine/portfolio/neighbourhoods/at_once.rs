@@ -18,6 +18,9 @@ const MOST_PREDICTIONS: u64 = 1 << 21;
 /// The queue is made anew after so many entries, which bounds its memory: most of it may be replaced ones by then.
 const MOST_ENTRIES: usize = 8 * MOST;
 
+/// Outside lattices, so many points that miss are known not to be proposed twice.
+const MOST_KNOWN: usize = 1 << 20;
+
 /// An entry of the queue, best first: predicted fitness as ordered bits, then the order of entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 struct Queued {
@@ -86,14 +89,14 @@ impl<S: Real> NeighboursAtOnce<S> {
             self.candidates.remove(row);
         }
         if is_hit {
-            // A hit is entered again after it was forgotten what is next to it, not before.
+            // It is entered again only if a candidate is forgotten from here on.
             if self.again == self.hit_fitness.len() {
                 self.again += 1;
             }
             self.hits.extend_from_slice(position);
             self.hit_fitness.push(fitness);
         }
-        if visited.is_none() {
+        if visited.is_none() && (is_hit || self.known.len() < MOST_KNOWN) {
             self.known.insert(key);
         }
         if is_hit || !self.is_full() {
@@ -138,7 +141,7 @@ impl<S: Real> NeighboursAtOnce<S> {
         neighbour: &[S],
         (fitness, prior): (f64, f64),
     ) {
-        self.predictions += 1;
+        self.predictions = self.predictions.saturating_add(1);
         let key = key(neighbour);
         let row = if let Some(row) = self.candidates.find(key) {
             row
@@ -158,8 +161,9 @@ impl<S: Real> NeighboursAtOnce<S> {
 
     /// Enters a candidate, in place of its last entry.
     fn enter(&mut self, row: u32, predicted: f64) {
-        self.entries += 1;
-        self.recent += 1;
+        // Whatever a damaged state says.
+        self.entries = self.entries.wrapping_add(1);
+        self.recent = self.recent.saturating_add(1);
         self.candidates.get_mut(row).entry = self.entries;
         self.queue.push(Queued {
             unfitness: !ordered(predicted),
@@ -215,7 +219,7 @@ impl<S: Real> NeighboursAtOnce<S> {
                 self.expand_part(context, visited, position, candidate.sum, candidate.part);
                 continue;
             }
-            if visited.is_none() {
+            if visited.is_none() && self.known.len() < MOST_KNOWN {
                 self.known.insert(candidate.key);
             }
             return true;

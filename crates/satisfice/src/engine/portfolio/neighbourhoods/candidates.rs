@@ -40,7 +40,7 @@ impl Candidate {
     /// Adds the fitness of an evaluated neighbour; returns the mean of all of these and of one more with that of the prior.
     pub(super) fn meet(&mut self, fitness: f64, prior: f64) -> f64 {
         self.sum += fitness;
-        self.count += 1;
+        self.count = self.count.saturating_add(1);
         (self.sum + prior) / (f64::from(self.count) + 1.0)
     }
 }
