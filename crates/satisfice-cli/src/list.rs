@@ -11,6 +11,9 @@ use satisfice_bench::table;
 use crate::arguments::ListArguments;
 use crate::output;
 
+/// Choices that take more characters than this are listed after the summary: a column as wide as they are is not readable.
+const WIDEST_CHOICES: usize = 40;
+
 pub(crate) fn list(arguments: &ListArguments, catalogue: &Catalogue) -> anyhow::Result<ExitCode> {
     let mut listing = listing(catalogue);
     if !arguments.names.is_empty() {
@@ -93,6 +96,7 @@ fn parameters(rows: &[Row]) -> String {
 
 /// Name, default, range, summary.
 fn columns(row: &Row) -> [String; 4] {
+    let mut summary = row.summary.clone();
     let (default, range) = match row.values {
         Range::Integer { default, min, max } => (default.to_string(), format!("{min} to {}", greatest(max))),
         Range::Real { default, min, max } => (default.to_string(), format!("{} to {}", real(min), real(max))),
@@ -104,10 +108,18 @@ fn columns(row: &Row) -> [String; 4] {
             default.to_owned(),
             format!("{default} or {} to {}", real(min), real(max)),
         ),
-        Range::Choice { default, of } => (default.to_owned(), of.join(" | ")),
+        Range::Choice { default, of } => {
+            let mut choices = of.join(" | ");
+            if choices.len() > WIDEST_CHOICES {
+                // Writing to a string cannot fail.
+                let _ = write!(summary, " One of: {choices}.");
+                choices = format!("one of {}", of.len());
+            }
+            (default.to_owned(), choices)
+        }
         Range::Text { default } => (format!("{default:?}"), "any text".to_owned()),
     };
-    [row.name.to_owned(), default, range, row.summary.clone()]
+    [row.name.to_owned(), default, range, summary]
 }
 
 /// The greatest integer stands for no bound.
@@ -141,6 +153,12 @@ mod tests {
             Parameter::integer("sample-seed", "seed of the sample", 1, 0, i64::MAX),
             Parameter::real("alpha", "contraction-expansion coefficient", 1.0, 1e-12, 1e9),
             Parameter::choice("attractor", "who attracts", "best", &["best", "latest-hit"]),
+            Parameter::choice(
+                "without",
+                "What to leave out.",
+                "none",
+                &["none", "swarms", "recombination", "quadratic-descents", "model"],
+            ),
             Parameter::text("mesh", "a file", ""),
         ];
         let swarm = Item {
