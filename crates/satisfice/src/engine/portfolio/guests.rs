@@ -11,7 +11,8 @@ mod weights;
 
 use core::ops::Range;
 
-pub(super) use first_hit::{Expectation, Seekers};
+use first_hit::Ground;
+pub(super) use first_hit::{Expectation, Seeker, Seekers};
 use flood_alone::FloodAlone;
 use member::Member;
 use share::Share;
@@ -20,7 +21,6 @@ use weights::Situation;
 
 use super::Omitted;
 use super::credit::{Credit, Trial};
-use super::progress::Ground;
 use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -203,12 +203,13 @@ impl<S: Real> Guests<S> {
             .all(|axis| axis.kind() == AxisKind::Continuous);
         self.continuous = all && is_smooth(context);
         self.components = context.component_count() > 0;
-        self.ground = if self.continuous && self.components {
-            Some(Ground::Components)
-        } else if self.continuous {
+        let is_permutation = space.axes().iter().all(|axis| axis.kind() == AxisKind::Place);
+        self.ground = if self.continuous {
             Some(Ground::Smooth)
+        } else if is_permutation || context.offers_neighbours() {
+            Some(Ground::Neighbours)
         } else {
-            context.offers_neighbours().then_some(Ground::Neighbours)
+            None
         };
         self.in_any_order = context.is_in_any_order();
         self.part = Batch::new(space.dimension());

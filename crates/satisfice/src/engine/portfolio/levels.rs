@@ -1,20 +1,18 @@
-//! Whether F is a step function of continuous axes: whether most of its values were seen before.
+//! Whether F is a step function of continuous axes: whether it has hardly any values.
 
 use crate::batch::Outcome;
 use crate::scalar::Real;
 
-/// Values that are remembered, the first ones.
-const LEVELS: usize = 32;
-/// So many misses tell, and so many for good.
+/// F is a step function while no more values than this were seen, so many misses or more. A model can learn a function of more steps, such as
+/// a number of violated constraints, and where F is only cut off at a level, the values below it lead down.
+const MOST: usize = 4;
 const ENOUGH: u64 = 16;
-const CERTAIN: u64 = 4096;
 
-/// Values of F, and how many came more than once.
+/// The values of F at the misses, up to one more than a step function has.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Levels {
     seen: Vec<u64>,
     misses: u64,
-    repeated: u64,
 }
 
 impl Levels {
@@ -22,21 +20,16 @@ impl Levels {
         let Outcome::Miss(fitness) = outcome else {
             return;
         };
-        if self.misses >= CERTAIN {
-            return;
-        }
+        self.misses = self.misses.saturating_add(1);
         let value = fitness.f64().to_bits();
-        self.misses += 1;
-        if self.seen.contains(&value) {
-            self.repeated += 1;
-        } else if self.seen.len() < LEVELS {
+        if self.seen.len() <= MOST && !self.seen.contains(&value) {
             self.seen.push(value);
         }
     }
 
-    /// Whether most values repeat others, so that F has no slope to descend.
+    /// Whether F has so few values that it has no slope to descend.
     pub(super) fn are_few(&self) -> bool {
-        self.misses >= ENOUGH && 2 * self.repeated > self.misses
+        self.misses >= ENOUGH && self.seen.len() <= MOST
     }
 }
 
@@ -45,14 +38,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_step_function_is_told_from_a_slope() {
-        let (mut steps, mut slope) = (Levels::default(), Levels::default());
+    fn a_step_function_is_told_from_a_slope_and_from_one_that_is_cut_off() {
+        let [mut steps, mut slope, mut cut_off] = [const {
+            Levels {
+                seen: Vec::new(),
+                misses: 0,
+            }
+        }; 3];
         for i in 0..100 {
             steps.count(Outcome::Miss(f64::from(i % 4)));
-            slope.count(Outcome::Miss(f64::from(i)));
+            slope.count(Outcome::Miss(f64::from(i % 5)));
+            cut_off.count(Outcome::Miss(f64::from(100 - i).min(60.0)));
             assert_eq!(steps.are_few(), i >= 15, "{i}");
+            assert!(!slope.are_few(), "{i}");
+            assert_eq!(cut_off.are_few(), (15..44).contains(&i), "{i}");
         }
-        assert!(!slope.are_few());
         // Hits and missing values say nothing.
         let mut levels = Levels::default();
         for _ in 0..100 {

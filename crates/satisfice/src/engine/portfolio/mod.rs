@@ -8,7 +8,6 @@ mod levels;
 mod near_misses;
 mod neighbourhoods;
 mod pace;
-mod progress;
 mod scan;
 mod source;
 mod sources;
@@ -45,7 +44,7 @@ engine_choice! {
         Swarms = "swarms",
         /// Known steps from hit to hit.
         Steps = "steps",
-        /// New steps, learned from differences of hits.
+        /// New steps, learned from differences of hits: `trial steps` in reports.
         Learning = "learning",
         /// Recombinations of two hits, and (1+1)-CMA-ES and niching, which recombine them, too.
         Recombination = "recombination",
@@ -73,7 +72,8 @@ engine_choice! {
 engine_settings! {
     /// A portfolio of sources of candidates, which compete for evaluations by their yield:
     ///
-    /// - restarted descents over neighbours and compass steps, and on continuous axes (1+1)-CMA-ES with recombination of hits;
+    /// - restarted descents over neighbours and compass steps, and where coordinates are real, as those of continuous axes and of permutations
+    ///   are, (1+1)-CMA-ES with recombination of hits;
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where the problem tells the
     ///   [components](crate::Components) of F, evaluations are limited or F takes more than 20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
@@ -87,7 +87,7 @@ engine_settings! {
     ///   complete, too, and where there is no room for probes beside them, none are made. A lattice of at most
     ///   4,096 points is enumerated at once, a larger one once it is half visited, or the search finds no more than that would, or under a limit
     ///   of evaluations once it would no longer fit later;
-    /// - from hits: a flood fill on continuous axes, best first, steps that have led from hit to hit, steps learned from differences of hits,
+    /// - from hits: a flood fill where coordinates are real, best first, steps that have led from hit to hit, steps learned from differences of hits,
     ///   recombinations of two hits, and the neighbours that the problem names, best first by predicted fitness or, where F is cheap and only
     ///   time is limited, by the fitness of the point that they are next to;
     /// - small swarms, each attracted by its own latest hit, after Chen et al. 2012;
@@ -96,24 +96,28 @@ engine_settings! {
     /// - in a slice that follows another: the near misses of that slice, best first, because a problem that moves turns them into
     ///   hits.
     ///
-    /// The next source is drawn by Thompson sampling on what each has yielded lately. Descents, CMA-ES and the model have the larger share until
-    /// something hits. From then on a source that has found nothing takes at most 4 % of the evaluations, and all of these together 18 %, except for
-    /// descents on a lattice and for as long as it has taken less than a quarter of what the whole search needs for a hit; and on continuous axes
-    /// swarms may take a fifth before they hit, for they have to converge first. Where time alone is limited, shares and yields are of time, the
-    /// sources' own thinking included. The model leads for 1,000 evaluations and then competes as the others do. Outside the search for a first hit
-    /// it has the bound of a source without a hit once it is known to predict less than a quarter of the variance of F; until then the others
-    /// together take at most 6 % of the evaluations that do not hit beside it. Where the problem tells the components of F, the model comes first,
-    /// and after 100 evaluations descents have a share of their own, of a fifth of the evaluations that do not hit; while the model itself expects
-    /// no hit of its latest proposals, descents come first. Elsewhere on continuous axes the first 50 evaluations are the model's, or a quarter of
-    /// up to 1,000 planned ones if that is more; then it and descents, by quadratic models and without, look for the first hit together. So do the
-    /// model and descents over neighbours, where the problem names some, with up to half of the evaluations. The more a source has lowered the least
-    /// F, the more it is asked, and the model comes first whenever it takes a hit to be more probable than not. After the first hit, on continuous
-    /// axes, the model competes by how probable it takes a hit of its next proposal to be. These probabilities count as far as the model's word was
-    /// true so far. Not so on continuous axes where most values of F repeat others: of a step function swarms and uniform points know more than
-    /// descents, unless the problem names neighbours, and more than the model until it is known to predict F; sources without a hit together take at
-    /// most 6 % of the evaluations that do not hit there, too. On continuous axes, when no source has found a hit for 400 evaluations an axis and
-    /// 2,000 more, and for 200 a hit, every other choice is niching's until one does. All sources learn the hits of the others. No parameter depends
-    /// on the problem.
+    /// # Which source is next
+    ///
+    /// - **In general** it is drawn by Thompson sampling on what each has yielded lately: hits for each evaluation, or, where time alone is limited,
+    ///   for the time of an evaluation, the source's own thinking included.
+    /// - **Before the first hit** descents and CMA-ES have the larger share. Beside a model one source leads and has nine of ten choices; the model,
+    ///   descents by quadratic models and other descents share the rest. On continuous axes the model leads, and has the first 50 evaluations, or a
+    ///   quarter of up to 1,000 planned ones, alone. Where the problem names neighbours, or all axes are places of a permutation, descents along
+    ///   neighbours and exchanges lead. The model comes first whenever it takes a hit to be more probable than not.
+    /// - **After it** a source without a hit takes at most 4 % of the evaluations, and all of these together 18 %. Excepted are descents on a
+    ///   lattice, any source that has taken less than a quarter of what the search needs for a hit, and on continuous axes swarms, which may
+    ///   take a fifth: they have to converge first. Beside a model, the sources without a hit together take at most 6 % of the evaluations that miss.
+    /// - **The model** leads for 1,000 evaluations and then competes as the others do. On continuous axes, and where nothing else leads down, it
+    ///   competes by the probability of a hit that it gives its next proposal, as far as its word was true so far. Once it is known to predict
+    ///   less than a quarter of the variance of F, it has the bound of a source without a hit.
+    /// - **Components** make the model lead from the first evaluation on; after 100, descents have a share of their own, of a fifth of the evaluations
+    ///   that miss. While the model expects no hit of its latest proposals, descents by components lead.
+    /// - **Step functions**, where the misses on continuous axes have at most four values, are for swarms and uniform points, which know more than
+    ///   descents do, and more than the model until it is known to predict F.
+    /// - **In a drought**, when no source has found a hit for 400 evaluations an axis and 2,000 more, and for 200 a hit, every other choice on
+    ///   continuous axes is niching's until one does.
+    ///
+    /// All sources learn the hits of the others. No parameter depends on the problem.
     ///
     /// ```
     /// use satisfice::{Budget, Completeness, Search, Space, engine::Portfolio, from_fn};

@@ -11,10 +11,10 @@ use super::credit::{Credit, Patches};
 use super::drought::Drought;
 use super::guests::Guests;
 use super::inner_grid::InnerGrid;
+use super::levels::Levels;
 use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::pace::Pace;
-use super::progress::Progress;
 use super::scan::Scan;
 use super::source::{ARMS, PLACES, Source, Tag, Tally, arm_of};
 use super::swarms::Swarms;
@@ -68,8 +68,8 @@ pub(super) struct Sources<S> {
     even: EvenPoints,
     /// Instead of uniform points, where F is a step function.
     grid: InnerGrid,
-    /// Who brings the search closer to a first hit.
-    progress: Progress,
+    /// Values of F, where an axis is continuous.
+    levels: Levels,
     /// Evaluations that were planned when the slice began, if that was known.
     planned: Option<u64>,
     guests: Guests<S>,
@@ -110,7 +110,7 @@ impl<S: Real> Sources<S> {
             drought: Drought::default(),
             even: EvenPoints::default(),
             grid: InnerGrid::default(),
-            progress: Progress::default(),
+            levels: Levels::default(),
             planned: None,
             guests: Guests::new(settings.without),
             hits: Vec::new(),
@@ -182,7 +182,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.drought = Drought::default();
         self.even = EvenPoints::default();
         self.grid = InnerGrid::default();
-        self.progress = Progress::default();
+        self.levels = Levels::default();
         self.chosen = None;
         // The tags of the last batch name sources of the slice before.
         self.tags.clear();
@@ -295,9 +295,7 @@ impl<S: Real> Engine<S> for Sources<S> {
             }
         }
         if self.visited.is_none() {
-            outcomes
-                .iter()
-                .for_each(|outcome| self.progress.levels.count(*outcome));
+            outcomes.iter().for_each(|outcome| self.levels.count(*outcome));
         }
         for (&(source, index), outcome) in self.tags.iter().zip(outcomes) {
             if *outcome == Outcome::NotEvaluated {
@@ -307,10 +305,6 @@ impl<S: Real> Engine<S> for Sources<S> {
             let place = self.place((source, index));
             let cost = self.pace.cost(place);
             self.tally.count(place, *outcome);
-            if self.whole.is_barren() {
-                let seeker = self.guests.seeker((source, index));
-                self.progress.count(seeker, *outcome, context.threshold());
-            }
             self.whole.count(hit, cost);
             self.drought.count(hit);
             self.patches.count(self.role((source, index)), hit, cost);
@@ -340,7 +334,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.tags.clone(), self.trials.clone()).save(state);
         self.awaited.save(state);
         self.position.save(state);
-        (self.whole, self.patches, self.progress.clone()).save(state);
+        (self.whole, self.patches, self.levels.clone()).save(state);
         self.drought.save(state);
         (self.even.clone(), self.grid.clone()).save(state);
         (self.chosen, self.planned, self.pace.is_timed()).save(state);
@@ -364,7 +358,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.tags, self.trials) = from.read()?;
         self.awaited = from.read()?;
         self.position = from.read()?;
-        (self.whole, self.patches, self.progress) = from.read()?;
+        (self.whole, self.patches, self.levels) = from.read()?;
         self.drought = from.read()?;
         (self.even, self.grid) = from.read()?;
         let timed;

@@ -3,20 +3,37 @@
 use super::{GuestKind, Guests, MODELLED, Member};
 use crate::context::Context;
 use crate::engine::portfolio::credit::Credit;
-use crate::engine::portfolio::progress::{Ground, Seeker};
-use crate::engine::portfolio::source::{Source, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// Share of the planned evaluations in which the model and descents look for the first hit, unless F is known to be no more than smooth:
-/// then they go on until there is one.
-const FIRST_SHARE: f64 = 0.5;
 /// Evaluations of a smooth F that are the model's before descents take part in the search for the first hit: so many, or this share of the
 /// planned ones if that is more.
 const MODEL_FIRST: u64 = 50;
 const MODEL_FIRST_SHARE: f64 = 0.25;
 /// The model comes before descents if it takes a hit to be more probable than this, as far as its word can be trusted.
 const CREDIBLE: f64 = 0.5;
+/// Share of the choices of the one that leads the search; the others have equal shares of the rest.
+const LEAD: f64 = 0.9;
+
+/// What leads down to a first hit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(super) enum Ground {
+    /// F, which may be smooth along continuous axes.
+    Smooth,
+    /// Neighbours that the problem names, or exchanges in a permutation: descents go along them.
+    Neighbours,
+}
+
+/// A source that looks for the first hit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::engine::portfolio) enum Seeker {
+    /// The model of F.
+    Model,
+    /// Descents by quadratic models.
+    Quadratic,
+    /// Descents without a model.
+    Direct,
+}
 
 /// What a model expects of its next proposal.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +47,8 @@ pub(in crate::engine::portfolio) struct Expectation {
 /// Who looks for the first hit.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::engine::portfolio) struct Seekers {
-    pub(in crate::engine::portfolio) ground: Ground,
-    /// Evaluations that are the model's, where F is smooth.
+    leader: Seeker,
+    /// Evaluations that are the model's, if it leads: none where the problem tells the components of F.
     alone: u64,
     pub(in crate::engine::portfolio) model: usize,
     /// Descents by quadratic models; the model, where there are none.
@@ -48,23 +65,20 @@ impl<S: Real> Guests<S> {
     }
 
     /// Who takes part in the search for the first hit while a model is at work. `None` where nothing leads down, after the first hit, and
-    /// after its share of the evaluations.
+    /// once the model leads no more.
     pub(in crate::engine::portfolio) fn seekers(
         &self,
         all: &Credit,
         planned: Option<u64>,
     ) -> Option<Seekers> {
-        let ground = match self.ground? {
-            Ground::Components if self.promises_little() => Ground::Unpromising,
-            ground => ground,
+        let ground = self.ground?;
+        let leader = match ground {
+            Ground::Smooth if self.components && self.promises_little() => Seeker::Quadratic,
+            Ground::Smooth => Seeker::Model,
+            Ground::Neighbours => Seeker::Direct,
         };
-        let share = if ground == Ground::Smooth {
-            1.0
-        } else {
-            FIRST_SHARE
-        };
-        let most = share * planned.map_or(MODELLED, |planned| planned.min(MODELLED)) as f64;
-        if !all.is_barren() || all.evaluations() as f64 >= most {
+        let most = planned.map_or(MODELLED, |planned| planned.min(MODELLED));
+        if !all.is_barren() || all.evaluations() >= most {
             return None;
         }
         let find = |kind| {
@@ -78,22 +92,27 @@ impl<S: Real> Guests<S> {
             || ground == Ground::Neighbours
             || GuestKind::Quadratic.is_left_out(self.without);
         Some(Seekers {
-            ground,
-            alone: alone(most),
+            leader,
+            alone: if self.components { 0 } else { alone(most) },
             model,
             quadratic: quadratic.or(takes_over.then_some(model))?,
         })
     }
 
     /// What the model expects of its next proposal, where that decides whether it is next: in the search for the first hit, and after it
-    /// on a smooth F or where nothing leads down.
+    /// on a smooth F without components or where nothing leads down.
     pub(in crate::engine::portfolio) fn expectation(
         &mut self,
         seekers: Option<Seekers>,
         context: &dyn Context<S>,
         rng: &mut SearchRng,
     ) -> Option<Expectation> {
-        if seekers.is_none() && !matches!(self.ground, Some(Ground::Smooth) | None) {
+        let decides = match self.ground {
+            Some(Ground::Smooth) => !self.components,
+            Some(Ground::Neighbours) => false,
+            None => true,
+        };
+        if seekers.is_none() && !decides {
             return None;
         }
         let mut guests = self.guests.iter();
@@ -107,31 +126,27 @@ impl<S: Real> Guests<S> {
         let hit = model.expectation(context, rng)?;
         Some(Expectation { index, hit })
     }
-
-    /// What a source is among those that look for the first hit.
-    pub(in crate::engine::portfolio) fn seeker(&self, (source, index): Tag) -> Option<Seeker> {
-        match source {
-            Source::Descent => Some(Seeker::Direct),
-            Source::Guest => match self.guests[index].kind {
-                GuestKind::Model => Some(Seeker::Model),
-                GuestKind::Quadratic => Some(Seeker::Quadratic),
-                GuestKind::Cma | GuestKind::Niching | GuestKind::Flood | GuestKind::Regions => None,
-            },
-            _ => None,
-        }
-    }
 }
 
 impl Seekers {
-    /// The one whose turn it is for a reason of its own, after so many evaluations.
-    pub(in crate::engine::portfolio) fn first(
+    /// Whose turn it is after so many evaluations.
+    pub(in crate::engine::portfolio) fn draw(
         self,
         evaluations: u64,
         expectation: Option<Expectation>,
-    ) -> Option<Seeker> {
-        let is_early = self.ground == Ground::Smooth && evaluations < self.alone;
-        let is_sure = expectation.is_some_and(|expectation| expectation.hit > CREDIBLE);
-        (is_early || is_sure).then_some(Seeker::Model)
+        rng: &mut SearchRng,
+    ) -> Seeker {
+        let is_early = self.leader == Seeker::Model && evaluations < self.alone;
+        if is_early || expectation.is_some_and(|expectation| expectation.hit > CREDIBLE) {
+            return Seeker::Model;
+        }
+        if rng.uniform() < LEAD {
+            return self.leader;
+        }
+        let mut others = [Seeker::Model, Seeker::Quadratic, Seeker::Direct]
+            .into_iter()
+            .filter(|&seeker| seeker != self.leader);
+        others.nth(rng.below(2)).unwrap_or(self.leader)
     }
 }
 
@@ -141,41 +156,51 @@ impl Seekers {
     clippy::cast_sign_loss,
     reason = "a thousand at most"
 )]
-fn alone(most: f64) -> u64 {
-    MODEL_FIRST.max((MODEL_FIRST_SHARE * most) as u64)
+fn alone(most: u64) -> u64 {
+    MODEL_FIRST.max((MODEL_FIRST_SHARE * most as f64) as u64)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_model_comes_first_where_it_expects_a_hit_and_early_on_a_smooth_function() {
-        let first = |ground, evaluations, hit: Option<f64>| {
-            let seekers = Seekers {
-                ground,
-                alone: 50,
-                model: 3,
-                quadratic: 4,
-            };
-            seekers.first(evaluations, hit.map(|hit| Expectation { index: 3, hit }))
+    /// How often each is drawn, of 3,000 times.
+    fn drawn(leader: Seeker, evaluations: u64, hit: Option<f64>) -> [u32; 3] {
+        let seekers = Seekers {
+            leader,
+            alone: 50,
+            model: 3,
+            quadratic: 4,
         };
-        assert_eq!(first(Ground::Smooth, 49, None), Some(Seeker::Model));
-        assert_eq!(first(Ground::Smooth, 50, None), None);
-        assert_eq!(first(Ground::Neighbours, 10, Some(0.5)), None);
-        for ground in [
-            Ground::Smooth,
-            Ground::Components,
-            Ground::Unpromising,
-            Ground::Neighbours,
-        ] {
-            assert_eq!(first(ground, 60, Some(0.51)), Some(Seeker::Model));
-            assert_eq!(first(ground, 60, Some(0.1)), None);
+        let expectation = hit.map(|hit| Expectation { index: 3, hit });
+        let (mut rng, mut counts) = (SearchRng::new(3), [0; 3]);
+        for _ in 0..3000 {
+            counts[seekers.draw(evaluations, expectation, &mut rng) as usize] += 1;
+        }
+        counts
+    }
+
+    #[test]
+    fn the_model_comes_first_where_it_expects_a_hit_and_early_where_it_leads() {
+        assert_eq!(drawn(Seeker::Model, 49, None), [3000, 0, 0]);
+        for leader in [Seeker::Model, Seeker::Quadratic, Seeker::Direct] {
+            assert_eq!(drawn(leader, 60, Some(0.51)), [3000, 0, 0]);
+        }
+    }
+
+    #[test]
+    fn the_leader_has_most_choices_and_the_others_share_the_rest() {
+        for (leader, evaluations) in [(Seeker::Model, 50), (Seeker::Quadratic, 0), (Seeker::Direct, 0)] {
+            let counts = drawn(leader, evaluations, Some(0.5));
+            for (seeker, count) in counts.into_iter().enumerate() {
+                let expected = if seeker == leader as usize { 2700 } else { 150 };
+                assert!(count.abs_diff(expected) < 60, "{leader:?} {counts:?}");
+            }
         }
     }
 
     #[test]
     fn the_model_has_fifty_evaluations_or_a_quarter_alone() {
-        assert_eq!([20.0, 200.0, 400.0, 1000.0].map(alone), [50, 50, 100, 250]);
+        assert_eq!([20, 200, 400, 1000].map(alone), [50, 50, 100, 250]);
     }
 }

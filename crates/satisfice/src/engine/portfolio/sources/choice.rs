@@ -4,8 +4,7 @@ use super::Sources;
 use crate::context::Context;
 use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::{Trial, draw};
-use crate::engine::portfolio::guests::{Expectation, Seekers};
-use crate::engine::portfolio::progress::Seeker;
+use crate::engine::portfolio::guests::{Expectation, Seeker, Seekers};
 use crate::engine::portfolio::source::{CROSS, DESCENT, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -17,8 +16,6 @@ const LONGEST_TURN_WHERE_QUICK: u64 = 32;
 /// Weights of uniform points and of swarms where F is a step function, which has no slope to descend.
 const BLIND: f64 = 4.0;
 const BLIND_SWARMS: f64 = 20.0;
-/// The weight of swarms if such a problem names neighbours: then descents have something to descend.
-const BLIND_SWARMS_BESIDE_NEIGHBOURS: f64 = 3.0;
 /// The weight of swarms that have not converged yet.
 const UNCONVERGED: f64 = 4.0;
 /// Share of the choices that is niching's while no source finds anything.
@@ -62,7 +59,7 @@ impl<S: Real> Sources<S> {
 
     /// Whether F may have slopes: it is not known to be a step function.
     pub(super) fn has_slopes(&self) -> bool {
-        !self.progress.levels.are_few()
+        !self.levels.are_few()
     }
 
     /// Draws a source, with the index of the step for [`Source::Step`].
@@ -72,14 +69,9 @@ impl<S: Real> Sources<S> {
         let modelled = self.guests.model_leads(&self.whole);
         let steps = !self.has_slopes();
         let is_lattice = self.visited.is_some();
-        let [uniform, swarm] = match (steps, self.has_neighbours) {
-            (false, _) => [0.3, 0.5],
-            (true, false) => [BLIND, BLIND_SWARMS],
-            (true, true) => [BLIND, BLIND_SWARMS_BESIDE_NEIGHBOURS],
-        };
+        let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
         if let Some(seekers) = seekers {
-            let first = seekers.first(self.whole.evaluations(), expectation);
-            return match first.unwrap_or_else(|| self.progress.choose(seekers.ground, rng)) {
+            return match seekers.draw(self.whole.evaluations(), expectation, rng) {
                 Seeker::Direct if uses(Omitted::Descents) => (Source::Descent, 0),
                 Seeker::Model | Seeker::Direct => (Source::Guest, seekers.model),
                 Seeker::Quadratic => (Source::Guest, seekers.quadratic),
