@@ -110,6 +110,21 @@ fn a_page_is_written() {
 }
 
 #[test]
+fn a_threshold_may_be_longer_than_single_precision_can_say() {
+    let folder = folder();
+    for (pairs, hits) in [("vertex-vertex", 16), ("vertex-triangle", 16), ("edge-edge", 25)] {
+        for threshold in ["1e39", "1e300"] {
+            let fall = format!(
+                "collide --from tet.obj tet.obj --to tet.obj tet.obj --threshold {threshold} --pairs {pairs}"
+            );
+            assert_eq!(report(&folder, &fall)["hits"], json!(hits), "{fall}");
+            let first = report(&folder, &format!("{fall} --first"));
+            assert_eq!(first["completeness"], json!("Proved"), "{fall} --first");
+        }
+    }
+}
+
+#[test]
 fn a_point_falls_through_a_triangle() {
     let folder = folder();
     let report = report(

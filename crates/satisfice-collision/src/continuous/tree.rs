@@ -56,6 +56,10 @@ pub(super) struct MovingTree {
 /// A kept order is given up once the boxes around its groups have grown by this factor.
 const LOOSE: f64 = 1.5;
 
+/// By this margin a box reaches all others of its frame, whose coordinates are at most 1/2. An empty box stays apart only if it grows by a
+/// finite number.
+const EVERYWHERE: f32 = 4.0;
+
 /// No rigid body: features of several bodies, or of one that collides with itself.
 pub(super) const MIXED: u32 = u32::MAX;
 
@@ -115,12 +119,13 @@ impl BoxFrame {
         middle
     }
 
-    /// A distance in the frame, rounded up.
+    /// A distance in the frame, rounded up, or [`EVERYWHERE`] if it is longer.
     pub(super) fn margin(&self, delta: f64) -> f32 {
         if delta == 0.0 {
             return 0.0;
         }
-        ((0.5 * delta * self.scale * (1.0 + 1e-12)) as f32).next_up()
+        let margin = ((0.5 * delta * self.scale * (1.0 + 1e-12)) as f32).next_up();
+        margin.min(EVERYWHERE)
     }
 }
 
@@ -429,8 +434,30 @@ fn common(bodies: &[u32]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::super::step::{FeatureList, Step};
-    use crate::distance::Point;
+    use super::*;
     use crate::generate;
+
+    #[test]
+    fn a_margin_is_finite_however_long_delta_is() {
+        let points: [Point; 2] = [[0.0; 3], [1e-200, 0.0, 0.0]];
+        let frame = BoxFrame::around(&points, &points);
+        assert!(frame.margin(0.0) == 0.0 && frame.margin(1e-200) < 1.01);
+        for delta in [1e-160, 1.0, f64::MAX] {
+            let margin = frame.margin(delta);
+            assert_eq!(margin, EVERYWHERE);
+            let far = MovingBox {
+                min: [[0.5; 3]; 2],
+                max: [[0.5; 3]; 2],
+            };
+            let near = MovingBox {
+                min: [[-0.5; 3]; 2],
+                max: [[-0.5; 3]; 2],
+            };
+            assert!(near.meeting(&far).is_none());
+            assert!(near.meeting(&far.grown(margin)).is_some());
+            assert!(near.meeting(&MovingBox::EMPTY.grown(margin)).is_none());
+        }
+    }
 
     #[test]
     fn an_order_is_kept_while_it_fits() {
