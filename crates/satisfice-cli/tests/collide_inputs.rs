@@ -144,6 +144,30 @@ fn a_mesh_may_come_from_standard_input() {
 }
 
 #[test]
+fn a_concave_face_does_not_reach_beyond_its_corners() {
+    let folder = tempfile::tempdir().unwrap();
+    let corners = "v 0 0 0\nv 2 0 0\nv 0.5 0.5 0\nv 0 2 0\n";
+    for (name, text) in [
+        ("notched.obj", format!("{corners}f 2 3 4 1\n")),
+        (
+            "beside.obj",
+            "v 1.4 0.55 0\nv 1.4 0.55 1\nv 1.5 0.4 1\nf 1 2 3\n".to_owned(),
+        ),
+        (
+            "through.obj",
+            "v 0.4 0.4 -1\nv 0.4 0.4 1\nv 0.3 0.4 1\nf 1 2 3\n".to_owned(),
+        ),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    for (other, are_any) in [("beside.obj", false), ("through.obj", true)] {
+        let arguments = format!("collide notched.obj {other} --threshold 1e-9 --pairs triangle-triangle");
+        let report = json_of(folder.path(), &arguments);
+        assert_eq!(report["hits"].as_u64().unwrap() > 0, are_any, "{report}");
+    }
+}
+
+#[test]
 fn bodies_can_be_placed() {
     let folder = folder();
     let distance = |at: &str| {

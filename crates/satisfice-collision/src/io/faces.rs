@@ -1,13 +1,19 @@
 //! Faces of a file cut into triangles, and the check of their vertex numbers.
 
+use super::ears::triangles_of;
+use crate::Mesh;
 use crate::error::{Element, Error};
+use crate::mesh::Point;
 
-/// Faces collected from a file: polygons become fans about their first corner, faces of two corners become lines, and
-/// those of one corner add nothing to their vertex.
+/// Faces collected from a file: polygons are cut into triangles, faces of two corners become lines, and those of one corner add
+/// nothing to their vertex.
 #[derive(Default)]
 pub(super) struct Faces {
     pub(super) lines: Vec<[u32; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Of each polygon of more than three corners the first of its triangles, and how many these are. Until all vertices are known they
+    /// are a fan about its first corner, from which its corners can be told.
+    polygons: Vec<[usize; 2]>,
 }
 
 impl Faces {
@@ -16,8 +22,30 @@ impl Faces {
             [] | [_] => {}
             [a, b] => self.lines.push([a, b]),
             [a, b, c] => self.triangles.push([a, b, c]),
-            [a, ref rest @ ..] => self.triangles.extend(rest.windows(2).map(|w| [a, w[0], w[1]])),
+            [a, ref rest @ ..] => {
+                self.polygons.push([self.triangles.len(), rest.len() - 1]);
+                self.triangles.extend(rest.windows(2).map(|w| [a, w[0], w[1]]));
+            }
         }
+    }
+
+    /// The mesh of these faces and vertices, polygons cut as [`triangles_of`] does.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::new`].
+    pub(super) fn mesh(mut self, vertices: Vec<Point>) -> Result<Mesh, Error> {
+        let mut corners = Vec::new();
+        for [first, count] in self.polygons {
+            let fan = &mut self.triangles[first..first + count];
+            corners.clear();
+            corners.extend_from_slice(&fan[0][..2]);
+            corners.extend(fan.iter().map(|triangle| triangle[2]));
+            let is_known = corners.iter().all(|&v| (v as usize) < vertices.len());
+            if is_known && let Some(ears) = triangles_of(&corners, &vertices) {
+                fan.copy_from_slice(&ears);
+            }
+        }
+        Mesh::new(vertices, self.lines, self.triangles)
     }
 }
 

@@ -3,8 +3,12 @@
 //! [`read`] takes one body, [`read_scene`] all of a scene with names and placements, [`AnimatedScene`] plays animations;
 //! [`Format::ALL`] lists the formats.
 //! Files may be compressed by gzip. Coordinates are `f64`. A new format is a file here and a line in `registry.rs`.
+//!
+//! Faces of more than three corners become triangles: a fan about the first corner where this covers the polygon, as for every convex one, or else
+//! triangles that do, seen along the normal of the face. A face that crosses itself, or has more than 16,384 corners, stays a fan.
 
 mod animated;
+mod ears;
 mod faces;
 mod format;
 mod gltf;

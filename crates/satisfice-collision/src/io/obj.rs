@@ -14,7 +14,7 @@ const NAME: &str = "OBJ";
 pub(super) const FORMAT: Format = Format {
     name: "obj",
     extensions: &["obj"],
-    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into fans about their first corner, and faces of two corners are lines",
+    summary: "Wavefront OBJ: vertices, points, lines and faces; polygons are cut into triangles, and faces of two corners are lines",
     reader: Reader::Mesh(parse),
 };
 
@@ -201,7 +201,7 @@ impl Contents {
             checked_index(r.element, r.index, r.vertex, self.vertices.len())
                 .map_err(|error| error.at_line(r.line))?;
         }
-        Mesh::new(self.vertices, self.faces.lines, self.faces.triangles)
+        self.faces.mesh(self.vertices)
     }
 }
 

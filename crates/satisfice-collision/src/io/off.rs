@@ -11,7 +11,7 @@ const NAME: &str = "OFF";
 pub(super) const FORMAT: Format = Format {
     name: "off",
     extensions: &["off"],
-    summary: "Object file format, ASCII: vertices and faces; normals, texture coordinates and colours are passed over",
+    summary: "Object file format, ASCII: vertices and faces; polygons are cut into triangles, and normals, texture coordinates and colours are passed over",
     reader: Reader::Mesh(parse),
 };
 
@@ -26,7 +26,7 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
         faces: Faces::default(),
     };
     match file.read() {
-        Ok(()) => Mesh::new(file.vertices, file.faces.lines, file.faces.triangles),
+        Ok(()) => file.faces.mesh(file.vertices),
         Err(error) => Err(error.at_line(file.lines.number().max(1))),
     }
 }

@@ -34,7 +34,7 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
     for corners in number.chunks_exact(3) {
         faces.add(&[corners[0] as u32, corners[1] as u32, corners[2] as u32]);
     }
-    Mesh::new(vertices, faces.lines, faces.triangles)
+    faces.mesh(vertices)
 }
 
 /// A file is binary if it has exactly the length that a binary header announces. Otherwise it is ASCII if it begins

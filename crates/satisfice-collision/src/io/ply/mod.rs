@@ -25,7 +25,7 @@ const ENDS: [&str; 2] = ["vertex1", "vertex2"];
 pub(super) const FORMAT: Format = Format {
     name: "ply",
     extensions: &["ply"],
-    summary: "Stanford polygons, ASCII or binary in either byte order: elements vertex, face and edge",
+    summary: "Stanford polygons, ASCII or binary in either byte order: elements vertex, face and edge; polygons are cut into triangles",
     reader: Reader::Mesh(parse),
 };
 
@@ -183,7 +183,7 @@ fn read(elements: &[ElementPlan<'_>], numbers: impl Numbers) -> Result<Mesh, Err
         body.element(plan)?;
     }
     body.numbers.finish()?;
-    Mesh::new(body.vertices, body.faces.lines, body.faces.triangles)
+    body.faces.mesh(body.vertices)
 }
 
 struct MeshContents<N> {

@@ -7,6 +7,7 @@ mod list;
 mod obj;
 mod off;
 mod ply;
+mod polygons;
 mod stl;
 mod streams;
 
