@@ -125,6 +125,37 @@ fn a_threshold_may_be_longer_than_single_precision_can_say() {
 }
 
 #[test]
+fn the_time_is_over_within_a_decision_that_takes_long() {
+    let folder = folder();
+    for (name, vertices) in [
+        (
+            "a0.obj",
+            "v -3e300 1e-300 -1e-300\nv 0 3e-300 3e-300\nv 0 0 1e-300\n",
+        ),
+        (
+            "a1.obj",
+            "v 1.5e300 0 0\nv -3e300 1e-300 -1e300\nv 3e-300 0 3e300\n",
+        ),
+        (
+            "b0.obj",
+            "v 0 1e300 1e300\nv 1e300 3e-300 -1.5e300\nv 1e-300 1.5e300 0\n",
+        ),
+        (
+            "b1.obj",
+            "v 1e300 -1e-300 0\nv 0 0 -1e300\nv 3e300 1.5e-300 -1e-300\n",
+        ),
+    ] {
+        fs::write(folder.path().join(name), format!("{vertices}f 1 2 3\n")).unwrap();
+    }
+    let done = satisfice_in(
+        folder.path(),
+        "collide --from a0.obj b0.obj --to a1.obj b1.obj --threshold 1 --pairs edge-edge --time 5ms --json -",
+    );
+    let report: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert_ne!(report["completeness"], json!("Proved"), "{}", done.stderr);
+}
+
+#[test]
 fn a_point_falls_through_a_triangle() {
     let folder = folder();
     let report = report(

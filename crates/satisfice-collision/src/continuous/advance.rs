@@ -6,6 +6,7 @@
 //! proof of it is tried just beyond; touching is also proved by the root of a volume. What neither side proves
 //! within [`STEPS`] is left to integers.
 
+use super::deadline::Deadline;
 use super::hull::Hull;
 use super::swept::Swept;
 use crate::Error;
@@ -31,22 +32,25 @@ pub(super) struct Reached {
 }
 
 /// What is asked.
-#[derive(Debug, Clone, Copy)]
-pub struct Goal {
+#[derive(Clone, Copy)]
+pub struct Goal<'s> {
     /// Only times from this one on, before which there is no hit.
     pub(super) from: f64,
     /// Only times up to this one.
     pub(super) until: f64,
     /// How close the two bounds of the time have to be; infinite if only the decision counts.
     pub(super) tolerance: f64,
+    /// How long a decision may take.
+    pub(super) deadline: Deadline<'s>,
 }
 
-impl Goal {
+impl Goal<'_> {
     /// Only whether there is a hit.
     pub(super) const DECISION: Self = Self {
         from: 0.0,
         until: 1.0,
         tolerance: f64::INFINITY,
+        deadline: Deadline::NONE,
     };
 
     /// A tolerance that a user asks for.
@@ -62,7 +66,7 @@ impl Goal {
     }
 }
 
-pub(super) fn advance<H: Hull<K>, const K: usize>(swept: &Swept<K>, goal: Goal) -> Reached {
+pub(super) fn advance<H: Hull<K>, const K: usize>(swept: &Swept<K>, goal: Goal<'_>) -> Reached {
     let mut reached = Reached::nothing(goal);
     let mut nearest = H::nearest(&swept.at(goal.from));
     if swept.is_near(&nearest) {
@@ -131,7 +135,7 @@ pub(super) fn free_until<H: Hull<K>, const K: usize>(swept: &Swept<K>, from: f64
 
 impl Reached {
     /// Nothing is known.
-    pub(super) fn nothing(goal: Goal) -> Self {
+    pub(super) fn nothing(goal: Goal<'_>) -> Self {
         Self {
             free: goal.from,
             hit: None,
@@ -147,7 +151,7 @@ impl Reached {
         }
     }
 
-    fn is_close_enough(&self, goal: Goal) -> bool {
+    fn is_close_enough(&self, goal: Goal<'_>) -> bool {
         let is_after_start = self.free > 0.0 || goal.tolerance.is_infinite();
         self.hit
             .is_some_and(|hit| hit - self.free <= goal.tolerance && is_after_start)

@@ -6,24 +6,25 @@
 use dashu_int::IBig;
 use dashu_int::ops::{Abs, Gcd};
 
+use super::deadline::{CutShort, Deadline};
 use super::form::{Form, sign};
 
 /// A form with the same roots inside the step, each once.
-pub(super) fn squarefree(form: &Form) -> Form {
+pub(super) fn squarefree(form: &Form, deadline: Deadline<'_>) -> Result<Form, CutShort> {
     let polynomial = trimmed(form.coefficients());
-    let repeated = gcd(polynomial.clone(), derivative(&polynomial));
-    Form::new(quotient(polynomial, &repeated))
+    let repeated = gcd(polynomial.clone(), derivative(&polynomial), deadline)?;
+    Ok(Form::new(quotient(polynomial, &repeated)))
 }
 
 /// The roots of `form` inside the step that are no roots of `other`. `form` is square-free.
-pub(super) fn without_roots_of(form: &Form, other: &Form) -> Form {
+pub(super) fn without_roots_of(form: &Form, other: &Form, deadline: Deadline<'_>) -> Result<Form, CutShort> {
     let polynomial = trimmed(form.coefficients());
-    let common = gcd(polynomial.clone(), trimmed(other.coefficients()));
-    Form::new(quotient(polynomial, &common))
+    let common = gcd(polynomial.clone(), trimmed(other.coefficients()), deadline)?;
+    Ok(Form::new(quotient(polynomial, &common)))
 }
 
 /// A form whose roots with `0 <= t <= 1` are the common ones of all forms; `None` if all are 0 everywhere.
-pub(super) fn common(forms: &[Form]) -> Option<Form> {
+pub(super) fn common(forms: &[Form], deadline: Deadline<'_>) -> Result<Option<Form>, CutShort> {
     let forms = || forms.iter().filter(|form| !form.is_zero());
     let at_the_end = forms()
         .map(|form| {
@@ -33,17 +34,21 @@ pub(super) fn common(forms: &[Form]) -> Option<Form> {
                 .take_while(|c| c.is_zero())
                 .count()
         })
-        .min()?;
-    let mut common = forms()
-        .map(|form| primitive(strip(form.coefficients().to_vec())))
-        .reduce(gcd)?;
+        .min();
+    let mut polynomials = forms().map(|form| primitive(strip(form.coefficients().to_vec())));
+    let (Some(at_the_end), Some(mut common)) = (at_the_end, polynomials.next()) else {
+        return Ok(None);
+    };
+    for polynomial in polynomials {
+        common = gcd(common, polynomial, deadline)?;
+    }
     common.resize(common.len() + at_the_end, IBig::ZERO);
-    Some(Form::new(common))
+    Ok(Some(Form::new(common)))
 }
 
 /// The sign of `form` at the root of `equation` inside the step, of which there is exactly one: the number of roots at which it is above
 /// 0, less those at which it is below, by the signs of a remainder sequence (Tarski; Basu, Pollack and Roy 2006, theorem 2.61).
-pub(super) fn sign_at_root(equation: &Form, form: &Form) -> i32 {
+pub(super) fn sign_at_root(equation: &Form, form: &Form, deadline: Deadline<'_>) -> Result<i32, CutShort> {
     let polynomial = trimmed(equation.coefficients());
     let product = &Form::new(derivative(&polynomial)) * form;
     let mut previous = polynomial.clone();
@@ -51,6 +56,7 @@ pub(super) fn sign_at_root(equation: &Form, form: &Form) -> i32 {
     let ends = |polynomial: &[IBig]| [sign(&polynomial[0]), sign(&polynomial[polynomial.len() - 1])];
     let (mut last, mut difference) = (ends(&previous), 0);
     while !next.is_empty() {
+        deadline.check()?;
         let now = ends(&next);
         // a sign of 0 at the start is passed over
         let now = [if now[0] == 0 { last[0] } else { now[0] }, now[1]];
@@ -60,7 +66,7 @@ pub(super) fn sign_at_root(equation: &Form, form: &Form) -> i32 {
         previous = next;
         next = rest.into_iter().map(|c| -c).collect();
     }
-    difference
+    Ok(difference)
 }
 
 fn derivative(polynomial: &[IBig]) -> Vec<IBig> {
@@ -104,16 +110,17 @@ fn primitive(mut coefficients: Vec<IBig>) -> Vec<IBig> {
 
 /// The greatest common divisor, by Euclid's algorithm with primitive pseudo-remainders. Neither argument has zero leading
 /// coefficients; the empty one is the zero polynomial.
-fn gcd(mut a: Vec<IBig>, mut b: Vec<IBig>) -> Vec<IBig> {
+fn gcd(mut a: Vec<IBig>, mut b: Vec<IBig>, deadline: Deadline<'_>) -> Result<Vec<IBig>, CutShort> {
     if a.len() < b.len() {
         std::mem::swap(&mut a, &mut b);
     }
     while !b.is_empty() {
+        deadline.check()?;
         let rest = primitive(pseudo_remainder(a, &b));
         a = b;
         b = rest;
     }
-    primitive(a)
+    Ok(primitive(a))
 }
 
 /// A positive multiple of the remainder of `a / b`.
@@ -159,10 +166,26 @@ fn quotient(mut a: Vec<IBig>, b: &[IBig]) -> Vec<IBig> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{Deadline, Form, IBig};
 
     fn form(coefficients: &[i32]) -> Form {
         Form::new(coefficients.iter().map(|&c| IBig::from(c)).collect())
+    }
+
+    fn squarefree(form: &Form) -> Form {
+        super::squarefree(form, Deadline::NONE).expect("no deadline")
+    }
+
+    fn without_roots_of(form: &Form, other: &Form) -> Form {
+        super::without_roots_of(form, other, Deadline::NONE).expect("no deadline")
+    }
+
+    fn common(forms: &[Form]) -> Option<Form> {
+        super::common(forms, Deadline::NONE).expect("no deadline")
+    }
+
+    fn sign_at_root(equation: &Form, form: &Form) -> i32 {
+        super::sign_at_root(equation, form, Deadline::NONE).expect("no deadline")
     }
 
     /// Up to a constant.

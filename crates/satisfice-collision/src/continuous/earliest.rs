@@ -6,10 +6,12 @@
 //! bound is not below the upper one, the answer is proved. So that there is an upper bound early, a pair that is proved free for half as long as
 //! all before it is asked about at once.
 
+use std::cell::RefCell;
 use std::collections::BinaryHeap;
 
 use super::Separation;
 use super::advance::Goal;
+use super::deadline::{CutShort, Deadline};
 use super::looks::Looks;
 use super::meetings::{FirstTimes, Meet, ONCE, ONCE_APART, PairBits, pairs};
 use super::query::Impact;
@@ -63,6 +65,7 @@ struct Descent<'s> {
     has_rigid_bodies: bool,
     separation: Separation,
     tolerance: f64,
+    deadline: Deadline<'s>,
     margin: f32,
     waiting: BinaryHeap<Waiting>,
     /// Pairs of groups no later than `now`, which need no order.
@@ -90,7 +93,8 @@ impl Step {
         self.earliest_until(separation, tolerance, &mut || false)
     }
 
-    /// The same, until `stop` says so, which is asked after every few pairs of groups. The bounds are proved whenever it stops.
+    /// The same, until `stop` says so, which is asked after every few pairs of groups, and during decisions by integers that take long. The
+    /// bounds are proved whenever it stops.
     ///
     /// # Errors
     /// As [`earliest`](Self::earliest).
@@ -115,12 +119,15 @@ impl Step {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Earliest, Error> {
         let tolerance = Goal::checked(tolerance)?;
+        let stop = RefCell::new(stop);
+        let asked = || (stop.borrow_mut())();
         let mut descent = Descent {
             step: self,
             sides: [None; KINDS.len()],
             has_rigid_bodies: self.has_rigid_bodies(),
             separation,
             tolerance,
+            deadline: Deadline::until(&asked),
             margin: self.margin(separation.get()),
             waiting: BinaryHeap::new(),
             at_once: Vec::new(),
@@ -143,7 +150,7 @@ impl Step {
                 descent.start(number as u8, Sides { lists, trees });
             }
         }
-        Ok(descent.run(stop))
+        Ok(descent.run(&asked))
     }
 
     /// A time up to which the step is proved free of hits, and which is at most 1e-6 before the first one. Above 0 whenever the
@@ -207,13 +214,14 @@ impl<'s> Descent<'s> {
         });
     }
 
-    fn run(mut self, stop: &mut dyn FnMut() -> bool) -> Earliest {
+    fn run(mut self, stop: &dyn Fn() -> bool) -> Earliest {
         let mut rounds = 0_u32;
         while let Some(next) = self.next() {
             rounds = rounds.wrapping_add(1);
-            if rounds.is_multiple_of(16) && stop() {
+            // a pair that is not decided is counted already
+            if self.best.undecided > 0 || rounds.is_multiple_of(16) && stop() {
                 let waiting = self.waiting.len() + self.at_once.len() + self.looks.len();
-                self.best.undecided = waiting as u64 + 1;
+                self.best.undecided += waiting as u64 + 1;
                 self.best.time[0] = self.best.time[0].min(self.now);
                 return self.best;
             }
@@ -233,7 +241,7 @@ impl<'s> Descent<'s> {
                 _ => self.open_both(&next, &sides),
             }
         }
-        self.best.is_proved = true;
+        self.best.is_proved = self.best.undecided == 0;
         self.best
     }
 
@@ -403,9 +411,16 @@ impl<'s> Descent<'s> {
             from: free,
             until: self.best.time[1],
             tolerance: self.tolerance,
+            deadline: self.deadline,
         };
-        let Some(impact) = self.step.impact(kind, a, b, self.separation, goal) else {
-            return;
+        let impact = match self.step.impact(kind, a, b, self.separation, goal) {
+            Ok(Some(impact)) => impact,
+            Ok(None) => return,
+            Err(CutShort) => {
+                self.best.undecided += 1;
+                self.best.time[0] = self.best.time[0].min(free);
+                return;
+            }
         };
         self.best.time[0] = self.best.time[0].min(impact.time[0]);
         if impact.time[1] <= self.best.time[1] {

@@ -2,6 +2,7 @@
 //! rounding leaves a part open.
 
 use super::conditions::{Conditions, Part, Posed};
+use super::deadline::{CutShort, Deadline};
 use super::divisors::common;
 use super::form::Form;
 use super::hull::Parts;
@@ -19,7 +20,8 @@ pub(super) fn is_hit<const M: usize, const N: usize>(
     delta: f64,
     parts: Parts,
     during: Interval,
-) -> (bool, DecidedBy) {
+    deadline: Deadline<'_>,
+) -> Result<(bool, DecidedBy), CutShort> {
     let mut is_hit = false;
     let open = look(motion, delta, parts, during, |question| {
         let sight = question.has_solution();
@@ -27,11 +29,16 @@ pub(super) fn is_hit<const M: usize, const N: usize>(
         sight
     });
     if is_hit || open.is_empty() {
-        return (is_hit, DecidedBy::Filter);
+        return Ok((is_hit, DecidedBy::Filter));
     }
+    deadline.check()?;
     let conditions = exact(motion, delta, during);
-    let is_hit = open.iter().any(|part| part.system(&conditions).is_solvable());
-    (is_hit, DecidedBy::Exact)
+    for part in &open {
+        if part.system(&conditions, deadline)?.is_solvable(deadline)? {
+            return Ok((true, DecidedBy::Exact));
+        }
+    }
+    Ok((false, DecidedBy::Exact))
 }
 
 /// The first piece of a part of the step, cut into `2^levels` pieces, that contains the infimum of the hits, by number; and who says so.
@@ -42,7 +49,8 @@ pub(super) fn earliest<const M: usize, const N: usize>(
     parts: Parts,
     during: Interval,
     levels: u32,
-) -> (Option<u64>, DecidedBy) {
+    deadline: Deadline<'_>,
+) -> Result<(Option<u64>, DecidedBy), CutShort> {
     let mut first: Option<u64> = None;
     let mut found = |piece: u64| first = Some(first.map_or(piece, |first| first.min(piece)));
     let open = look(motion, delta, parts, during, |question| {
@@ -55,14 +63,15 @@ pub(super) fn earliest<const M: usize, const N: usize>(
         Sight::None
     });
     if open.is_empty() {
-        return (first, DecidedBy::Filter);
+        return Ok((first, DecidedBy::Filter));
     }
+    deadline.check()?;
     let conditions = exact(motion, delta, during);
-    let pieces = open
-        .iter()
-        .filter_map(|part| part.system(&conditions).earliest(levels));
-    pieces.for_each(found);
-    (first, DecidedBy::Exact)
+    for part in &open {
+        let piece = part.system(&conditions, deadline)?.earliest(levels, deadline)?;
+        piece.into_iter().for_each(&mut found);
+    }
+    Ok((first, DecidedBy::Exact))
 }
 
 /// A part that floating point leaves open.
@@ -103,15 +112,15 @@ fn look<const M: usize, const N: usize>(
 }
 
 impl OpenPart {
-    fn system(&self, conditions: &Conditions<Form>) -> System {
+    fn system(&self, conditions: &Conditions<Form>, deadline: Deadline<'_>) -> Result<System, CutShort> {
         let Posed { mut zero, positive } = conditions.of(self.part, self.holding);
-        System {
+        Ok(System {
             equation: match zero.len() {
                 0 | 1 => zero.pop().filter(|form| !form.is_zero()),
-                _ => common(&zero),
+                _ => common(&zero, deadline)?,
             },
             positive,
-        }
+        })
     }
 }
 
@@ -163,28 +172,30 @@ mod tests {
                 let all = exact(&motion, delta, part);
                 for of in parts.all(4) {
                     let question = || Question::new(&conditions.of(of, 0));
-                    let without = OpenPart { part: of, holding: 0 }.system(&all);
-                    let system = OpenPart {
-                        part: of,
-                        holding: question().holding(),
-                    }
-                    .system(&all);
-                    assert_eq!(system.is_solvable(), without.is_solvable(), "{motion:?} {of:?}");
-                    assert_eq!(system.earliest(9), without.earliest(9), "{motion:?} {of:?}");
+                    let system = |holding| {
+                        let system = OpenPart { part: of, holding }.system(&all, Deadline::NONE);
+                        system.expect("no deadline")
+                    };
+                    let (without, system) = (system(0), system(question().holding()));
+                    let is_solvable =
+                        |system: &System| system.is_solvable(Deadline::NONE).expect("no deadline");
+                    let earliest = |system: &System| system.earliest(9, Deadline::NONE).expect("no deadline");
+                    assert_eq!(is_solvable(&system), is_solvable(&without), "{motion:?} {of:?}");
+                    assert_eq!(earliest(&system), earliest(&without), "{motion:?} {of:?}");
                     match question().has_solution() {
                         Sight::Some(()) => {
-                            assert!(without.is_solvable(), "{motion:?} {of:?}");
+                            assert!(is_solvable(&without), "{motion:?} {of:?}");
                             solved += 1;
                         }
-                        Sight::None => assert!(!without.is_solvable(), "{motion:?} {of:?}"),
+                        Sight::None => assert!(!is_solvable(&without), "{motion:?} {of:?}"),
                         Sight::Open => {}
                     }
                     match question().first(9) {
                         Sight::Some(piece) => {
-                            assert_eq!(without.earliest(9), Some(piece), "{motion:?} {of:?}");
+                            assert_eq!(earliest(&without), Some(piece), "{motion:?} {of:?}");
                         }
                         Sight::None => {
-                            assert_eq!(without.earliest(9), None, "{motion:?} {of:?}");
+                            assert_eq!(earliest(&without), None, "{motion:?} {of:?}");
                             unsolved += 1;
                         }
                         Sight::Open => open += 1,

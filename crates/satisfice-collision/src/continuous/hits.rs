@@ -1,10 +1,13 @@
 //! All pairs of a step that come within delta.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc;
+use std::time::Duration;
 
 use super::advance::Goal;
+use super::deadline::Deadline;
 use super::meetings::{Meet, ONCE, ONCE_APART, PairBits, pairs};
 use super::step::{FeatureList, MovingContact, Step};
 use super::tree::{LANES, MIXED, MovingTree};
@@ -41,7 +44,12 @@ struct FoundPairs {
     pairs: Vec<[u32; 2]>,
     candidates: u64,
     by_integers: u64,
+    /// Pairs whose decision was left because the run was stopped.
+    undecided: u64,
 }
+
+/// How often the thread that has no work left asks whether to stop the others.
+const LOOK: Duration = Duration::from_millis(5);
 
 /// Groups that a thread searches at a time, between two looks at the stop condition; a multiple of eight.
 const ROWS: u32 = 16;
@@ -58,7 +66,7 @@ impl Step {
         self.hits_until(kind, separation, &mut || false)
     }
 
-    /// The same, until `stop` says so, which is asked after every few hundred features.
+    /// The same, until `stop` says so, which is asked after every few hundred features, and during decisions by integers that take long.
     ///
     /// # Errors
     /// As [`hits`](Self::hits).
@@ -119,9 +127,18 @@ impl PairSearch<'_> {
     fn run(&self, stop: &mut dyn FnMut() -> bool, visit: &mut dyn FnMut(MovingContact)) -> Hits {
         let rows = self.trees[0].order.len().div_ceil(LANES) as u32;
         let (next, is_stopped) = (AtomicU32::new(0), AtomicBool::new(false));
-        let work = || {
+        let work = |deadline: Deadline<'_>| {
             let first = next.fetch_add(ROWS, Ordering::Relaxed);
-            (first < rows).then(|| (first, self.rows(first..rows.min(first + ROWS))))
+            (first < rows).then(|| (first, self.rows(first..rows.min(first + ROWS), deadline)))
+        };
+        // A yes is final, and for all threads.
+        let is_over = || is_stopped.load(Ordering::Relaxed);
+        let stop = RefCell::new(stop);
+        let asked = || {
+            if !is_over() && (stop.borrow_mut())() {
+                is_stopped.store(true, Ordering::Relaxed);
+            }
+            is_over()
         };
         let (sender, receiver) = mpsc::channel();
         let mut hits = Hits::default();
@@ -133,33 +150,48 @@ impl PairSearch<'_> {
                 self.take(hits, &found, visit);
                 due += ROWS;
             }
+            due
         };
         rayon::in_place_scope(|scope| {
             for _ in 1..rayon::current_num_threads() {
-                let (sender, work, is_stopped) = (sender.clone(), &work, &is_stopped);
+                let (sender, work, is_over) = (sender.clone(), &work, &is_over);
                 scope.spawn(move |_| {
-                    while !is_stopped.load(Ordering::Relaxed)
-                        && let Some(part) = work()
+                    while !is_over()
+                        && let Some(part) = work(Deadline::until(is_over))
                         && sender.send(part).is_ok()
                     {}
                 });
             }
-            while !stop() {
-                let Some(part) = work() else { return };
-                deliver(part, &mut hits);
-                receiver.try_iter().for_each(|part| deliver(part, &mut hits));
+            drop(sender);
+            let mut due = 0;
+            while !asked() {
+                let part = match work(Deadline::until(&asked)) {
+                    Some(part) => part,
+                    None if due >= rows => return,
+                    // another thread may decide a pair that takes long
+                    None => match receiver.recv_timeout(LOOK) {
+                        Ok(part) => part,
+                        Err(mpsc::RecvTimeoutError::Timeout) => continue,
+                        Err(mpsc::RecvTimeoutError::Disconnected) => return,
+                    },
+                };
+                due = deliver(part, &mut hits);
+                for part in receiver.try_iter() {
+                    due = deliver(part, &mut hits);
+                }
             }
-            is_stopped.store(true, Ordering::Relaxed);
         });
-        drop(sender);
-        receiver.iter().for_each(|part| deliver(part, &mut hits));
-        hits.undecided = self.pairs_from(next.into_inner().min(rows));
+        receiver.iter().for_each(|part| {
+            deliver(part, &mut hits);
+        });
+        hits.undecided += self.pairs_from(next.into_inner().min(rows));
         hits
     }
 
     fn take(&self, hits: &mut Hits, found: &FoundPairs, visit: &mut dyn FnMut(MovingContact)) {
         hits.candidates += found.candidates;
         hits.by_integers += found.by_integers;
+        hits.undecided += found.undecided;
         for &[a, b] in &found.pairs {
             visit(MovingContact {
                 a: self.step.feature(self.lists[0], a),
@@ -183,20 +215,20 @@ impl PairSearch<'_> {
         }
     }
 
-    fn rows(&self, rows: std::ops::Range<u32>) -> FoundPairs {
+    fn rows(&self, rows: std::ops::Range<u32>, deadline: Deadline<'_>) -> FoundPairs {
         let mut found = FoundPairs::default();
         let mut stack = Vec::new();
         if self.trees.iter().all(|tree| tree.levels.len() > 1) {
             // eight rows descend together
             let lanes = LANES as u32;
             for block in rows.start / lanes..rows.end.div_ceil(lanes) {
-                self.block(block, &mut stack, &mut found);
+                self.block(block, &mut stack, &mut found, deadline);
             }
             return found;
         }
         for row in rows {
             self.descend(0, row, &mut stack, &mut |group| {
-                self.groups(row, group, &mut found);
+                self.groups(row, group, &mut found, deadline);
             });
         }
         found
@@ -212,7 +244,7 @@ impl PairSearch<'_> {
     }
 
     /// The rows below a group of level 1.
-    fn block(&self, block: u32, stack: &mut Vec<(u8, u32)>, found: &mut FoundPairs) {
+    fn block(&self, block: u32, stack: &mut Vec<(u8, u32)>, found: &mut FoundPairs, deadline: Deadline<'_>) {
         let [first, second] = self.trees;
         self.descend(1, block, stack, &mut |other| {
             let meeting = self.meet(1, block, other, ONCE);
@@ -221,7 +253,7 @@ impl PairSearch<'_> {
                 let group = other * LANES as u32 + group as u32;
                 let own = first.rigid_body(0, row);
                 if own == MIXED || own != second.rigid_body(0, group) {
-                    self.groups(row, group, found);
+                    self.groups(row, group, found, deadline);
                 }
             }
         });
@@ -242,7 +274,7 @@ impl PairSearch<'_> {
     }
 
     /// The features of a row against those of a group.
-    fn groups(&self, row: u32, group: u32, found: &mut FoundPairs) {
+    fn groups(&self, row: u32, group: u32, found: &mut FoundPairs, deadline: Deadline<'_>) {
         let [first, second] = self.trees;
         let (own, boxes) = (&first.levels[0][row as usize], &second.levels[0][group as usize]);
         for [lane, other] in pairs(self.meet(0, row, group, ONCE_APART)) {
@@ -252,12 +284,12 @@ impl PairSearch<'_> {
             };
             let a = first.order[row as usize * LANES + lane];
             let b = second.order[group as usize * LANES + other];
-            self.pair(a, b, during, found);
+            self.pair(a, b, during, found, deadline);
         }
     }
 
     /// Decides a pair whose boxes meet during a part of the step.
-    fn pair(&self, a: u32, b: u32, [from, until]: [f64; 2], found: &mut FoundPairs) {
+    fn pair(&self, a: u32, b: u32, [from, until]: [f64; 2], found: &mut FoundPairs, deadline: Deadline<'_>) {
         let [a, b] = if self.is_one_list() && a > b {
             [b, a]
         } else {
@@ -274,9 +306,14 @@ impl PairSearch<'_> {
             Goal {
                 from,
                 until,
+                deadline,
                 ..Goal::DECISION
             },
         );
+        let Ok(decided) = decided else {
+            found.undecided += 1;
+            return;
+        };
         found.by_integers += u64::from(decided.by == DecidedBy::Exact);
         if decided.within {
             found.pairs.push([a, b]);

@@ -180,6 +180,7 @@ mod tests {
                             }
                             _ => decide_during(&step.vertex(a), &step.triangle(b), separation, goal),
                         };
+                        let hits = hits.expect("no deadline");
                         let ends_where_it_began = until[lane] == from[lane];
                         assert!(
                             ends_where_it_began || !hits.within,

@@ -24,6 +24,7 @@
 mod advance;
 mod conditions;
 mod cubic;
+mod deadline;
 mod divisors;
 mod earliest;
 mod exact;

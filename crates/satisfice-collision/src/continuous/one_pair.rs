@@ -1,6 +1,7 @@
 //! The questions about one pair of features of a step.
 
 use super::advance::Goal;
+use super::deadline::{CutShort, Deadline};
 use super::query::{Impact, decide_during, free_until, within};
 use super::step::{MovingContact, Step};
 use super::{Decided, Separation};
@@ -19,14 +20,31 @@ impl Step {
         separation: Separation,
         tolerance: f64,
     ) -> Result<Option<Impact>, Error> {
+        self.impact_of_until(kind, contact, separation, tolerance, &|| false)
+    }
+
+    /// The same, until `stop` says so, which is asked while a decision by integers takes long; then also `None`.
+    ///
+    /// # Errors
+    /// As [`impact_of`](Self::impact_of).
+    pub fn impact_of_until(
+        &self,
+        kind: PairKind,
+        contact: &MovingContact,
+        separation: Separation,
+        tolerance: f64,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Impact>, Error> {
         let lists = Self::lists(kind)?;
         let goal = Goal {
             tolerance: Goal::checked(tolerance)?,
+            deadline: Deadline::until(stop),
             ..Goal::DECISION
         };
         let pair = self.numbers(lists, contact);
         let pair = pair.filter(|&[a, b]| self.may_pair(lists, a, b));
-        Ok(pair.and_then(|[a, b]| self.impact(kind, a, b, separation, goal)))
+        let Some([a, b]) = pair else { return Ok(None) };
+        Ok(self.impact(kind, a, b, separation, goal).unwrap_or_default())
     }
 
     /// The first hit of a pair during a part of the step.
@@ -36,8 +54,8 @@ impl Step {
         a: u32,
         b: u32,
         separation: Separation,
-        goal: Goal,
-    ) -> Option<Impact> {
+        goal: Goal<'_>,
+    ) -> Result<Option<Impact>, CutShort> {
         match kind {
             PairKind::VertexVertex => within(&self.vertex(a), &self.vertex(b), separation, goal),
             PairKind::VertexEdge => within(&self.vertex(a), &self.edge(b), separation, goal),
@@ -54,8 +72,8 @@ impl Step {
         kind: PairKind,
         [a, b]: [u32; 2],
         separation: Separation,
-        goal: Goal,
-    ) -> Decided {
+        goal: Goal<'_>,
+    ) -> Result<Decided, CutShort> {
         match kind {
             PairKind::VertexVertex => decide_during(&self.vertex(a), &self.vertex(b), separation, goal),
             PairKind::VertexEdge => decide_during(&self.vertex(a), &self.edge(b), separation, goal),

@@ -16,7 +16,7 @@ mod sealed {
             a: &super::Moving<Self>,
             b: &super::Moving<B>,
             delta: f64,
-            goal: super::Goal,
+            goal: super::Goal<'_>,
         ) -> super::Solved;
 
         fn free_until(a: &super::Moving<Self>, b: &super::Moving<B>, delta: f64, from: f64) -> f64;
@@ -59,7 +59,7 @@ macro_rules! against {
     ($a:ty, $b:ty, $kind:ident, $hull:ident, $corners:literal, $module:ident, $vertices_a:expr, $vertices_b:expr, $at_a:expr, $at_b:expr) => {
         impl Solve<$b> for $a {
             #[inline]
-            fn solve(a: &Moving<$a>, b: &Moving<$b>, delta: f64, goal: Goal) -> Solved {
+            fn solve(a: &Moving<$a>, b: &Moving<$b>, delta: f64, goal: Goal<'_>) -> Solved {
                 let motion = PairMotion {
                     from_a: $vertices_a(a.from),
                     to_a: $vertices_a(a.to),

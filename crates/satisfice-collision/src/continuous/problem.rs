@@ -132,7 +132,11 @@ impl SatisficingProblem for MovingPairs<'_> {
             tolerance: TOLERANCE,
             ..Goal::DECISION
         };
-        let impact = self.step.impact(self.kind, a, b, self.separation, goal);
+        // nothing cuts it short
+        let impact = self
+            .step
+            .impact(self.kind, a, b, self.separation, goal)
+            .unwrap_or_default();
         impact.map_or(NEVER, |impact| impact.time[0])
     }
 

@@ -2,6 +2,7 @@
 
 use super::Separation;
 use super::advance::Goal;
+use super::deadline::CutShort;
 use super::motion::Moving;
 use super::pairs::Against;
 use crate::Error;
@@ -35,7 +36,11 @@ pub struct Impact {
 /// Cost: about 100 ns; tens of microseconds where rounding decides nothing.
 #[inline]
 pub fn decide<A: Against<B>, B: Copy>(a: &Moving<A>, b: &Moving<B>, separation: Separation) -> Decided {
-    decide_during(a, b, separation, Goal::DECISION)
+    let solved = A::solve(a, b, separation.get(), Goal::DECISION);
+    Decision {
+        within: solved.time.is_some(),
+        by: solved.by,
+    }
 }
 
 /// The same for a part of the step.
@@ -44,13 +49,16 @@ pub(super) fn decide_during<A: Against<B>, B: Copy>(
     a: &Moving<A>,
     b: &Moving<B>,
     separation: Separation,
-    goal: Goal,
-) -> Decided {
+    goal: Goal<'_>,
+) -> Result<Decided, CutShort> {
     let solved = A::solve(a, b, separation.get(), goal);
-    Decision {
+    if solved.is_cut_short {
+        return Err(CutShort);
+    }
+    Ok(Decision {
         within: solved.time.is_some(),
         by: solved.by,
-    }
+    })
 }
 
 /// Whether the distance is below delta at some time of the step.
@@ -106,7 +114,8 @@ pub fn impact<A: Against<B>, B: Copy>(
         tolerance: Goal::checked(tolerance)?,
         ..Goal::DECISION
     };
-    Ok(within(a, b, separation, goal))
+    // nothing cuts it short
+    Ok(within(a, b, separation, goal).unwrap_or_default())
 }
 
 /// A time up to which one step of the advance proves the pair free, if it is free up to `from`; at least that.
@@ -125,10 +134,15 @@ pub(super) fn within<A: Against<B>, B: Copy>(
     a: &Moving<A>,
     b: &Moving<B>,
     separation: Separation,
-    goal: Goal,
-) -> Option<Impact> {
+    goal: Goal<'_>,
+) -> Result<Option<Impact>, CutShort> {
     let solved = A::solve(a, b, separation.get(), goal);
-    let time = solved.time?;
+    if solved.is_cut_short {
+        return Err(CutShort);
+    }
+    let Some(time) = solved.time else {
+        return Ok(None);
+    };
     let at = |time: f64| A::between(a, time).proximity(&A::other_between(b, time));
     let near = at(time[1]);
     // Before the impact, when the features are not on the wrong sides of each other; they coincide up to rounding just before.
@@ -140,14 +154,14 @@ pub(super) fn within<A: Against<B>, B: Copy>(
             .then(|| unit(near.point_a, near.point_b))
             .flatten()
     });
-    Some(Impact {
+    Ok(Some(Impact {
         time,
         at_start: time[1] == 0.0,
         point_a: near.point_a,
         point_b: near.point_b,
         normal: normal.unwrap_or_default(),
         by: solved.by,
-    })
+    }))
 }
 
 /// The direction from `p` to `q`, or `None` if they are the same up to rounding.

@@ -177,10 +177,13 @@ impl Search<'_> {
                 if !self.is_over(start) {
                     for hit in some {
                         let kind = frames.kinds[usize::from(hit.kind)];
-                        let impact =
-                            frames
-                                .step
-                                .impact_of(kind, &hit.contact, frames.separation, TOLERANCE)?;
+                        let impact = frames.step.impact_of_until(
+                            kind,
+                            &hit.contact,
+                            frames.separation,
+                            TOLERANCE,
+                            &|| self.is_over(start),
+                        )?;
                         hit.time = impact.map_or(hit.time, |impact| impact.time);
                     }
                 }
