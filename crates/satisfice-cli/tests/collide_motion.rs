@@ -119,7 +119,8 @@ fn a_threshold_may_be_longer_than_single_precision_can_say() {
             );
             assert_eq!(report(&folder, &fall)["hits"], json!(hits), "{fall}");
             let first = report(&folder, &format!("{fall} --first"));
-            assert_eq!(first["completeness"], json!("Proved"), "{fall} --first");
+            assert_eq!(first["first_impact"]["proved"], json!(true), "{fall} --first");
+            assert_eq!(first["first_impact"]["time"], json!([0.0, 0.0]), "{fall} --first");
         }
     }
 }
