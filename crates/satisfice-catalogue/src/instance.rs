@@ -1,7 +1,9 @@
 //! A problem with its parameters set, behind one virtual call per run.
 
+use std::path::PathBuf;
+
 use satisfice::SatisficingProblem;
-use satisfice::catalogue::{Catalogued, Params};
+use satisfice::catalogue::{Catalogued, ParamKind, Parameter, Params};
 use satisfice_collision::VertexPairs;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -21,6 +23,8 @@ pub trait Instance: Send + Sync {
     fn name(&self) -> &'static str;
     /// All its parameters.
     fn parameters(&self) -> &Settings;
+    /// The files that it was read from: those that its parameters of [any text](ParamKind::Text) name.
+    fn files(&self) -> Vec<PathBuf>;
     /// Runs `spec` on it, whatever problem `spec` names. The reference count is left open:
     /// [`RunReport::set_reference`].
     ///
@@ -90,6 +94,13 @@ where
 
     fn parameters(&self) -> &Settings {
         &self.parameters
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        let is_text = |row: &&Parameter| matches!(row.kind, ParamKind::Text { .. });
+        let texts = P::PARAMETERS.iter().filter(is_text);
+        let given = texts.filter_map(|row| self.parameters.get(row.name)?.as_str());
+        given.map(PathBuf::from).filter(|path| path.is_file()).collect()
     }
 
     fn run(&self, spec: &RunSpec, control: RunControl<'_>) -> Result<RunReport, Error> {

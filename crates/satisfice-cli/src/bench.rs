@@ -11,6 +11,7 @@ use satisfice_catalogue::Catalogue;
 use satisfice_catalogue::quantity::shown;
 
 use crate::arguments::{BenchArguments, BenchSubcommands, MergeArguments};
+use crate::places::Places;
 use crate::progress::{Counting, Runs};
 use crate::{interrupt, message, output};
 
@@ -40,6 +41,11 @@ pub(crate) fn bench(
         PathBuf::from(format!("bench-{}{}", suite.name, shard.unwrap_or_default()))
     });
     let plan = Plan::new(suite, catalogue)?;
+    let read = plan.instances.iter().flat_map(|problem| problem.files());
+    let written = sweep::replaced(&folder);
+    let places = Places::default().may_read(arguments.suite.clone()).reads(read);
+    let writes = |places: Places, path| places.writes("--out", Some(path));
+    written.iter().fold(places, writes).check()?;
     if let Some(part) = &part {
         part.claim(&folder)?;
     }

@@ -54,6 +54,7 @@ mod list;
 mod message;
 mod output;
 mod page;
+mod places;
 mod plot;
 mod program;
 mod progress;

@@ -132,7 +132,7 @@ impl Drop for Output {
 }
 
 /// The folder of a path; the current one for a plain name.
-fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
 }
@@ -204,41 +204,6 @@ fn target(path: &Path) -> anyhow::Result<PathBuf> {
         });
     }
     Ok(path.to_owned())
-}
-
-/// Refuses outputs that are the same file, or one of the inputs, before anything runs.
-///
-/// # Errors
-/// The two names, and what to do.
-pub(crate) fn check_distinct(inputs: &[&Path], outputs: &[(&str, Option<&PathBuf>)]) -> anyhow::Result<()> {
-    let outputs: Vec<_> = outputs
-        .iter()
-        .filter_map(|(option, path)| Some((option, (*path)?, identity((*path)?))))
-        .collect();
-    for (i, (option, path, file)) in outputs.iter().enumerate() {
-        if inputs.iter().any(|input| identity(input) == *file) {
-            bail!(
-                "{option} {} would overwrite an input: choose another file",
-                path.display()
-            );
-        }
-        if let Some((other, ..)) = outputs[..i].iter().find(|(.., known)| known == file) {
-            bail!(
-                "{other} and {option} both write {}: choose two files",
-                path.display()
-            );
-        }
-    }
-    Ok(())
-}
-
-/// What tells a file from others: its folder without links, and its name.
-fn identity(path: &Path) -> PathBuf {
-    if let Ok(whole) = fs::canonicalize(path) {
-        return whole;
-    }
-    let folder = fs::canonicalize(folder_of(path)).unwrap_or_default();
-    folder.join(path.file_name().unwrap_or(path.as_os_str()))
 }
 
 /// Opens the place, if one is named.

@@ -1,6 +1,6 @@
 //! `satisfice run`: an engine on a problem of the catalogue.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -10,6 +10,7 @@ use satisfice_draw::plot::{self, Format};
 use crate::arguments::{DEFAULT_ENGINE, RunArguments};
 use crate::checkpoint::{self, Keeper};
 use crate::output::{self, Output, Steps};
+use crate::places::{self, Places};
 use crate::plot::chart;
 use crate::progress::Bar;
 use crate::{interrupt, message, page, program, reference, summary};
@@ -18,15 +19,6 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     if arguments.program.is_given() {
         return program::run(arguments);
     }
-    output::check_distinct(
-        &[],
-        &[
-            ("--json", arguments.json.as_ref()),
-            ("--checkpoint", arguments.checkpoint.as_ref()),
-            ("--plot", arguments.plot.as_ref()),
-            ("--page", arguments.page.as_ref()),
-        ],
-    )?;
     page::check(arguments.page.as_deref())?;
     let named = arguments.problem.as_deref();
     let known = named.map(|name| catalogue.find(name)).transpose()?;
@@ -43,6 +35,7 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     };
     let settings = set.iter().map(|(name, value)| (name.as_str(), value.as_str()));
     let problem: Arc<dyn Instance> = known.build(settings)?.into();
+    places(arguments).reads(problem.files()).check()?;
     let spec = spec(arguments, resumed.as_ref().map(|(_, saved)| saved))?;
 
     let cancel = interrupt::listen()?;
@@ -111,6 +104,19 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     steps.step(keeper.map_or(Ok(()), Keeper::finish));
     steps.outcome()?;
     Ok(summary::exit_code(&report))
+}
+
+/// The files that the arguments name.
+fn places(arguments: &RunArguments) -> Places {
+    let checkpoint = arguments.checkpoint.as_ref();
+    // A run may go on with its own checkpoint; all others are kept.
+    let is_own = |resume: &PathBuf| checkpoint.is_some_and(|path| places::is_same(path, resume));
+    Places::default()
+        .reads(arguments.resume.iter().filter(|resume| !is_own(resume)).cloned())
+        .writes("--json", arguments.json.as_ref())
+        .writes("--checkpoint", checkpoint)
+        .writes("--plot", arguments.plot.as_ref())
+        .writes("--page", arguments.page.as_ref())
 }
 
 /// What to run: the arguments, and for a resumed run what its checkpoint says where they say nothing.

@@ -43,7 +43,7 @@ mod summary;
 
 pub use execute::{Event, Finished, execute};
 pub use plan::{Cell, Plan, Planned};
-pub use publish::publish;
+pub use publish::{publish, replaced};
 pub use results::{Results, write_all};
 pub use row::Row;
 pub use selection::Selection;

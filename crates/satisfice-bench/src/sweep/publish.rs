@@ -1,6 +1,6 @@
 //! Writes the files of a finished sweep, apart from `results.jsonl`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::figures::figures;
 use super::plan::Plan;
@@ -12,6 +12,15 @@ use crate::finding::Figure;
 use crate::finding::Finding;
 use satisfice_draw::plot::{Format, draw};
 use satisfice_page::ComparePage;
+
+/// The files of a folder that a sweep writes anew. What is not among them is added to (`results.jsonl`), left as it is if it differs
+/// (`shard.json`), or written as it was read (`suite.toml`).
+#[must_use]
+pub fn replaced(folder: &Path) -> Vec<PathBuf> {
+    ["regret.md", "summary.json", report::COMPARE, "report.html"]
+        .map(|name| folder.join(name))
+        .into()
+}
 
 /// Writes `suite.toml`, `summary.json`, the folder `ioh`, the figures as SVG and PNG, `compare.html`, where engines are switched
 /// on and off, with a comparison `regret.md`, and `report.html`, which contains the rest of it, the findings of studies and the `command` that made it; returns the groups of the summary.

@@ -1,11 +1,10 @@
 //! Where the results go: each place is tried before the work begins, and no input is overwritten.
 
-use std::path::{Path, PathBuf};
-
-use anyhow::bail;
+use std::path::PathBuf;
 
 use super::arguments::CollideArguments;
 use crate::output::{self, Output};
+use crate::places::Places;
 
 pub(super) struct Files {
     pub(super) json: Option<Output>,
@@ -17,45 +16,28 @@ pub(super) struct Files {
 }
 
 impl Files {
-    pub(super) fn open(arguments: &CollideArguments) -> anyhow::Result<Self> {
+    /// Opens them. `read` is every file that was read for the bodies.
+    pub(super) fn open(arguments: &CollideArguments, read: &[PathBuf]) -> anyhow::Result<Self> {
         let CollideArguments {
             json,
             out,
             picture,
             page,
-            meshes,
-            from,
-            to,
             ..
         } = arguments;
-        let stdout = Path::new("-");
-        let to_stdout = [json, out, picture, page]
-            .into_iter()
-            .flatten()
-            .filter(|path| *path == stdout)
-            .count();
-        if to_stdout > 1 {
-            bail!(
-                "only one of --json, --out, --picture and --page can go to stdout: name files for the others"
-            );
-        }
-        let is_file = |path: &&PathBuf| **path != stdout;
-        let inputs = meshes.iter().chain(from).chain(to);
-        let inputs: Vec<&Path> = inputs.filter(is_file).map(PathBuf::as_path).collect();
-        let outputs = [
-            ("--json", json),
-            ("--out", out),
-            ("--picture", picture),
-            ("--page", page),
-        ]
-        .map(|(option, path)| (option, path.as_ref().filter(is_file)));
-        output::check_distinct(&inputs, &outputs)?;
+        let places = Places::default()
+            .reads(read.iter().cloned())
+            .writes("--json", json.as_ref())
+            .writes("--out", out.as_ref())
+            .writes("--picture", picture.as_ref())
+            .writes("--page", page.as_ref());
+        places.check()?;
         Ok(Self {
             json: output::open(json.as_ref())?,
             csv: output::open(out.as_ref())?,
             picture: output::open(picture.as_ref())?,
             page: output::open(page.as_ref())?,
-            summary: to_stdout == 0,
+            summary: !places.takes_stdout(),
         })
     }
 }

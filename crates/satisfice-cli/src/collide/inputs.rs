@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
-use satisfice_collision::io::{self, AnimatedScene, Format, PlacedMesh};
+use satisfice_collision::io::{AnimatedScene, Format, PlacedMesh};
 use satisfice_collision::{Error, Mesh};
 use serde::{Deserialize, Serialize};
 
@@ -84,13 +84,19 @@ impl Inputs {
         self.paths.iter().any(|path| Self::is_stdin(path))
     }
 
-    /// Reads all bodies, in the order of the command line and of their files.
-    pub(super) fn read(&self) -> anyhow::Result<Vec<NamedBody>> {
-        let files = self.each(
-            |path| io::read_scene(path),
-            |stream, format| io::read_scene_from(stream, format, STDIN, "."),
+    /// Reads all bodies, in the order of the command line and of their files; also returns every file that was read.
+    pub(super) fn read(&self) -> anyhow::Result<(Vec<NamedBody>, Vec<PathBuf>)> {
+        let scenes = self.each(
+            |path| AnimatedScene::read_resting(path),
+            |stream, format| AnimatedScene::read_resting_from(stream, format, STDIN, "."),
         )?;
-        self.bodies(files)
+        let files = files(&scenes);
+        let at_rest = |(path, scene): (PathBuf, AnimatedScene)| {
+            let bodies = scene.at_rest().with_context(|| path.display().to_string())?;
+            Ok((path, bodies))
+        };
+        let bodies = scenes.into_iter().map(at_rest).collect::<anyhow::Result<_>>()?;
+        Ok((self.bodies(bodies)?, files))
     }
 
     /// Reads the files with the animations of these names; all without a name.
@@ -115,11 +121,11 @@ impl Inputs {
     }
 
     /// What is read of each path, or of standard input.
-    fn each<T>(
+    fn each(
         &self,
-        file: impl Fn(&Path) -> Result<T, Error>,
-        stdin: impl Fn(StdinLock<'static>, Format) -> Result<T, Error>,
-    ) -> anyhow::Result<Vec<(PathBuf, T)>> {
+        file: impl Fn(&Path) -> Result<AnimatedScene, Error>,
+        stdin: impl Fn(StdinLock<'static>, Format) -> Result<AnimatedScene, Error>,
+    ) -> anyhow::Result<Vec<(PathBuf, AnimatedScene)>> {
         self.check()?;
         let mut files = Vec::new();
         for path in &self.paths {
@@ -170,6 +176,15 @@ impl Inputs {
             _ => Ok(()),
         }
     }
+}
+
+/// Every file that was read for these scenes.
+pub(super) fn files(scenes: &[(PathBuf, AnimatedScene)]) -> Vec<PathBuf> {
+    scenes
+        .iter()
+        .flat_map(|(_, scene)| scene.files())
+        .cloned()
+        .collect()
 }
 
 #[cfg(test)]

@@ -140,7 +140,7 @@ fn by_exact_method(
     method: Method,
     cancel: &Cancel,
 ) -> anyhow::Result<Answer> {
-    let files = Files::open(arguments)?;
+    let files = Files::open(arguments, &world.files)?;
     warn(world);
     let (time, hits) = arguments.search.limits();
     let how = Exact {
@@ -175,7 +175,7 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
     if arguments.prune {
         spec = spec.set("prune", "yes");
     }
-    let files = Files::open(arguments)?;
+    let files = Files::open(arguments, &world.files)?;
     warn(world);
     let (mut report, pairs) = search::find(world, &spec, arguments.witnesses, cancel)?;
     let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));

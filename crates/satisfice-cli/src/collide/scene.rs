@@ -1,5 +1,6 @@
 //! The scene of the command: bodies, and which of them can have pairs with which.
 
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
@@ -101,6 +102,8 @@ pub(super) struct Request {
 pub(super) struct World {
     pub(super) request: Request,
     pub(super) bodies: Vec<NamedBody>,
+    /// Every file that was read for the bodies.
+    pub(super) files: Vec<PathBuf>,
     pub(super) threshold: Threshold,
     /// The bodies as solids, if they are.
     pub(super) solids: Vec<Solid>,
@@ -109,7 +112,7 @@ pub(super) struct World {
 
 impl World {
     pub(super) fn read(request: Request) -> anyhow::Result<Self> {
-        let bodies = request.inputs.read()?;
+        let (bodies, files) = request.inputs.read()?;
         if bodies.is_empty() {
             bail!("the scene has no body: no node has a mesh");
         }
@@ -125,6 +128,7 @@ impl World {
             },
             request,
             bodies,
+            files,
             jobs: OnceLock::new(),
         };
         if world.couples().next().is_none() {

@@ -23,6 +23,7 @@ use serde_json::Value;
 
 use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
 use crate::output::{self, Steps};
+use crate::places::Places;
 use crate::{interrupt, message, summary};
 
 use evaluator::{Evaluator, Failure, Task, Way};
@@ -51,6 +52,12 @@ struct Job {
 pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let given = &arguments.program;
     check(arguments)?;
+    let commands = given.program.iter().chain(&given.worker);
+    Places::default()
+        .reads(given.space.clone())
+        .may_read(commands.flat_map(|text| split(text).unwrap_or_default()))
+        .writes("--json", arguments.json.as_ref())
+        .check()?;
     let space = SpaceFile::read(
         given
             .space

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::scene::{PlacedMesh, make_names_unique};
 use super::source::{self, Folder};
@@ -25,7 +25,10 @@ use crate::error::Error;
 /// assert_eq!(from[0].name, to[0].name);
 /// # Ok::<(), satisfice_collision::Error>(())
 /// ```
-pub struct AnimatedScene(Box<dyn Frames>);
+pub struct AnimatedScene {
+    frames: Box<dyn Frames>,
+    files: Vec<PathBuf>,
+}
 
 /// The bodies of a file at any time.
 pub(super) trait Frames: Send + Sync {
@@ -79,41 +82,81 @@ impl AnimatedScene {
         folder: impl AsRef<Path>,
         animations: &[&str],
     ) -> Result<Self, Error> {
-        let bytes = source::stream(stream)?;
-        frames(
-            format,
-            &bytes,
-            &Folder::new(folder.as_ref()),
-            name,
-            play(animations),
-        )
-        .map(Self)
-        .map_err(|error| error.in_file("-".as_ref()))
+        Self::playing_from(stream, format, name, folder.as_ref(), play(animations))
     }
 
-    pub(super) fn of(frames: Box<dyn Frames>) -> Self {
-        Self(frames)
+    /// Reads a scene without its animations, for [`AnimatedScene::at_rest`]: as [`read_scene`](super::read_scene), but it also tells
+    /// its [files](AnimatedScene::files).
+    ///
+    /// # Errors
+    /// Those of [`read_scene`](super::read_scene).
+    pub fn read_resting(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::playing(path.as_ref(), Play::Nothing)
+    }
+
+    /// The same from a stream, as [`read_scene_from`](super::read_scene_from) reads one.
+    ///
+    /// # Errors
+    /// As [`AnimatedScene::read_resting`].
+    pub fn read_resting_from(
+        stream: impl Read,
+        format: Format,
+        name: &str,
+        folder: impl AsRef<Path>,
+    ) -> Result<Self, Error> {
+        Self::playing_from(stream, format, name, folder.as_ref(), Play::Nothing)
     }
 
     pub(super) fn playing(path: &Path, play: Play<'_>) -> Result<Self, Error> {
         let format = Format::of_path(path)?;
         let bytes = source::file(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        frames(format, &bytes, &Folder::of(path), &name, play)
-            .map(Self)
-            .map_err(|error| error.in_file(path))
+        let mut scene =
+            Self::of(format, &bytes, Folder::of(path), &name, play).map_err(|error| error.in_file(path))?;
+        scene.files.insert(0, path.to_owned());
+        Ok(scene)
+    }
+
+    fn playing_from(
+        stream: impl Read,
+        format: Format,
+        name: &str,
+        folder: &Path,
+        play: Play<'_>,
+    ) -> Result<Self, Error> {
+        let bytes = source::stream(stream)?;
+        Self::of(format, &bytes, Folder::new(folder), name, play).map_err(|error| error.in_file("-".as_ref()))
+    }
+
+    /// The scene of a file with these contents.
+    pub(super) fn of(
+        format: Format,
+        bytes: &[u8],
+        folder: Folder,
+        name: &str,
+        play: Play<'_>,
+    ) -> Result<Self, Error> {
+        let frames = frames(format, bytes, &folder, name, play)?;
+        let files = folder.into_read();
+        Ok(Self { frames, files })
+    }
+
+    /// Every file that was read for it: its own, unless it came from a stream, and those that it names.
+    #[must_use]
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// The names of all animations of the file, those that are not played included, in the order of the file.
     #[must_use]
     pub fn animations(&self) -> Vec<String> {
-        self.0.animations()
+        self.frames.animations()
     }
 
     /// The time of the last key of all animations that are played, in seconds; `None` if none is.
     #[must_use]
     pub fn end(&self) -> Option<f64> {
-        self.0.end()
+        self.frames.end()
     }
 
     /// The bodies `seconds` after the start, in the same order and with the same names at every time. Before its first key and
@@ -128,12 +171,16 @@ impl AnimatedScene {
         self.bodies(Some(seconds))
     }
 
-    pub(super) fn at_rest(&self) -> Result<Vec<PlacedMesh>, Error> {
+    /// The bodies as the file places them, whatever its animations are.
+    ///
+    /// # Errors
+    /// [`Error::InBody`] for a body that its place flattens or moves beyond all numbers.
+    pub fn at_rest(&self) -> Result<Vec<PlacedMesh>, Error> {
         self.bodies(None)
     }
 
     fn bodies(&self, seconds: Option<f64>) -> Result<Vec<PlacedMesh>, Error> {
-        let mut bodies = self.0.at(seconds)?;
+        let mut bodies = self.frames.at(seconds)?;
         make_names_unique(&mut bodies);
         Ok(bodies)
     }

@@ -82,6 +82,7 @@ fn files(list: MeshList, folder: &Folder, play: Play<'_>) -> Result<Box<dyn Fram
             Some(&file) => file,
             None => {
                 let scene = scene(&path, play)?;
+                folder.note(scene.files().iter().cloned());
                 known.insert(path.clone(), files.len());
                 files.push((path, scene));
                 files.len() - 1

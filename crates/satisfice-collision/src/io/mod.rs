@@ -54,7 +54,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
     let path = path.as_ref();
     let format = Format::of_path(path)?;
     let bytes = source::file(path)?;
-    mesh(format, &bytes, &Folder::of(path)).map_err(|error| error.in_file(path))
+    mesh(format, &bytes, Folder::of(path)).map_err(|error| error.in_file(path))
 }
 
 /// Reads the bodies of a scene. The extension of the file names its format; a file of one mesh is a scene of one body,
@@ -71,7 +71,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 /// ```
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Vec<PlacedMesh>, Error> {
     let path = path.as_ref();
-    let scene = AnimatedScene::playing(path, Play::Nothing)?;
+    let scene = AnimatedScene::read_resting(path)?;
     scene.at_rest().map_err(|error| error.in_file(path))
 }
 
@@ -93,8 +93,8 @@ pub fn read_scene_from(
     name: &str,
     folder: impl AsRef<Path>,
 ) -> Result<Vec<PlacedMesh>, Error> {
-    let bytes = source::stream(stream)?;
-    bodies(format, &bytes, &Folder::new(folder.as_ref()), name).map_err(|error| error.in_file("-".as_ref()))
+    let scene = AnimatedScene::read_resting_from(stream, format, name, folder)?;
+    scene.at_rest().map_err(|error| error.in_file("-".as_ref()))
 }
 
 /// Reads a mesh from the contents of a file. Scenes that name further files look for them in the working directory.
@@ -113,24 +113,21 @@ pub fn read_scene_from(
 /// # Ok::<(), satisfice_collision::Error>(())
 /// ```
 pub fn parse(format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
-    mesh(format, bytes, &Folder::new("."))
+    mesh(format, bytes, Folder::new("."))
 }
 
-fn mesh(format: Format, bytes: &[u8], folder: &Folder) -> Result<Mesh, Error> {
+fn mesh(format: Format, bytes: &[u8], folder: Folder) -> Result<Mesh, Error> {
     if let Reader::Mesh(parse) = format.reader {
         return parse(bytes);
     }
-    match bodies(format, bytes, folder, "")?.as_slice() {
+    let scene = AnimatedScene::of(format, bytes, folder, "", Play::Nothing)?;
+    match scene.at_rest()?.as_slice() {
         [body] => body.placed().map(Arc::unwrap_or_clone),
         bodies => {
             let what = format!("the scene has {} bodies, but one mesh is asked for", bodies.len());
             Err(Error::unsupported(format.name(), what))
         }
     }
-}
-
-fn bodies(format: Format, bytes: &[u8], folder: &Folder, name: &str) -> Result<Vec<PlacedMesh>, Error> {
-    AnimatedScene::of(frames(format, bytes, folder, name, Play::Nothing)?).at_rest()
 }
 
 fn frames(

@@ -1,5 +1,6 @@
 //! The bytes of files and streams, decompressed where they are gzip.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -60,21 +61,45 @@ fn limited(stream: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The folder that the names inside a file are relative to.
-pub(super) struct Folder(PathBuf);
+/// The folder that the names inside a file are relative to, and which files were read for these names.
+pub(super) struct Folder {
+    path: PathBuf,
+    read: RefCell<Vec<PathBuf>>,
+}
 
 impl Folder {
     pub(super) fn new(path: impl Into<PathBuf>) -> Self {
-        Self(path.into())
+        Self {
+            path: path.into(),
+            read: RefCell::default(),
+        }
     }
 
     /// The folder of a file.
     pub(super) fn of(path: &Path) -> Self {
-        Self(path.parent().map(Path::to_owned).unwrap_or_default())
+        Self::new(path.parent().map(Path::to_owned).unwrap_or_default())
     }
 
     pub(super) fn join(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.path.join(name)
+    }
+
+    /// The contents of the file of this name.
+    pub(super) fn file(&self, name: &str) -> Result<Vec<u8>, Error> {
+        let path = self.join(name);
+        let bytes = file(&path)?;
+        self.note([path]);
+        Ok(bytes)
+    }
+
+    /// Notes files that were read.
+    pub(super) fn note(&self, files: impl IntoIterator<Item = PathBuf>) {
+        self.read.borrow_mut().extend(files);
+    }
+
+    /// The files that were read.
+    pub(super) fn into_read(self) -> Vec<PathBuf> {
+        self.read.into_inner()
     }
 }
 

@@ -8,7 +8,7 @@ use satisfice_collision::io::AnimatedScene;
 use serde_json::{Value, json};
 
 use super::super::arguments::CollideArguments;
-use super::super::inputs::{Inputs, NamedBody};
+use super::super::inputs::{self, Inputs, NamedBody};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Ends {
@@ -143,14 +143,17 @@ impl Ends {
         }
     }
 
-    /// The bodies at the start and at the end.
-    pub(super) fn read(&self) -> anyhow::Result<[Vec<NamedBody>; 2]> {
+    /// The bodies at the start and at the end, and every file that was read for them.
+    pub(super) fn read(&self) -> anyhow::Result<([Vec<NamedBody>; 2], Vec<PathBuf>)> {
         match self {
             Self::Files { from, to } => {
                 if from.reads_stdin() && to.reads_stdin() {
                     bail!("standard input can be read once only: name files for --from or for --to");
                 }
-                Ok([from.read().context("--from")?, to.read().context("--to")?])
+                let (start, mut files) = from.read().context("--from")?;
+                let (end, others) = to.read().context("--to")?;
+                files.extend(others);
+                Ok(([start, end], files))
             }
             Self::Times(times) => times.read(),
         }
@@ -158,15 +161,16 @@ impl Ends {
 }
 
 impl Times {
-    fn read(&self) -> anyhow::Result<[Vec<NamedBody>; 2]> {
+    fn read(&self) -> anyhow::Result<([Vec<NamedBody>; 2], Vec<PathBuf>)> {
         let names: Vec<&str> = self.animations.iter().map(String::as_str).collect();
         let scenes = self.inputs.scenes(&names)?;
         self.check(&scenes)?;
         let [from, to] = self.seconds;
-        Ok([
+        let bodies = [
             self.inputs.at_time(&scenes, from).context("--from")?,
             self.inputs.at_time(&scenes, to).context("--to")?,
-        ])
+        ];
+        Ok((bodies, inputs::files(&scenes)))
     }
 
     /// The animations must exist and reach the times: behind its end nothing moves, which nobody asks for on purpose.

@@ -1,5 +1,6 @@
 //! The bodies at both ends of a step.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
@@ -34,6 +35,8 @@ pub(super) struct Frames {
     pub(super) bodies: Vec<NamedBody>,
     /// The same bodies at the end.
     pub(super) ends: Vec<Arc<Mesh>>,
+    /// Every file that was read for them.
+    pub(super) files: Vec<PathBuf>,
     /// Shared with the thread that builds its trees.
     pub(super) step: Arc<Step>,
     pub(super) kinds: Vec<PairKind>,
@@ -44,7 +47,7 @@ pub(super) struct Frames {
 impl Frames {
     pub(super) fn read(request: MotionRequest) -> anyhow::Result<Self> {
         let separation = Separation::new(request.threshold)?;
-        let [bodies, ends] = request.ends.read()?;
+        let ([bodies, ends], files) = request.ends.read()?;
         check_partners(&request, &bodies, &ends)?;
         if bodies.len() < 2 && !request.within {
             bail!("one body has no partner: name a second mesh, or look for pairs within it by --self");
@@ -67,6 +70,7 @@ impl Frames {
             request,
             bodies,
             ends: ends.into_iter().map(|end| end.mesh).collect(),
+            files,
             step: Arc::new(step),
             kinds,
             separation,

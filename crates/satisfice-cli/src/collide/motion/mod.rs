@@ -37,7 +37,7 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
         within: arguments.within,
         first: arguments.find.find() == Find::First,
     })?;
-    let mut files = Files::open(arguments)?;
+    let mut files = Files::open(arguments, &frames.files)?;
     if frames.is_at_rest() {
         message::say(format_args!(
             "warning: no vertex moves: the coordinates are the same at --from and --to"

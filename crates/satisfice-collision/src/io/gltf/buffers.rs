@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::document::{Accessor, Document, Sparse};
 use super::malformed;
 use crate::error::Error;
-use crate::io::source::{self, Folder};
+use crate::io::source::Folder;
 
 /// The buffers of a document, each loaded when it is first used.
 pub(super) struct Buffers<'a> {
@@ -200,7 +200,7 @@ impl<'a> Buffers<'a> {
             return Err(Error::unsupported(super::NAME, what));
         }
         let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
-        source::file(&self.folder.join(&name))
+        self.folder.file(&name)
     }
 }
 

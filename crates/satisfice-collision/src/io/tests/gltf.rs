@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::io::{PlacedMesh, parse, read, read_scene, read_scene_from};
 
 /// A unit right triangle as 9 floats and three indices of 16 bits.
-fn data() -> Vec<u8> {
+pub(super) fn data() -> Vec<u8> {
     let positions = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let mut bytes: Vec<u8> = positions.iter().flat_map(|c| c.to_le_bytes()).collect();
     bytes.extend([0_u16, 1, 2].iter().flat_map(|v| v.to_le_bytes()));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::SQUARE;
 use crate::Mesh;
-use crate::io::{read_scene, save_obj};
+use crate::io::{AnimatedScene, Format, read_scene, save_obj};
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -70,4 +70,22 @@ fn list_errors_name_the_body() {
         "{error}"
     );
     assert!(say("a.toml", "[[bodies]]\nmesh = 3\n").contains("line 2"));
+}
+
+#[test]
+fn a_scene_tells_every_file_that_it_was_read_from() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("triangle.bin"), super::gltf::data()).unwrap();
+    let mut document = super::gltf::document(serde_json::json!([{ "mesh": 0 }]));
+    document["buffers"][0]["uri"] = "triangle.bin".into();
+    fs::write(at("node.gltf"), document.to_string()).unwrap();
+    let list = r#"{"bodies": [{"mesh": "square.obj"}, {"mesh": "node.gltf"}, {"mesh": "square.obj"}]}"#;
+    fs::write(at("list.json"), list).unwrap();
+    let names = ["list.json", "square.obj", "node.gltf", "triangle.bin"].map(at);
+    assert_eq!(AnimatedScene::read_resting(&names[0]).unwrap().files(), names);
+    assert_eq!(AnimatedScene::read(&names[2], &[]).unwrap().files(), &names[2..]);
+    let stream =
+        AnimatedScene::read_resting_from(list.as_bytes(), Format::named("json").unwrap(), "", folder.path());
+    assert_eq!(stream.unwrap().files(), &names[1..]);
 }
