@@ -1,5 +1,6 @@
 //! The DIMACS formats: clauses (`cnf`) and graphs (`edge`).
 
+use core::fmt::Display;
 use std::fs::File;
 use std::io::Read;
 
@@ -22,11 +23,31 @@ pub(super) fn read(path: &str) -> Result<String, Error> {
 /// Longer files are refused: devices and pipes may have no end.
 const LONGEST: u64 = 1 << 28;
 
-struct Reader<'a> {
-    path: &'a str,
+/// The line `p KIND N M`.
+#[derive(Clone, Copy)]
+struct Sizes {
+    line: usize,
+    /// Variables or vertices.
+    n: usize,
+    /// Clauses or edges.
+    m: usize,
 }
 
-impl Reader<'_> {
+struct Reader<'a> {
+    path: &'a str,
+    kinds: &'a [&'a str],
+    sizes: Option<Sizes>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(path: &'a str, kinds: &'a [&'a str]) -> Self {
+        Self {
+            path,
+            kinds,
+            sizes: None,
+        }
+    }
+
     fn bad(&self, line: usize, wanted: &str) -> Error {
         Error::parameter(
             "file",
@@ -35,31 +56,69 @@ impl Reader<'_> {
         )
     }
 
-    /// The two sizes of a problem line `p KIND a b`.
-    fn sizes(&self, line: usize, text: &str, kinds: &[&str]) -> Result<[usize; 2], Error> {
-        let wanted = || self.bad(line, &format!("`p {} N M` with N from 1 to {LARGEST}", kinds[0]));
+    /// The file is not what it announces.
+    fn differs(&self, sizes: Sizes, what: &str, found: impl Display) -> Error {
+        let Sizes { line, m, .. } = sizes;
+        let line = line + 1;
+        Error::parameter(
+            "file",
+            self.path,
+            format!("a whole DIMACS file; line {line}: {m} {what} announced, {found}"),
+        )
+    }
+
+    /// Reads the problem line `p KIND N M`, of which there is one.
+    fn read_sizes(&mut self, line: usize, text: &str) -> Result<(), Error> {
+        if self.sizes.is_some() {
+            return Err(self.bad(line, "no second line that begins with p"));
+        }
+        let wanted = || {
+            self.bad(
+                line,
+                &format!("`p {} N M` with N from 1 to {LARGEST}", self.kinds[0]),
+            )
+        };
         let mut words = text.split_whitespace().skip(1);
         let kind = words.next().ok_or_else(wanted)?;
         let mut size = || words.next().and_then(|word| word.parse::<usize>().ok());
         match (size(), size()) {
-            (Some(n @ 1..=LARGEST), Some(m)) if kinds.contains(&kind) => Ok([n, m]),
+            (Some(n @ 1..=LARGEST), Some(m)) if self.kinds.contains(&kind) => {
+                self.sizes = Some(Sizes { line, n, m });
+                Ok(())
+            }
             _ => Err(wanted()),
         }
+    }
+
+    /// The sizes, on a line that comes after theirs.
+    fn sizes_before(&self, line: usize) -> Result<Sizes, Error> {
+        self.sizes
+            .ok_or_else(|| self.bad(line, &format!("after the line `p {} N M`", self.kinds[0])))
+    }
+
+    /// The sizes, at the end.
+    fn sizes(&self) -> Result<Sizes, Error> {
+        self.sizes
+            .ok_or_else(|| self.bad(0, &format!("a line `p {} N M`", self.kinds[0])))
     }
 }
 
 /// The number of variables and the clauses of a `cnf` file: literals +-(1 + variable).
+///
+/// There must be as many clauses as announced. The last one may end with its line instead of a 0, as in the definition of the
+/// format; where the text ends within that line, it has been cut.
 pub(super) fn clauses(path: &str, text: &str) -> Result<(usize, Vec<Vec<i32>>), Error> {
-    let reader = Reader { path };
-    let mut variables = None;
+    let mut reader = Reader::new(path, &["cnf"]);
     let (mut clauses, mut clause) = (Vec::new(), Vec::new());
+    let mut last = 0;
     for (number, line) in text.lines().enumerate() {
         match line.trim_start().as_bytes().first() {
             None | Some(b'c') => {}
             Some(b'%') => break, // the end mark of the SATLIB files
-            Some(b'p') => variables = Some(reader.sizes(number, line, &["cnf"])?[0]),
+            Some(b'p') => reader.read_sizes(number, line)?,
             _ => {
-                let n = variables.ok_or_else(|| reader.bad(number, "after the line `p cnf N M`"))?;
+                let Sizes { n, .. } = reader.sizes_before(number)?;
+                last = number;
                 for word in line.split_whitespace() {
                     let literal = word
                         .parse::<i32>()
@@ -74,23 +133,31 @@ pub(super) fn clauses(path: &str, text: &str) -> Result<(usize, Vec<Vec<i32>>), 
             }
         }
     }
+    let sizes = reader.sizes()?;
     if !clause.is_empty() {
+        if last + 1 == text.lines().count() && !text.ends_with('\n') {
+            return Err(reader.bad(last, "the end of a clause, a 0: the file may be cut"));
+        }
         clauses.push(clause);
     }
-    let variables = variables.ok_or_else(|| reader.bad(0, "a line `p cnf N M`"))?;
-    Ok((variables, clauses))
+    if clauses.len() != sizes.m {
+        return Err(reader.differs(sizes, "clauses", format!("{} found", clauses.len())));
+    }
+    Ok((sizes.n, clauses))
 }
 
 /// The number of vertices and the edges of an `edge` file, vertices counted from 0.
+///
+/// There must be as many lines `e A B` as announced. Some known files list each edge once and announce twice the number, or list
+/// each edge in both directions and announce the number of edges; these are read as well.
 pub(super) fn edges(path: &str, text: &str) -> Result<(usize, Vec<[usize; 2]>), Error> {
-    let reader = Reader { path };
-    let mut vertices = None;
+    let mut reader = Reader::new(path, &["edge", "edges", "col"]);
     let mut edges = Vec::new();
     for (number, line) in text.lines().enumerate() {
         match line.trim_start().as_bytes().first() {
-            Some(b'p') => vertices = Some(reader.sizes(number, line, &["edge", "edges", "col"])?[0]),
+            Some(b'p') => reader.read_sizes(number, line)?,
             Some(b'e') => {
-                let n = vertices.ok_or_else(|| reader.bad(number, "after the line `p edge N M`"))?;
+                let Sizes { n, .. } = reader.sizes_before(number)?;
                 let mut ends = line
                     .split_whitespace()
                     .skip(1)
@@ -109,8 +176,24 @@ pub(super) fn edges(path: &str, text: &str) -> Result<(usize, Vec<[usize; 2]>), 
             _ => {}
         }
     }
-    let vertices = vertices.ok_or_else(|| reader.bad(0, "a line `p edge N M`"))?;
-    Ok((vertices, edges))
+    let sizes = reader.sizes()?;
+    let (lines, announced) = (edges.len(), sizes.m);
+    if lines != announced {
+        let mut different: Vec<_> = edges.iter().map(|&[a, b]| (a.min(b), a.max(b))).collect();
+        different.sort_unstable();
+        different.dedup();
+        let different = different.len();
+        let is_once = different == lines && announced.checked_sub(lines) == Some(lines);
+        let is_twice = different == announced && lines.checked_sub(announced) == Some(announced);
+        if !is_once && !is_twice {
+            let repeated = match lines - different {
+                0 => String::new(),
+                repeated => format!(", {repeated} of them again"),
+            };
+            return Err(reader.differs(sizes, "edges", format!("{lines} found{repeated}")));
+        }
+    }
+    Ok((sizes.n, edges))
 }
 
 #[cfg(test)]
@@ -131,6 +214,55 @@ mod tests {
             clauses("x", text),
             Ok((3, vec![vec![1, -2], vec![3], vec![-1, -3]]))
         );
+    }
+
+    #[test]
+    fn a_file_that_is_cut_is_refused() {
+        let whole = "c uf\np cnf 12 2\n 1 -2 11 0\n-3 10 12 0\n%\n0\n\n";
+        let last = whole.find(" 0\n%").unwrap() + 2;
+        for end in 0..whole.len() {
+            let read = clauses("x.cnf", &whole[..end]);
+            assert_eq!(read.is_ok(), end >= last, "{:?}: {read:?}", &whole[..end]);
+        }
+        for (text, says) in [
+            (
+                "p cnf 20 91\n1 2 3 0\n",
+                "file = x.cnf is not allowed: a whole DIMACS file; line 1: 91 clauses announced, 1 found",
+            ),
+            ("p cnf 3 1\n1 0\n2 0\n", "line 1: 1 clauses announced, 2 found"),
+            ("p cnf 3 1\n1 2", "line 2 has to be the end of a clause, a 0"),
+            ("p cnf 3 1\n1 0\np cnf 3 1\n", "line 3 has to be no second line"),
+        ] {
+            let error = clauses("x.cnf", text).unwrap_err().to_string();
+            assert!(error.contains(says), "{error}");
+        }
+        // The example of the definition of the format has no 0 at its end.
+        assert!(clauses("x", "p cnf 4 3\n1 3 -4 0\n4 0 2\n-3\n").is_ok());
+    }
+
+    #[test]
+    fn graphs_list_each_edge_once_or_twice() {
+        for text in [
+            "p edge 3 2\ne 1 2\ne 2 3\n",
+            "p edge 3 4\ne 1 2\ne 2 3\n",
+            "p edge 3 4\ne 1 2\ne 2 3\ne 2 1\ne 3 2\n",
+            "p col 3 2\ne 1 2\ne 2 1\ne 2 3\ne 3 2\n",
+            "p edge 3 0\n",
+        ] {
+            assert!(edges("x", text).is_ok(), "{text}");
+        }
+        for (text, says) in [
+            ("p edge 3 5\ne 1 2\n", "line 1: 5 edges announced, 1 found"),
+            ("p edge 3 1\ne 1 2\ne 2 3\n", "line 1: 1 edges announced, 2 found"),
+            (
+                "p edge 3 4\ne 1 2\ne 2 1\n",
+                "line 1: 4 edges announced, 2 found, 1 of them again",
+            ),
+            ("p edge 3 2\n", "line 1: 2 edges announced, 0 found"),
+        ] {
+            let error = edges("x", text).unwrap_err().to_string();
+            assert!(error.contains(says), "{error}");
+        }
     }
 
     #[test]

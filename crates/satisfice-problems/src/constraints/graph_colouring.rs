@@ -62,7 +62,8 @@ impl Graph {
     /// The graph of a DIMACS `edge` file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for the parameter `file` if it cannot be read or is malformed.
+    /// [`Error::Parameter`] for the parameter `file` if it cannot be read, is malformed, or has not as many edges
+    /// as it announces; half as many, or each edge twice, are allowed, as known files have it.
     pub fn read_dimacs(path: &str) -> Result<Self, Error> {
         let (vertices, edges) = dimacs::edges(path, &dimacs::read(path)?)?;
         Ok(Self { vertices, edges })

@@ -62,7 +62,8 @@ impl Formula {
     /// The formula of a DIMACS `cnf` file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for the parameter `file` if it cannot be read or is malformed.
+    /// [`Error::Parameter`] for the parameter `file` if it cannot be read, is malformed, or has not as many clauses
+    /// as it announces.
     pub fn read_dimacs(path: &str) -> Result<Self, Error> {
         let (variables, clauses) = dimacs::clauses(path, &dimacs::read(path)?)?;
         Ok(Self { variables, clauses })
