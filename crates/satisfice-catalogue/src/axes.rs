@@ -1,9 +1,12 @@
 //! Axes as plain data: what a file or another language says of a space.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use satisfice::{Axis, Space};
+use satisfice::{Axis, Error, Space};
 use serde::{Deserialize, Serialize};
+
+use crate::quantity::shown::exact;
 
 /// Integers beyond this are not exact.
 const MOST: f64 = 9_007_199_254_740_992.0;
@@ -43,7 +46,7 @@ pub struct AxisEntry {
     /// Whether it is a circle, such as an angle: what leaves at one end enters at the other.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub periodic: bool,
-    /// Words instead of numbers, without an order. Their coordinate is the index.
+    /// Words instead of numbers, each another one, without an order. Their coordinate is the index.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub categories: Vec<String>,
     /// That many coordinates, which are an order of the integers from 0 on.
@@ -86,6 +89,12 @@ impl AxisEntry {
                         .into(),
                 );
             }
+            let mut known = BTreeSet::new();
+            if let Some(word) = self.categories.iter().find(|word| !known.insert(*word)) {
+                return Err(format!(
+                    "two categories are called `{word}`: choose different names"
+                ));
+            }
             let count = u32::try_from(self.categories.len()).map_err(|_| "too many categories")?;
             return Ok(vec![Axis::categorical(count)]);
         }
@@ -97,6 +106,7 @@ impl AxisEntry {
                 .iter()
                 .any(|end| end.fract() != 0.0 || end.abs() >= MOST)
             {
+                let [lower, upper] = [lower, upper].map(exact);
                 return Err(format!(
                     "lower = {lower} and upper = {upper}: the ends of an integer axis are whole numbers below 2^53"
                 ));
@@ -133,7 +143,19 @@ pub fn space(entries: &[AxisEntry]) -> Result<Space<f64>, String> {
     for (entry, (name, _)) in entries.iter().zip(places(entries)) {
         axes.extend(entry.axes().map_err(|what| format!("axis {name}: {what}"))?);
     }
-    Space::new(axes).map_err(|error| error.to_string())
+    Space::new(axes).map_err(|error| {
+        let said = error.to_string();
+        let Error::Bounds { axis, .. } = error else {
+            return said;
+        };
+        // By its name, as in the errors above.
+        let name = places(entries).find_map(|(name, place)| place.contains(&axis).then_some(name));
+        let what = said.strip_prefix(&format!("axis {axis}: "));
+        match (name, what) {
+            (Some(name), Some(what)) => format!("axis {name}: {what}"),
+            _ => said,
+        }
+    })
 }
 
 #[cfg(test)]
@@ -177,14 +199,29 @@ mod tests {
                 "whole numbers",
             ),
             (r#"[{"lower": 0, "categories": ["a"]}]"#, "neither lower"),
-            (r#"[{"lower": 0, "upper": 1, "logarithmic": true}]"#, "axis 0"),
+            (
+                r#"[{"categories": ["a", "b", "a"]}]"#,
+                "axis x0: two categories are called `a`: choose different names",
+            ),
+            (
+                r#"[{"lower": 0, "upper": 1, "logarithmic": true}]"#,
+                "axis x0: bounds [0, 1] are not usable",
+            ),
+            (
+                r#"[{"permutation": 3}, {"name": "n", "lower": 2, "upper": 1}]"#,
+                "axis n: bounds [2, 1]",
+            ),
+            (
+                r#"[{"lower": 0, "upper": 1e300, "integer": true}]"#,
+                "axis x0: lower = 0 and upper = 1e300: the ends",
+            ),
             (
                 r#"[{"lower": 1, "upper": 9, "logarithmic": true, "integer": true}]"#,
                 "continuous",
             ),
             (
                 r#"[{"lower": 1, "upper": 9, "logarithmic": true, "periodic": true}]"#,
-                "axis 0",
+                "axis x0",
             ),
             (r#"[{"permutation": 0}]"#, "from 1 to"),
             (r#"[{"permutation": 3, "integer": true}]"#, "nothing else"),

@@ -243,6 +243,7 @@ def test_islands():
         ({"bounds": [(0, 1.5)], "integrality": True}, ValueError, "whole ends"),
         ({"integrality": [True]}, ValueError, "1 entries for 2 axes"),
         ({"categories": {7: ["a"]}}, ValueError, "axis 7"),
+        ({"categories": {1: "aba"}}, ValueError, "two categories are called `a`"),
         ({"logarithmic": True}, ValueError, "lower bound above 0"),
         ({"periodic": [True]}, ValueError, "periodic has 1 entries"),
         ({"permutations": [[1, 0]]}, ValueError, "follow each other"),
