@@ -52,16 +52,18 @@ pub enum Error {
         value: f64,
     },
     /// An element names a vertex that does not exist.
-    #[error("{element} {index} names vertex {vertex}, but the mesh has {vertices} vertices (0 to {})", vertices.saturating_sub(1))]
+    #[error("{element} {index} names vertex {}, but the mesh has {vertices} vertices ({first} to {})", vertex.saturating_add_unsigned(u64::from(*first)), vertices.saturating_sub(1) + usize::from(*first))]
     IndexOutOfRange {
         /// The kind of the element.
         element: Element,
         /// Serial number of the element among its kind.
         index: usize,
-        /// The vertex it names (negative if the file resolves to one before the first).
+        /// The vertex it names, counted from 0 (negative if the file resolves to one before the first).
         vertex: i64,
         /// How many vertices there are.
         vertices: usize,
+        /// The number of the first vertex as the file counts, 0 or 1; the message counts likewise.
+        first: u8,
     },
     /// A surface with a hole encloses nothing.
     #[error("the surface is not closed: {}, the first of them between vertices {} and {} ({}); close its holes", odd(*edges), edge[0], edge[1], counted(*triangles, "triangle"))]

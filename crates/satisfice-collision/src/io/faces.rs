@@ -67,5 +67,6 @@ pub(super) fn checked_index(
             index,
             vertex,
             vertices,
+            first: 0,
         })
 }

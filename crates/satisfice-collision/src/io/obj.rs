@@ -5,7 +5,7 @@
 
 use super::faces::{Faces, checked_index};
 use super::format::{Format, Reader};
-use super::text::{Lines, Words, quoted, real, whole, without_comment, without_mark};
+use super::text::{Lines, Words, as_written, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
 use crate::mesh::{Mesh, finite};
 
@@ -85,7 +85,7 @@ impl Contents {
     fn vertex(&mut self, words: Words<'_>) -> Result<(), Error> {
         let mut numbers = [0.0; 7];
         let mut count = 0;
-        for word in words {
+        for word in words.clone() {
             let number = real(word).ok_or_else(|| {
                 Error::malformed(NAME, format!("a vertex has {} for a number", quoted(word)))
             })?;
@@ -106,7 +106,8 @@ impl Contents {
                 return Err(Error::malformed(NAME, reason));
             }
         };
-        self.vertices.push(finite(self.vertices.len(), point)?);
+        let point = finite(self.vertices.len(), point).map_err(|error| as_written(NAME, error, words))?;
+        self.vertices.push(point);
         Ok(())
     }
 
@@ -183,7 +184,7 @@ impl Contents {
             given - 1
         };
         if vertex < vertices as i64 || vertex > i64::from(u32::MAX) {
-            return checked_index(element, index, vertex, vertices);
+            return checked_index(element, index, vertex, vertices).map_err(counted_from_1);
         }
         if self.forward.last().is_none_or(|last| last.vertex < vertex) {
             self.forward.push(Reference {
@@ -199,10 +200,18 @@ impl Contents {
     fn mesh(self) -> Result<Mesh, Error> {
         for r in &self.forward {
             checked_index(r.element, r.index, r.vertex, self.vertices.len())
-                .map_err(|error| error.at_line(r.line))?;
+                .map_err(|error| counted_from_1(error).at_line(r.line))?;
         }
         self.faces.mesh(self.vertices)
     }
+}
+
+/// The error of a vertex number, in numbers that the user finds in the file.
+fn counted_from_1(mut error: Error) -> Error {
+    if let Error::IndexOutOfRange { first, .. } = &mut error {
+        *first = 1;
+    }
+    error
 }
 
 /// What says nothing about positions is passed over; geometry of other kinds is refused, not lost.

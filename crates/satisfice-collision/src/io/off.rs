@@ -2,7 +2,7 @@
 
 use super::faces::{Faces, checked_index};
 use super::format::{Format, Reader};
-use super::text::{Lines, Words, quoted, real, whole, without_comment, without_mark};
+use super::text::{Lines, Words, as_written, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
 use crate::mesh::{Mesh, finite};
 
@@ -152,7 +152,7 @@ fn check_keyword(line: &[u8], keyword: &[u8]) -> Result<(), Error> {
 fn position(words: Words<'_>, vertex: usize) -> Result<[f64; 3], Error> {
     let mut point = [0.0; 3];
     let mut count = 0;
-    for word in words {
+    for word in words.clone() {
         let number: f64 = real(word)
             .ok_or_else(|| malformed(format!("vertex {vertex} has {} for a number", quoted(word))))?;
         if let Some(coordinate) = point.get_mut(count) {
@@ -163,5 +163,5 @@ fn position(words: Words<'_>, vertex: usize) -> Result<[f64; 3], Error> {
     if !(3..=12).contains(&count) {
         return Err(malformed(format!("vertex {vertex} has {count} numbers")));
     }
-    finite(vertex, point)
+    finite(vertex, point).map_err(|error| as_written(NAME, error, words))
 }

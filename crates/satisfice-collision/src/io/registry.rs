@@ -1,9 +1,9 @@
 //! The registry of formats: one line for each.
 
-use std::io;
 use std::path::Path;
 
 use super::format::Format;
+use super::source::is_folder;
 use super::{gltf, list, obj, off, ply, stl};
 use crate::error::Error;
 
@@ -44,7 +44,7 @@ impl Format {
             .ok_or_else(|| match path.is_dir() {
                 true => Error::Unreadable {
                     path: path.to_owned(),
-                    source: io::Error::other("it is a folder: name the mesh files in it"),
+                    source: is_folder(),
                 },
                 false => Error::UnknownFormat {
                     path: path.to_owned(),

@@ -13,9 +13,17 @@ use crate::error::Error;
 const STREAM_LIMIT: u64 = 1 << 30;
 const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
 
+/// Why a folder is not read.
+pub(super) fn is_folder() -> io::Error {
+    io::Error::other("it is a folder: name the mesh files in it")
+}
+
 /// The contents of a file.
 pub(super) fn file(path: &Path) -> Result<Vec<u8>, Error> {
     let contents = || {
+        if path.is_dir() {
+            return Err(is_folder());
+        }
         let mut file = File::open(path)?;
         let mut bytes = Vec::new();
         // Only regular files have a known end; devices and pipes may have none.

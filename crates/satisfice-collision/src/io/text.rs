@@ -3,6 +3,7 @@
 use memchr::memchr2;
 
 use crate::error::Error;
+use crate::mesh::AXES;
 
 /// The text without a byte order mark.
 ///
@@ -108,6 +109,29 @@ pub(super) fn whole(word: &[u8]) -> Option<i64> {
         value = value.checked_mul(10)?.checked_add(signed)?;
     }
     Some(value)
+}
+
+/// The error of a coordinate that is not finite because the file has too large a number for it: with this number. `words` are
+/// those of the vertex.
+pub(super) fn as_written<'a>(
+    format: &'static str,
+    error: Error,
+    mut words: impl Iterator<Item = &'a [u8]>,
+) -> Error {
+    let Error::NonFiniteVertex { vertex, axis, .. } = error else {
+        return error;
+    };
+    let place = AXES.iter().position(|known| *known == axis);
+    match place.and_then(|place| words.nth(place)) {
+        Some(word) if word.iter().any(u8::is_ascii_digit) => Error::malformed(
+            format,
+            format!(
+                "vertex {vertex} has {axis} = {}, which is too large",
+                quoted(word)
+            ),
+        ),
+        _ => error,
+    }
 }
 
 /// A word for a message: quoted, shortened, without control characters.

@@ -3,7 +3,7 @@
 use super::Point;
 use crate::error::Error;
 
-pub(super) const AXES: [char; 3] = ['x', 'y', 'z'];
+pub(crate) const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// The point, if all of its coordinates are finite.
 ///

@@ -12,7 +12,7 @@ use std::sync::{Arc, OnceLock};
 pub use aabb::Aabb;
 pub use adjacency::Adjacency;
 pub use feature::{FeatureKind, Features, Point, Segment, Shape, Triangle};
-pub(crate) use finite::{all_finite, finite};
+pub(crate) use finite::{AXES, all_finite, finite};
 pub use weld::weld;
 
 use crate::error::{Element, Error};
@@ -232,6 +232,7 @@ fn check_indices<const N: usize>(
                 index,
                 vertex: i64::from(v),
                 vertices,
+                first: 0,
             });
         }
     }

@@ -57,10 +57,11 @@ fn files_go_by_their_extension() {
     let missing = read(folder.path().join("missing.ply")).unwrap_err();
     assert!(matches!(missing, Error::Unreadable { .. }) && missing.to_string().contains("missing.ply"));
     fs::create_dir(folder.path().join("folder.stl")).unwrap();
-    assert!(matches!(
-        read(folder.path().join("folder.stl")),
-        Err(Error::Unreadable { .. })
-    ));
+    let error = read(folder.path().join("folder.stl")).unwrap_err();
+    assert!(
+        matches!(error, Error::Unreadable { .. }) && error.to_string().ends_with("name the mesh files in it"),
+        "{error}"
+    );
     assert!(matches!(
         save_obj(&teapot, folder.path().join("no/teapot.obj")),
         Err(Error::Unwritable { .. })
@@ -71,7 +72,7 @@ fn files_go_by_their_extension() {
     assert!(
         error
             .to_string()
-            .ends_with("bad.obj: line 2: face 0 names vertex 1, but the mesh has 1 vertices (0 to 0)")
+            .ends_with("bad.obj: line 2: face 0 names vertex 2, but the mesh has 1 vertices (1 to 1)")
     );
     assert!(matches!(
         error.root(),

@@ -60,7 +60,7 @@ fn obj_with_every_end_of_line_is_the_same_mesh() {
         assert_eq!(mesh.vertices(), SQUARE, "{end:?}");
         assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
         let error = message(OBJ, format!("{unix}f 1 2 5").replace('\n', end));
-        assert!(error.starts_with("line 9: face 1 names vertex 4"), "{error}");
+        assert!(error.starts_with("line 9: face 1 names vertex 5"), "{error}");
     }
 }
 
@@ -141,7 +141,7 @@ fn obj_errors_name_the_line_and_the_element() {
     );
     assert_eq!(
         say("v 0 0 0\nv 1 0 0\nf 1 2 3\n"),
-        "line 3: face 0 names vertex 2, but the mesh has 2 vertices (0 to 1)"
+        "line 3: face 0 names vertex 3, but the mesh has 2 vertices (1 to 2)"
     );
     assert_eq!(
         say("v 0 0 0\nl 1 1\nl 1 -2"),
@@ -176,12 +176,16 @@ fn obj_errors_name_the_line_and_the_element() {
         "line 2: vertex 1 has y = -inf; coordinates must be finite"
     );
     assert_eq!(
+        say("v 0 0 0\nv 0 -1e400 0"),
+        "line 2: not a valid OBJ file: vertex 1 has y = \"-1e400\", which is too large"
+    );
+    assert_eq!(
         say("v 0 0 0\nl 1 0"),
         "line 2: not a valid OBJ file: edge 0 names vertex 0: OBJ counts vertices from 1"
     );
     let huge = "v 0 0 0\nf 99999999999999999999 1 1";
     assert!(say(huge).contains("has \"99999999999999999999\" where a vertex number belongs"));
-    assert!(say("v 0 0 0\nf 9223372036854775807 1 1").contains("names vertex 9223372036854775806"));
+    assert!(say("v 0 0 0\nf 9223372036854775807 1 1").contains("names vertex 9223372036854775807"));
     assert!(say("v 0 0 0\nf -9223372036854775808 1 1").contains("face 0 names vertex"));
 }
 
