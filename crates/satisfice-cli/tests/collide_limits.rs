@@ -155,7 +155,12 @@ fn memory_that_ends_is_one_line() {
     let report: Value = serde_json::from_slice(&report).unwrap();
     assert_eq!(report["hits"], listed);
     assert_eq!(report["completeness"], "Unknown");
+    assert_eq!(report["stop_reason"], "Memory");
     assert_eq!(report["reference_hits"], VERTICES * VERTICES);
+    // Without a file only a summary is written.
+    let done = in_little_memory(folder.path(), 200_000, VERTICES as u32, "");
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(said.contains(" pairs; --max-pairs N asks for fewer\n"), "{said}");
 }
 
 #[test]

@@ -235,6 +235,8 @@ pub enum StopReason {
     Covered,
     /// The problem panicked, and the run was to [catch that](crate::RunOptions::catch_panics).
     Panicked,
+    /// Memory ended before all that was found could be listed.
+    Memory,
 }
 
 /// For people, as the end of a line about the time.
@@ -250,6 +252,7 @@ impl core::fmt::Display for StopReason {
             Self::Exhausted => "ended because the engine has nothing more to propose",
             Self::Covered => "finished",
             Self::Panicked => "ended by a panic of the problem",
+            Self::Memory => "stopped where memory ended",
         })
     }
 }

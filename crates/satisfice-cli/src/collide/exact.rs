@@ -312,6 +312,11 @@ impl Exact<'_> {
                 answer.skips = Skips::default();
             }
         }
+        // Where it ended just behind the last pair, nothing is lost.
+        answer.is_full = is_full && !answer.complete;
+        if answer.is_full && answer.stop == StopReason::Covered {
+            answer.stop = StopReason::Memory;
+        }
         Ok(answer)
     }
 

@@ -40,4 +40,9 @@ impl Files {
             summary: !places.takes_stdout(),
         })
     }
+
+    /// Whether some output lists the pairs.
+    pub(super) fn lists_pairs(&self) -> bool {
+        self.json.is_some() || self.csv.is_some()
+    }
 }

@@ -7,7 +7,7 @@
 use std::collections::TryReserveError;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use satisfice_collision::distance::Proximity;
 
 use super::scene::Pair;
@@ -34,6 +34,15 @@ pub(super) fn push<T>(list: &mut Vec<T>, element: T) -> anyhow::Result<()> {
     }
     list.push(element);
     Ok(())
+}
+
+/// What is said where memory ended after so many pairs were listed.
+pub(super) fn ended(listed: u64, are_written: bool) -> anyhow::Error {
+    let written = if are_written { ", which are written" } else { "" };
+    match listed {
+        0 => anyhow!("memory ended before a pair was listed: allow the command more memory"),
+        _ => anyhow!("memory ended after {listed} pairs{written}; --max-pairs N asks for fewer"),
+    }
 }
 
 /// Lists of an answer, still empty, with room for what has been found.
@@ -144,4 +153,24 @@ pub(super) struct Listed {
     pub(super) found: usize,
     /// Whether memory ended.
     pub(super) is_full: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_memory_is_told_as_it_was() {
+        for (listed, are_written, says) in [
+            (0, true, "memory ended before a pair was listed: allow"),
+            (
+                7,
+                true,
+                "memory ended after 7 pairs, which are written; --max-pairs N",
+            ),
+            (7, false, "memory ended after 7 pairs; --max-pairs N"),
+        ] {
+            assert!(ended(listed, are_written).to_string().starts_with(says), "{says}");
+        }
+    }
 }

@@ -110,10 +110,7 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     }
     steps.outcome()?;
     if answer.is_full {
-        bail!(
-            "memory ended after {} pairs, which are written; --max-pairs N asks for fewer",
-            report.head.hits
-        );
+        return Err(memory::ended(report.head.hits, files.lists_pairs()));
     }
     let is_empty = report.head.hits == 0 && report.overlaps.iter().flatten().next().is_none();
     Ok(ExitCode::from(u8::from(is_empty)))

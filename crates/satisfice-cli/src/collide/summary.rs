@@ -129,8 +129,9 @@ fn completeness(report: &Report<'_>) -> String {
     if head.completeness == Completeness::Proved {
         return "proved: these are all".to_owned();
     }
-    let searched_all = head.stop_reason == StopReason::Covered && head.reference_hits.is_some();
-    if searched_all {
+    // An exact method that ends by itself has counted what it cannot list.
+    let ended = matches!(head.stop_reason, StopReason::Covered | StopReason::Memory);
+    if ended && head.reference_hits.is_some() {
         return "all are counted, but not all are listed".to_owned();
     }
     match head.reference_hits.and_then(|all| all.checked_sub(head.hits)) {
