@@ -52,29 +52,49 @@ pub fn time(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// A whole number of at least 1, also as `1e6` or `1_000_000`.
+/// A whole number, also as `1e6` or `1_000_000`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "whole and between 1 and 2^53"
+    reason = "whole and between 0 and 2^53"
 )]
+fn number(text: &str) -> Option<u64> {
+    let plain = text.trim().replace('_', "");
+    plain.parse::<u64>().ok().or_else(|| {
+        let number = plain.parse::<f64>().ok()?;
+        (number.fract() == 0.0 && (0.0..=9e15).contains(&number)).then_some(number as u64)
+    })
+}
+
+/// A whole number of at least 1, also as `1e6` or `1_000_000`.
 ///
 /// # Errors
 /// Any other text.
 pub fn count(text: &str) -> Result<u64, String> {
-    let plain = text.trim().replace('_', "");
-    let number = plain.parse::<u64>().ok().or_else(|| {
-        let number = plain.parse::<f64>().ok()?;
-        (number.fract() == 0.0 && (0.0..=9e15).contains(&number)).then_some(number as u64)
-    });
-    match number {
-        None if plain.parse::<f64>().is_ok_and(|number| number > 9e15) => {
+    match number(text) {
+        None if text
+            .trim()
+            .replace('_', "")
+            .parse::<f64>()
+            .is_ok_and(|number| number > 9e15) =>
+        {
             Err("must be at most 9e15".to_owned())
         }
         Some(0) => Err("must be at least 1".to_owned()),
         Some(number) => Ok(number),
         None => Err("must be a whole number of at least 1, such as 5000 or 1e6".to_owned()),
     }
+}
+
+/// A whole number within bounds, also as `1e3`.
+///
+/// # Errors
+/// Any other text, with the bounds.
+pub fn whole<N: TryFrom<u64>>(text: &str, least: u64, most: u64) -> Result<N, String> {
+    number(text)
+        .filter(|number| (least..=most).contains(number))
+        .and_then(|number| N::try_from(number).ok())
+        .ok_or_else(|| format!("must be a whole number from {least} to {most}"))
 }
 
 /// Any seed.
@@ -113,10 +133,7 @@ pub fn checked_threads(threads: usize) -> Result<usize, String> {
 /// # Errors
 /// Any other text.
 pub fn islands(text: &str) -> Result<usize, String> {
-    match text.trim().parse() {
-        Ok(islands) if (1..=MOST_THREADS).contains(&islands) => Ok(islands),
-        _ => Err(format!("must be a whole number from 1 to {MOST_THREADS}")),
-    }
+    whole(text, 1, MOST_THREADS as u64)
 }
 
 /// How many evaluations go on at once.
@@ -124,11 +141,23 @@ pub fn islands(text: &str) -> Result<usize, String> {
 /// # Errors
 /// Any other text.
 pub fn parallel(text: &str) -> Result<usize, String> {
-    let most = Budget::MOST_PARALLEL;
-    let number = count(text).ok().and_then(|number| usize::try_from(number).ok());
-    number
-        .filter(|number| *number <= most)
-        .ok_or_else(|| format!("must be a whole number from 1 to {most}"))
+    whole(text, 1, Budget::MOST_PARALLEL as u64)
+}
+
+/// How many processes compute values at once.
+///
+/// # Errors
+/// Any other text.
+pub fn workers(text: &str) -> Result<u16, String> {
+    whole(text, 1, MOST_THREADS as u64)
+}
+
+/// How many times something is tried again.
+///
+/// # Errors
+/// Any other text.
+pub fn retries(text: &str) -> Result<u32, String> {
+    whole(text, 0, u64::from(u32::MAX))
 }
 
 /// A number of edges, 0 included.
@@ -359,6 +388,24 @@ mod tests {
                 Err("must be a whole number from 1 to 65536".to_owned())
             );
         }
+    }
+
+    #[test]
+    fn numbers_within_bounds_may_have_a_power_of_ten() {
+        assert_eq!(
+            (workers("1"), workers("1e3"), retries("0")),
+            (Ok(1), Ok(1000), Ok(0))
+        );
+        for text in ["0", "1025", "1e9", "-1", "1.5", "many", ""] {
+            assert_eq!(
+                workers(text),
+                Err("must be a whole number from 1 to 1024".to_owned())
+            );
+        }
+        assert_eq!(
+            retries("1e12"),
+            Err("must be a whole number from 0 to 4294967295".to_owned())
+        );
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use anyhow::bail;
 use clap::{Arg, ArgMatches, Args, FromArgMatches, Parser, Subcommand, ValueHint};
 use satisfice_catalogue::options::OPTIONS;
 use satisfice_catalogue::{RunOption, RunSpec};
@@ -179,7 +180,7 @@ pub(crate) struct ProgramArguments {
     pub(crate) threshold: Option<f64>,
 
     /// Processes at a time.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024), requires = "evaluator")]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::workers, allow_hyphen_values = true, requires = "evaluator")]
     pub(crate) workers: u16,
 
     /// Give up an evaluation after this time, and end its process.
@@ -187,7 +188,7 @@ pub(crate) struct ProgramArguments {
     pub(crate) timeout: Option<Duration>,
 
     /// Retry a failed evaluation up to this many times. If it still fails, its value counts as NaN.
-    #[arg(long, value_name = "N", default_value = "1", requires = "evaluator")]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::retries, allow_hyphen_values = true, requires = "evaluator")]
     pub(crate) retries: u32,
 
     /// Let /bin/sh run the program.
@@ -204,6 +205,16 @@ impl ProgramArguments {
     pub(crate) fn is_given(&self) -> bool {
         self.program.is_some() || self.worker.is_some()
     }
+}
+
+/// Refuses two values for one parameter: which of them is meant cannot be known.
+pub(crate) fn check_once(option: &str, settings: &[(String, String)]) -> anyhow::Result<()> {
+    for (place, (name, value)) in settings.iter().enumerate() {
+        if let Some((_, first)) = settings[..place].iter().find(|(known, _)| known == name) {
+            bail!("{option} {name}={value}: {name} is set to {first} before: set it once");
+        }
+    }
+    Ok(())
 }
 
 /// Options of every search.
@@ -229,6 +240,7 @@ pub(crate) struct SearchArguments {
 impl SearchArguments {
     /// A run of one slice by this engine, checked.
     pub(crate) fn spec(&self, engine: &str) -> anyhow::Result<RunSpec> {
+        self.check()?;
         let mut spec = RunSpec::new(engine);
         self.enter(&mut spec);
         if spec.budget.time.is_none() && spec.budget.evaluations.is_none() && spec.budget.patience.is_none() {
@@ -237,6 +249,11 @@ impl SearchArguments {
         // A wrong engine or parameter is an error before any file is opened.
         satisfice::engine::find(engine)?;
         Ok(spec.complete()?)
+    }
+
+    /// Refuses two values for one parameter of the engine.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        check_once("--engine-set", &self.engine_set)
     }
 
     /// Enters what is given.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunSpec, json};
 use satisfice_draw::plot::{self, Format};
 
-use crate::arguments::{DEFAULT_ENGINE, RunArguments};
+use crate::arguments::{DEFAULT_ENGINE, RunArguments, check_once};
 use crate::checkpoint::{self, Keeper};
 use crate::output::{self, Output, Steps};
 use crate::places::{self, Places};
@@ -20,6 +20,8 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
         return program::run(arguments);
     }
     page::check(arguments.page.as_deref())?;
+    check_once("--set", &arguments.set)?;
+    arguments.search.check()?;
     let named = arguments.problem.as_deref();
     let known = named.map(|name| catalogue.find(name)).transpose()?;
     let resume = arguments.resume.as_deref();

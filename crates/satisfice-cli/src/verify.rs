@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use anyhow::{Context, bail};
-use satisfice_catalogue::{Catalogue, Mismatch, RunReport, input};
+use anyhow::{Context, anyhow, bail};
+use satisfice_catalogue::{Catalogue, Mismatch, RunReport, checkpoint, input};
 
 use crate::arguments::VerifyArguments;
 use crate::{collide, output, program};
@@ -29,7 +29,12 @@ pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyh
         collide::verify(&text)
     } else {
         serde_json::from_slice(&text)
-            .with_context(wrong)
+            .map_err(|error| match checkpoint::spec(&text) {
+                Ok(_) => anyhow!(
+                    "{path} is a checkpoint, not a report: `satisfice run --resume {path} --json report.json` goes on with its run and writes one"
+                ),
+                Err(_) => anyhow::Error::new(error).context(wrong()),
+            })
             .and_then(|report: RunReport| Ok((mismatches(&report, catalogue)?, report.hits)))
     };
     drop(std::panic::take_hook());

@@ -26,15 +26,32 @@ pub(super) fn plain(text: &str) -> String {
     format!("{}{checksum}", &name[..LONGEST - checksum.len()])
 }
 
+/// Makes a folder, and those it is in.
+pub(super) fn make_folder(folder: &Path) -> Result<(), Error> {
+    let failed = |path: &Path, what: String| Error::File {
+        path: path.to_owned(),
+        what,
+    };
+    let is_file = |path: &&Path| path.exists() && !path.is_dir();
+    if let Some(file) = folder.ancestors().find(is_file) {
+        let what = "it is a file, but results need a folder; choose another one";
+        return Err(failed(file, what.to_owned()));
+    }
+    std::fs::create_dir_all(folder).map_err(|error| {
+        failed(
+            folder,
+            format!("cannot make this folder: {error}; choose another one"),
+        )
+    })
+}
+
 /// Writes a file and the folders it is in.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let folder = path.parent().unwrap_or_else(|| Path::new("."));
-    std::fs::create_dir_all(folder)
-        .and_then(|()| std::fs::write(path, bytes))
-        .map_err(|error| Error::File {
-            path: path.to_owned(),
-            what: format!("cannot write it: {error}"),
-        })
+    make_folder(path.parent().unwrap_or_else(|| Path::new(".")))?;
+    std::fs::write(path, bytes).map_err(|error| Error::File {
+        path: path.to_owned(),
+        what: format!("cannot write it: {error}"),
+    })
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use satisfice_catalogue::sealed::{self, Broken};
 
+use super::files;
 use super::row::Row;
 use crate::error::Error;
 
@@ -30,14 +31,7 @@ impl Results {
             path: path.clone(),
             what,
         };
-        if folder.is_file() {
-            return Err(Error::File {
-                path: folder.to_owned(),
-                what: "it is a file, but results need a folder; choose another one".to_owned(),
-            });
-        }
-        std::fs::create_dir_all(folder)
-            .map_err(|error| failed(format!("cannot make its folder: {error}; choose another one")))?;
+        files::make_folder(folder)?;
         let mut file = OpenOptions::new()
             .read(true)
             .append(true)

@@ -1,5 +1,6 @@
 //! The bodies named on the command line: files, scenes, standard input, their placements, and welding.
 
+use std::collections::BTreeSet;
 use std::io::StdinLock;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -147,8 +148,13 @@ impl Inputs {
             .flat_map(|(path, bodies)| bodies.into_iter().map(move |body| (path.clone(), body)))
             .collect();
         let names = Names::of(&files);
+        let mut placed = BTreeSet::new();
         for at in &self.at {
-            let body = &mut files[names.find(&at.body)?].1;
+            let number = names.find(&at.body)?;
+            if !placed.insert(number) {
+                bail!("--at {}: this body is placed before: place it once", at.body);
+            }
+            let body = &mut files[number].1;
             *body = body.moved(at.to, at.turn, at.scale)?;
         }
         files

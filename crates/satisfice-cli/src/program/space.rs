@@ -4,10 +4,13 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
+use clap::CommandFactory;
 use satisfice::Space;
 use satisfice_catalogue::axes::{self, AxisEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+
+use crate::arguments::Satisfice;
 
 /// A space and when two of its points are one answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,7 +26,10 @@ pub(crate) struct SpaceFile {
 
 /// One number, or one for each axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "separation is a number, or a list of one for each axis"
+)]
 pub(crate) enum Widths {
     /// The same for all axes.
     Same(f64),
@@ -41,7 +47,10 @@ impl SpaceFile {
     }
 
     fn parse(text: &str) -> anyhow::Result<Self> {
-        let read: Self = toml::from_str(text)?;
+        let read: Self = toml::from_str(text).map_err(|error| match option(error.message()) {
+            Some(name) => anyhow!("`{name}` stands on the command line, not in this file: --{name}"),
+            None => error.into(),
+        })?;
         read.space()?;
         let names: Vec<String> = read.places().map(|(name, _)| name).collect();
         for (axis, name) in names.iter().enumerate() {
@@ -121,6 +130,15 @@ impl SpaceFile {
     }
 }
 
+/// The key that an error calls unknown, if it is an option of the command.
+fn option(message: &str) -> Option<&str> {
+    let (key, _) = message.strip_prefix("unknown field `")?.split_once('`')?;
+    let command = Satisfice::command();
+    let run = command.find_subcommand("run")?;
+    let is_option = run.get_arguments().any(|known| known.get_long() == Some(key));
+    is_option.then_some(key)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,6 +170,23 @@ mod tests {
         for (text, says) in [
             ("", "missing field `axis`"),
             ("axis = []", "no axis"),
+            (
+                "threshold = 1\n[[axis]]\nlower = 0\nupper = 1",
+                "`threshold` stands on the command line, not in this file: --threshold",
+            ),
+            ("sepration = 1\n[[axis]]\nlower = 0\nupper = 1", "unknown field"),
+            (
+                "separation = \"wide\"\n[[axis]]\nlower = 0\nupper = 1",
+                "separation is a number, or a list of one for each axis",
+            ),
+            (
+                "[[axis]]\nname = \"metal\"\ncategories = [\"a\", \"b\", \"a\"]",
+                "axis metal: two categories are called `a`",
+            ),
+            (
+                "[[axis]]\nlower = 1\nupper = 0",
+                "axis x0: bounds [1, 0] are not usable",
+            ),
             ("[[axis]]\nlower = 0", "axis x0: give lower and upper"),
             ("[[axis]]\nlower = 0\nupper = 1\nintger = true", "intger"),
             ("[[axis]]\nname = \"x\"\nlower = 0\nupper = 1", "stands for all"),

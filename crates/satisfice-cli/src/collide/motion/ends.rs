@@ -227,6 +227,9 @@ fn seconds(value: &Path) -> Option<Result<f64, String>> {
     // The start of an animation is a time, though no duration.
     Some(match number {
         0.0 => Ok(0.0),
+        _ if number < 0.0 => {
+            Err("an animation begins at 0s: name a time from there on, such as 0.5s".to_owned())
+        }
         _ => quantity::time(text).map(|time| time.as_secs_f64()),
     })
 }
@@ -250,6 +253,10 @@ mod tests {
         }
         for text in ["1", "2parsec", "-1s"] {
             assert!(seconds(Path::new(text)).unwrap().is_err(), "{text}");
+        }
+        for text in ["-1s", "-1"] {
+            let error = seconds(Path::new(text)).unwrap().unwrap_err();
+            assert!(error.starts_with("an animation begins at 0s"), "{error}");
         }
         for text in ["-", "1s.obj", "a.glb", "s", "inf", "5/a.obj"] {
             assert_eq!(seconds(Path::new(text)), None, "{text}");
