@@ -99,11 +99,12 @@ Examples:
       Run for an hour without losing hits to Ctrl-C or a power cut: a resumed run finds what an uninterrupted one finds.
   satisfice run --program './simulate {x}' --space space.toml --threshold 0.1 --evaluations 500 --workers 4
       Start ./simulate with the coordinates as arguments, four at a time; the last line that it writes is the value.
-  satisfice run --worker './simulator --serve' --space space.toml --threshold 0.1 --time 8h --workers 4 --timeout 10min
+  satisfice run --worker './simulator --serve' --space space.toml --threshold 0.1 --time 8h --workers 4 --timeout 10min --json night.json
       Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2]} and answers {\"ticket\": 7, \"value\": 0.3},
       or {\"ticket\": 7, \"error\": \"why not\"}, line by line. space.toml has a table [[axis]] for each coordinate, with
       lower and upper (and integer, logarithmic or periodic = true), or categories = [\"a\", \"b\"], or permutation = 5 for an order
-      of five, and a name; separation = 0.1 makes nearer hits one.
+      of five, and a name; separation = 0.1 makes nearer hits one. There are no checkpoints of programs: the report is written at
+      the end, also after Ctrl-C or SIGTERM, which keep what was found.
 
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
@@ -129,7 +130,8 @@ pub(crate) struct RunArguments {
     pub(crate) slices: Options<false>,
 
     /// Keep a checkpoint of the run in this file: at the beginning, after a second, then every `--checkpoint-every`, at Ctrl-C
-    /// and at the end. If memory ends during a run, or the machine, only a checkpoint has its hits.
+    /// and at the end. If memory ends during a run, or the machine, only a checkpoint has its hits. Not for `--program` and `--worker`,
+    /// nor is --resume: their hits are written at the end, which Ctrl-C and SIGTERM bring about; give --json.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
 
