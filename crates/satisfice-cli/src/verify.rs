@@ -4,9 +4,11 @@ use std::fmt::Write;
 use std::process::ExitCode;
 
 use anyhow::{Context, anyhow, bail};
+use satisfice::Completeness;
 use satisfice_catalogue::{Catalogue, Mismatch, RunReport, checkpoint, input};
 
 use crate::arguments::VerifyArguments;
+use crate::progress::Counting;
 use crate::{collide, output, program};
 
 /// The number of mismatches shown.
@@ -25,8 +27,9 @@ pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyh
 
     // A problem may panic on a forged solution. That is caught and reported as a mismatch, so the hook stays silent.
     std::panic::set_hook(Box::new(|_| {}));
+    let counting = Counting::new();
     let checked = if problem == collide::PROBLEM {
-        collide::verify(&text)
+        collide::verify(&text, &counting)
     } else {
         serde_json::from_slice(&text)
             .map_err(|error| match checkpoint::spec(&text) {
@@ -35,32 +38,40 @@ pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyh
                 ),
                 Err(_) => anyhow::Error::new(error).context(wrong()),
             })
-            .and_then(|report: RunReport| Ok((mismatches(&report, catalogue)?, report.hits)))
+            .and_then(|report: RunReport| of_run(&report, catalogue, &counting))
     };
+    drop(counting);
     drop(std::panic::take_hook());
-    let (mismatches, hits) = checked?;
+    let Checked {
+        wrong,
+        hits,
+        others,
+        unchecked,
+    } = checked?;
 
     let mut said = String::new();
-    if mismatches.is_empty() {
+    if wrong.is_empty() {
         let _ = writeln!(
             said,
-            "{path} is true: {hits} hits of {problem} evaluated anew, each below the threshold and listed once; its counts agree"
+            "{path} is true: {hits} hits of {problem} evaluated anew, each below the threshold and listed once; {others}; its counts \
+             agree with each other"
         );
+        let _ = writeln!(said, "not checked, as only the same search could: {unchecked}");
     } else {
-        let places = match mismatches.len() {
+        let places = match wrong.len() {
             1 => "1 place".to_owned(),
             many => format!("{many} places"),
         };
         let _ = writeln!(said, "{path} is false in {places}");
-        for mismatch in mismatches.iter().take(SHOWN) {
+        for mismatch in wrong.iter().take(SHOWN) {
             let _ = writeln!(said, "  {mismatch}");
         }
-        if mismatches.len() > SHOWN {
-            let _ = writeln!(said, "  and {} more", mismatches.len() - SHOWN);
+        if wrong.len() > SHOWN {
+            let _ = writeln!(said, "  and {} more", wrong.len() - SHOWN);
         }
     }
     output::print(said.as_bytes())?;
-    Ok(ExitCode::from(u8::from(!mismatches.is_empty())))
+    Ok(ExitCode::from(u8::from(!wrong.is_empty())))
 }
 
 /// The part of a report that says which command it is of.
@@ -69,7 +80,18 @@ struct Kind {
     problem: String,
 }
 
-fn mismatches(report: &RunReport, catalogue: &Catalogue) -> anyhow::Result<Vec<Mismatch>> {
+/// What came out of a check.
+pub(crate) struct Checked {
+    pub(crate) wrong: Vec<Mismatch>,
+    /// How many hits are listed.
+    pub(crate) hits: u64,
+    /// What was done about hits that are not listed.
+    pub(crate) others: &'static str,
+    /// What a report alone does not tell.
+    pub(crate) unchecked: &'static str,
+}
+
+fn of_run(report: &RunReport, catalogue: &Catalogue, counting: &Counting) -> anyhow::Result<Checked> {
     if report.spec.problem == program::PROBLEM {
         bail!(
             "the report is of a program, which computed its values: only another run of the program can check them"
@@ -81,5 +103,31 @@ fn mismatches(report: &RunReport, catalogue: &Catalogue) -> anyhow::Result<Vec<M
         .find(&report.spec.problem)
         .and_then(|entry| entry.build(settings))
         .context("the problem of the report cannot be built")?;
-    Ok(problem.verify(report, problem.reference_hits()))
+    counting.say(format!("evaluating {} hits", report.hits));
+    let reference = problem.reference_hits();
+    let mut wrong = problem.verify(report, reference);
+    wrong.extend(engine_of(report));
+    Ok(Checked {
+        wrong,
+        hits: report.hits,
+        others: match (reference, report.completeness) {
+            (Some(_), _) => "the number of all hits is known, and what it says of it holds",
+            (None, Completeness::Proved) => "whether others are missing was not checked",
+            (None, Completeness::Unknown) => "it does not say that there are no others",
+        },
+        unchecked: "times, the end by them, calls of neighbours and bounds, and estimates of hits not seen",
+    })
+}
+
+/// The engine and its parameters must be known ones.
+fn engine_of(report: &RunReport) -> Option<Mismatch> {
+    match report.spec.clone().complete() {
+        Err(error) => Some(Mismatch::new("engine", &report.spec.engine, error)),
+        Ok(spec) if spec.engine_parameters != report.spec.engine_parameters => Some(Mismatch::new(
+            "engine_parameters",
+            serde_json::json!(report.spec.engine_parameters),
+            serde_json::json!(spec.engine_parameters),
+        )),
+        Ok(_) => None,
+    }
 }

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use anyhow::{Context, bail};
 use clap::{Args, ValueEnum, ValueHint};
+use satisfice::StopReason;
 
 use super::inputs::{self, At};
 use crate::arguments::SearchArguments;
@@ -221,6 +223,29 @@ impl Find {
             Self::First => "first",
             Self::Closest(_) => "closest",
         }
+    }
+
+    /// The question that a report calls so; `closest` is the number of closest pairs.
+    pub(super) fn of_name(name: &str, closest: Option<u64>) -> anyhow::Result<Self> {
+        Ok(match name {
+            "all" => Self::All,
+            "touching" => Self::Touching,
+            "first" => Self::First,
+            "closest" => Self::Closest(closest.context("it has no number `closest`")?),
+            _ => bail!("`find` is none of all, touching, first and closest"),
+        })
+    }
+
+    /// Whether so many pairs of an exact method answer the question for certain; `complete` if they are all pairs.
+    pub(super) fn is_answered(self, pairs: u64, complete: bool, stop: StopReason) -> bool {
+        complete
+            || match self {
+                Self::All => false,
+                Self::First => pairs > 0,
+                Self::Touching | Self::Closest(_) => {
+                    !matches!(stop, StopReason::Cancelled | StopReason::Time)
+                }
+            }
     }
 }
 

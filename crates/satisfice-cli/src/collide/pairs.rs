@@ -78,7 +78,8 @@ fn part(feature: Feature) -> String {
     }
 }
 
-fn direction(a: [f64; 3], b: [f64; 3]) -> Option<[f64; 3]> {
+/// The unit vector from the first point to the second; `None` if they are the same.
+pub(super) fn direction(a: [f64; 3], b: [f64; 3]) -> Option<[f64; 3]> {
     let step: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
     // Scaled first, so that no square is 0 or infinite.
     let most = step.iter().fold(0.0_f64, |most, c| most.max(c.abs()));

@@ -11,7 +11,6 @@ use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::PROBLEM;
-use super::arguments::Find;
 use super::exact::{Exact, Found};
 use super::inputs::NamedBody;
 use super::overlaps::Overlap;
@@ -74,13 +73,7 @@ impl Head {
         let late = how
             .time
             .map_or(Duration::ZERO, |time| found.elapsed.saturating_sub(time));
-        let was_stopped = matches!(found.stop, StopReason::Cancelled | StopReason::Time);
-        let is_answered = found.complete
-            || match world.request.find {
-                Find::All => false,
-                Find::First => listed > 0,
-                Find::Touching | Find::Closest(_) => !was_stopped,
-            };
+        let is_answered = world.request.find.is_answered(listed, found.complete, found.stop);
         let proved = |is_proved| match is_proved {
             true => Completeness::Proved,
             false => Completeness::Unknown,
@@ -233,7 +226,7 @@ impl Serialize for Report<'_> {
         }
         Whole {
             head: &self.head,
-            bodies: self.world.bodies.iter().map(BodyLine::new).collect(),
+            bodies: self.world.body_lines(),
             pairs: PairsOf(self),
             overlaps: self.overlaps.as_deref(),
             touching: &self.touching,
@@ -246,8 +239,10 @@ impl Serialize for Report<'_> {
 /// The lists of a report that was read.
 #[derive(Debug, Deserialize)]
 pub(super) struct ReadLists {
+    pub(super) bodies: Vec<BodyLine>,
     pub(super) pairs: Vec<Line>,
     #[serde(default)]
     pub(super) overlaps: Vec<Overlap>,
     pub(super) touching: BTreeSet<[usize; 2]>,
+    pub(super) skipped: BTreeMap<String, u64>,
 }

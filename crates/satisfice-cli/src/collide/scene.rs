@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
-use satisfice::SatisficingProblem;
 use satisfice_catalogue::Settings;
 use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
@@ -19,9 +18,7 @@ use serde_json::{Value, json};
 use super::arguments::Find;
 use super::inputs::{Inputs, NamedBody};
 use super::overlaps;
-
-/// Checking a report by brute force may take so many nanoseconds.
-const PATIENCE: u64 = 5_000_000_000;
+use super::report::BodyLine;
 
 /// A feature of a body: a vertex, an edge or a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -190,11 +187,7 @@ impl World {
                     .and_then(|width| usize::try_from(width).ok())
                     .context("`ring_width` is no whole number")?,
             ),
-            find: if text("find")? == Find::All.name() {
-                Find::All
-            } else {
-                Find::First
-            },
+            find: Find::of_name(text("find")?, optional("closest").as_u64())?,
             solid: optional("solid").as_bool().unwrap_or_default(),
         })
     }
@@ -217,6 +210,9 @@ impl World {
         settings.set("self", self.request.within);
         settings.set("ring_width", self.ring_width());
         settings.set("find", self.request.find.name());
+        if let Find::Closest(wanted) = self.request.find {
+            settings.set("closest", wanted);
+        }
         if self.request.solid {
             settings.set("solid", true);
         }
@@ -234,6 +230,11 @@ impl World {
         self.request.kind.features()
     }
 
+    /// The bodies as a report lists them.
+    pub(super) fn body_lines(&self) -> Vec<BodyLine> {
+        self.bodies.iter().map(BodyLine::new).collect()
+    }
+
     /// Whether a file holds several bodies, so that names say more than numbers.
     pub(super) fn has_scenes(&self) -> bool {
         self.bodies.len() > self.request.inputs.paths.len()
@@ -248,7 +249,13 @@ impl World {
         };
         with(kind_a)
             .flat_map(move |a| with(kind_b).map(move |b| [a, b]))
-            .filter(move |&[a, b]| (a != b || self.request.within) && (a <= b || kind_a != kind_b))
+            .filter(|&bodies| self.is_couple(bodies))
+    }
+
+    /// Whether the body of the first feature and that of the second may be these.
+    pub(super) fn is_couple(&self, [a, b]: [usize; 2]) -> bool {
+        let (kind_a, kind_b) = self.kinds();
+        (a != b || self.request.within) && (a <= b || kind_a != kind_b)
     }
 
     /// The number of features over which there are trees.
@@ -323,23 +330,26 @@ impl World {
         if let Some(jobs) = self.jobs.get() {
             return Ok(jobs);
         }
+        let jobs = self.couples().map(|bodies| self.job(bodies));
+        let jobs = jobs.collect::<anyhow::Result<Vec<_>>>()?;
+        Ok(self.jobs.get_or_init(|| jobs))
+    }
+
+    /// The problem of one combination of bodies.
+    pub(super) fn job(&self, bodies: [usize; 2]) -> anyhow::Result<PairProblem> {
         let kind = self.request.kind;
         // The closest pairs at any distance have an infinite one.
         let threshold = self.request.threshold.min(f64::MAX);
-        let jobs = self.couples().map(|[a, b]| {
-            let [first, second] = [a, b].map(|body| &*self.bodies[body].mesh);
-            let problem = if a == b {
-                FeaturePairs::within(kind, first, threshold, self.ring_width())
-            } else {
-                FeaturePairs::between(kind, first, second, threshold)
-            };
-            problem.map(|problem| PairProblem {
-                bodies: [a, b],
-                problem,
-            })
-        });
-        let jobs = jobs.collect::<Result<Vec<_>, _>>()?;
-        Ok(self.jobs.get_or_init(|| jobs))
+        let [first, second] = bodies.map(|body| &*self.bodies[body].mesh);
+        let problem = if bodies[0] == bodies[1] {
+            FeaturePairs::within(kind, first, threshold, self.ring_width())
+        } else {
+            FeaturePairs::between(kind, first, second, threshold)
+        };
+        Ok(PairProblem {
+            bodies,
+            problem: problem?,
+        })
     }
 
     /// How many pairs of features there are, excluded ones of one body included.
@@ -364,42 +374,6 @@ impl World {
             true => own,
         };
         u64::try_from(between + within).unwrap_or(u64::MAX)
-    }
-
-    /// Whether deciding every pair is a matter of seconds.
-    pub(super) fn is_small(&self) -> bool {
-        let cost = match self.request.kind {
-            PairKind::VertexVertex => 10,
-            PairKind::VertexEdge | PairKind::VertexTriangle | PairKind::EdgeEdge => 40,
-            PairKind::EdgeTriangle | PairKind::TriangleTriangle => 200,
-        };
-        self.size().saturating_mul(cost) <= PATIENCE
-    }
-
-    /// How many pairs there are, by brute force.
-    pub(super) fn reference_hits(&self) -> anyhow::Result<u64> {
-        Ok(self.scene(Method::BruteForce)?.frame()?.contacts.len() as u64)
-    }
-
-    /// Whether this is a pair of features of this scene, the first one first.
-    pub(super) fn has(&self, pair: &Pair) -> anyhow::Result<bool> {
-        let jobs = self.jobs()?;
-        let Some(job) = jobs.iter().find(|job| job.bodies == pair.bodies()) else {
-            return Ok(false);
-        };
-        let solution = (pair.a.feature, pair.b.feature);
-        let mut values = [0.0; 2];
-        let encoding = job.problem.encoding();
-        let exists = encoding.is_some_and(|encoding| encoding.encode(&solution, &mut values));
-        Ok(exists && job.problem.canonical(&solution).is_none())
-    }
-
-    /// F of a pair that there is: its distance, or what a pair that counts as none has.
-    pub(super) fn fitness(&self, pair: &Pair) -> anyhow::Result<f64> {
-        let jobs = self.jobs()?;
-        let job = jobs.iter().find(|job| job.bodies == pair.bodies());
-        let job = job.context("a pair of bodies of this scene")?;
-        Ok(job.problem.fitness(&(pair.a.feature, pair.b.feature)))
     }
 }
 

@@ -206,6 +206,7 @@ impl Serialize for MotionReport<'_> {
 /// The lists of a report that was read.
 #[derive(Debug, Deserialize)]
 pub(super) struct ImpactLists {
+    pub(super) bodies: Vec<BodyLine>,
     pub(super) pairs: Vec<ImpactLine>,
     pub(super) touching: BTreeSet<[usize; 2]>,
     pub(super) first_impact: Option<FirstImpact>,
