@@ -2,8 +2,8 @@
 
 use satisfice::{Completeness, StopReason};
 
-use super::{Mismatch, shown};
-use crate::report::{RunReport, SliceReport};
+use super::{Mismatch, slices, sources, unseen};
+use crate::report::RunReport;
 
 /// Checks everything that can be checked without the problem.
 #[must_use]
@@ -11,9 +11,12 @@ pub fn accounting(report: &RunReport) -> Vec<Mismatch> {
     let mut wrong = Vec::new();
     counts(report, &mut wrong);
     limits(report, &mut wrong);
+    end(report, &mut wrong);
     order(report, &mut wrong);
     trace(report, &mut wrong);
-    slices(report, &mut wrong);
+    slices::check(report, &mut wrong);
+    sources::check(report, &mut wrong);
+    unseen::check(report, &mut wrong);
     wrong
 }
 
@@ -44,18 +47,49 @@ fn counts(report: &RunReport, wrong: &mut Vec<Mismatch>) {
         let expected = format!("no more than the {} evaluations together", counts.evaluations);
         wrong.push(Mismatch::new("evaluations", found, expected));
     }
-    if report.completeness == Completeness::Proved
-        && (report.unseen_estimate != Some(0.0) || report.unseen_interval != Some((0.0, Some(0.0))))
-    {
-        let interval = report.unseen_interval.map_or_else(
-            || "null".to_owned(),
-            |(low, high)| format!("[{low}, {}]", shown(high)),
-        );
-        let found = format!("{} in {interval}", shown(report.unseen_estimate));
+    for (place, count) in [
+        ("probes", counts.probes),
+        ("verified", counts.verified),
+        ("failed", report.failed),
+    ] {
+        if count > counts.evaluations {
+            let expected = format!("at most the {} evaluations", counts.evaluations);
+            wrong.push(Mismatch::new(place, count, expected));
+        }
+    }
+}
+
+/// Whether the run can have ended like that.
+fn end(report: &RunReport, wrong: &mut Vec<Mismatch>) {
+    let budget = &report.spec.budget;
+    let is_proved = report.completeness == Completeness::Proved;
+    let could_be = match report.stop_reason {
+        StopReason::Time => budget.time.is_some(),
+        StopReason::Evaluations => budget.evaluations.is_some(),
+        StopReason::Patience => budget.patience.is_some(),
+        StopReason::Hits => budget
+            .hits
+            .is_some_and(|hits| budget.slices > 1 || report.hits >= hits),
+        // Only a hit that the engine has missed, or a bound, can make that no proof; a budget that is spent is the likelier end.
+        StopReason::Covered => {
+            let missed = report.probe_hits.is_some_and(|(_, fresh)| fresh > 0);
+            let bounds = report.counts.bound_calls;
+            let spent = report.counts.evaluations.saturating_add(bounds);
+            let limit = budget.evaluations.map(|n| n.saturating_mul(budget.slices));
+            is_proved || missed || (bounds > 0 && limit.is_none_or(|limit| spent < limit))
+        }
+        _ => true,
+    };
+    let stop = format!("{:?}", report.stop_reason);
+    if !could_be {
+        let expected = "an end that the limits and the other counts allow";
+        wrong.push(Mismatch::new("stop_reason", &stop, expected));
+    }
+    if is_proved && report.stop_reason != StopReason::Covered {
         wrong.push(Mismatch::new(
-            "unseen_estimate",
-            found,
-            "0 in [0, 0], since completeness is proved",
+            "stop_reason",
+            stop,
+            "Covered, since completeness is proved",
         ));
     }
 }
@@ -180,51 +214,5 @@ fn trace(report: &RunReport, wrong: &mut Vec<Mismatch>) {
             format!("an end at evaluation {}", before.0),
             format!("one at {}", report.counts.evaluations),
         ));
-    }
-}
-
-fn slices(report: &RunReport, wrong: &mut Vec<Mismatch>) {
-    if report.slices.is_empty() {
-        return;
-    }
-    let count = report.slices.len() as u64;
-    if count > report.spec.budget.slices {
-        wrong.push(Mismatch::new(
-            "slices",
-            count,
-            format!("at most {}", report.spec.budget.slices),
-        ));
-    }
-    let sum = |part: fn(&SliceReport) -> u64| {
-        report
-            .slices
-            .iter()
-            .fold(0_u64, |sum, slice| sum.saturating_add(part(slice)))
-    };
-    for (place, found, expected) in [
-        ("hits", report.hits, sum(|slice| slice.new_hits)),
-        (
-            "evaluations",
-            report.counts.evaluations,
-            sum(|slice| slice.counts.evaluations),
-        ),
-        (
-            "fitness_calls",
-            report.counts.fitness_calls,
-            sum(|slice| slice.counts.fitness_calls),
-        ),
-        (
-            "duplicates",
-            report.counts.duplicates,
-            sum(|slice| slice.counts.duplicates),
-        ),
-    ] {
-        if found != expected {
-            wrong.push(Mismatch::new(
-                place,
-                found,
-                format!("{expected}, the sum over the slices"),
-            ));
-        }
     }
 }

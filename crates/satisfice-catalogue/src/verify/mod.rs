@@ -1,7 +1,10 @@
 //! Whether a report is correct: its solutions are evaluated again, and its accounting is checked.
 
 mod accounting;
+mod slices;
 mod solutions;
+mod sources;
+mod unseen;
 
 use core::fmt;
 

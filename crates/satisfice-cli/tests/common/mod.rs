@@ -88,3 +88,33 @@ pub(crate) fn without_times(mut report: Value) -> Value {
     visit(&mut report);
     report
 }
+
+/// What `verify` says of a report.
+pub(crate) fn verify(folder: &Path, report: &Value) -> Done {
+    std::fs::write(folder.join("report.json"), report.to_string()).unwrap();
+    satisfice_in(folder, "verify report.json")
+}
+
+/// Makes a report, which has to be true, and changes a value of it at a time: each change has to be found where it was made.
+pub(crate) fn refuse(folder: &Path, call: &str, changes: &[(&str, &str, Value)]) -> Value {
+    let done = satisfice_in(folder, &format!("{call} --json -"));
+    assert!(done.code <= 1, "{call}: {}", done.stderr);
+    let report: Value = serde_json::from_str(&done.stdout).unwrap();
+    let verified = verify(folder, &report);
+    assert_eq!(verified.code, 0, "{call}: {}", verified.stdout);
+    for (key, place, value) in changes {
+        let mut altered = report.clone();
+        let there = altered
+            .pointer_mut(key)
+            .unwrap_or_else(|| panic!("{call}: no {key}"));
+        assert_ne!(there, value, "{call}: {key} is so already");
+        *there = value.clone();
+        let refused = verify(folder, &altered);
+        assert!(
+            refused.code == 1 && refused.stdout.contains(&format!("\n  {place}: ")),
+            "{call}: {key} = {value}: {}",
+            refused.stdout
+        );
+    }
+    report
+}
