@@ -198,7 +198,9 @@ impl<Spec, S> RunReport<Spec, S> {
             run.panic.clone_from(&last.panic);
             // A slice that has covered the space is the last one.
             run.completeness = last.completeness;
-            run.set_unseen(last.unseen.as_ref(), run.hits - last.hit_count() as u64);
+            // Two hits of the last slice may both be the same as one of an earlier slice: it then has more than the run.
+            let elsewhere = run.hits.saturating_sub(last.hit_count() as u64);
+            run.set_unseen(last.unseen.as_ref(), elsewhere);
         }
         Ok(run)
     }
@@ -427,4 +429,41 @@ impl<Spec, S> RunReport<Spec, S> {
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn recall(hits: u64, reference: u64) -> Option<f64> {
     (reference > 0).then(|| hits as f64 / reference as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::{Axis, Budget, Search, Space, from_fn};
+
+    /// Two hits apart may both be within the separation of a third.
+    #[test]
+    fn a_slice_with_more_hits_than_the_run_lists_leaves_none_elsewhere() {
+        let space = Space::new([Axis::continuous(0.0, 1.0)]).unwrap();
+        let problem = from_fn(space, 0.9, |x: &[f64]| x[0]).separation(0.05);
+        let mut search = Search::new().probes(0.2);
+        let budget = Budget::evaluations(200);
+        let mut slices = [
+            search.run(&problem, &budget).unwrap(),
+            search.run(&problem, &budget).unwrap(),
+        ];
+        let any = slices[0].hits().next().unwrap().solution.clone();
+        for (slice, places) in slices.iter_mut().zip([&[0.5][..], &[0.46, 0.54]]) {
+            let mut archive = Archive::default();
+            for &place in places {
+                let mut hit = any.clone();
+                hit.coordinates = vec![place];
+                assert!(archive.insert(hit, place, 1, 0.0));
+            }
+            slice.archive = Arc::new(archive);
+        }
+        let unseen = slices[1].unseen.as_ref().unwrap().estimate;
+        let run = RunReport::of_slices((), &slices, |hit| Ok::<_, crate::Error>(hit.clone())).unwrap();
+        assert_eq!((run.hits, run.slices[1].hits, run.slices[1].new_hits), (1, 2, 0));
+        assert_eq!(run.unseen_estimate, Some(unseen));
+    }
 }
