@@ -8,6 +8,7 @@ use super::checks::Checks;
 use super::referee::Referee;
 use super::{ROUNDING, witness};
 use crate::collide::arguments::Find;
+use crate::collide::inputs::NamedBody;
 use crate::collide::pairs::{Line, Side};
 use crate::collide::report::Head;
 use crate::collide::scene::{Pair, World};
@@ -35,7 +36,7 @@ pub(super) fn couple(pair: &Pair) -> [usize; 2] {
 }
 
 /// The corners that a report gives of a feature: files do not number edges.
-pub(in super::super) fn has_its_ends(side: &Side, kind: FeatureKind, mesh: Option<&Mesh>) -> bool {
+fn has_its_ends(side: &Side, kind: FeatureKind, mesh: Option<&Mesh>) -> bool {
     let ends = mesh.and_then(|mesh| mesh.edges().get(side.feature as usize).copied());
     side.vertices == ends.filter(|_| kind == FeatureKind::Edge)
 }
@@ -87,17 +88,7 @@ pub(super) fn check(
             .is_none_or(|given| agree(given, distance, threshold));
         let given = format!("the distance {}", line.distance.unwrap_or_default());
         checks.that(agrees, &place, given, distance);
-        let (kind_a, kind_b) = world.kinds();
-        for (side, kind, part) in [(&line.a, kind_a, "a"), (&line.b, kind_b, "b")] {
-            let mesh = world.bodies.get(side.body).map(|body| &*body.mesh);
-            let place = format!("{place}.{part}.vertices");
-            checks.that(
-                has_its_ends(side, kind, mesh),
-                place,
-                side.vertices,
-                "the ends of an edge",
-            );
-        }
+        check_ends([&line.a, &line.b], world.kinds(), &world.bodies, &place, checks);
         let mistake = line
             .witness
             .as_ref()
@@ -117,6 +108,26 @@ pub(super) fn check(
         }
     }
     measured
+}
+
+/// Whether the two sides of a pair, of these kinds, name the ends of the edges that they are.
+pub(in super::super) fn check_ends(
+    sides: [&Side; 2],
+    kinds: (FeatureKind, FeatureKind),
+    bodies: &[NamedBody],
+    place: &str,
+    checks: &mut Checks,
+) {
+    for (side, kind, part) in [(sides[0], kinds.0, "a"), (sides[1], kinds.1, "b")] {
+        let mesh = bodies.get(side.body).map(|body| &*body.mesh);
+        let place = format!("{place}.{part}.vertices");
+        checks.that(
+            has_its_ends(side, kind, mesh),
+            place,
+            side.vertices,
+            "the ends of an edge",
+        );
+    }
 }
 
 /// When an engine found a pair.

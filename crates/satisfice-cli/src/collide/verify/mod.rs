@@ -25,7 +25,7 @@ use crate::progress::Counting;
 use crate::verify::Checked;
 pub(super) use checks::Checks;
 pub(super) use head::{Beside, check as check_head};
-pub(super) use lines::has_its_ends;
+pub(super) use lines::check_ends;
 use lines::{Measured, agree, couple};
 use referee::Referee;
 pub(super) use witness::{is_on, slack};

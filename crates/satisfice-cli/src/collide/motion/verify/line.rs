@@ -5,7 +5,7 @@ use satisfice_collision::continuous::{FeatureOf, Impact, MovingContact};
 use satisfice_collision::distance::{self, PairKind, Point, Threshold};
 
 use super::super::super::pairs::Side;
-use super::super::super::verify::{Checks, has_its_ends, is_on, slack};
+use super::super::super::verify::{Checks, check_ends, is_on, slack};
 use super::super::TOLERANCE;
 use super::super::frames::Frames;
 use super::super::report::ImpactLine;
@@ -50,17 +50,7 @@ pub(super) fn check(
         checks.that(false, place, name(line), "a pair that comes near during the step");
         return Ok(());
     };
-    let (kind_a, kind_b) = kind.features();
-    for (side, kind, part) in [(&line.a, kind_a, "a"), (&line.b, kind_b, "b")] {
-        let mesh = frames.bodies.get(side.body).map(|body| &*body.mesh);
-        let place = format!("{place}.{part}.vertices");
-        checks.that(
-            has_its_ends(side, kind, mesh),
-            place,
-            side.vertices,
-            "the ends of an edge",
-        );
-    }
+    check_ends([&line.a, &line.b], kind.features(), &frames.bodies, place, checks);
     let Some(time) = line.time else {
         let has_none = line.at_start.is_none() && line.normal.is_none();
         let has_none = has_none && line.point_a.is_none() && line.point_b.is_none();
