@@ -165,9 +165,9 @@ pub type BoxedFn<'a, S> = Box<dyn Fn(&[S]) -> S + Send + Sync + 'a>;
 /// A problem from a closure: all points of `space` with `fitness(values) < threshold`.
 ///
 /// On an all-integer space, different values are different answers. With a continuous axis, points within a separation
-/// radius count once: 1 % of the longest continuous axis, unless [`FnProblem::separation`] or [`FnProblem::separations`] says
+/// radius count once: 1 % of each continuous axis, unless [`FnProblem::separation`] or [`FnProblem::separations`] says
 /// otherwise. Different values on an integer axis are different answers anyway. On a logarithmic axis distances are those
-/// of the logarithms, and the radius is 1 % of theirs; on a periodic one they go around the circle.
+/// of the logarithms; on a periodic one they go around the circle.
 ///
 /// A closure may also name [neighbours](FnProblem::neighbours) and [components](FnProblem::components). Bounds and
 /// representatives need the [trait](SatisficingProblem).
@@ -184,19 +184,9 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
     threshold: S,
     fitness: F,
 ) -> FnProblem<S, F> {
-    let lengths = space
-        .axes()
-        .iter()
-        .filter(|axis| axis.kind() == AxisKind::Continuous && !axis.is_logarithmic());
-    let longest = lengths.fold(S::zero(), |longest, axis| longest.max(axis.width()));
-    let share = S::of(0.01);
-    let separation = separation_of(&space, |axis| {
-        share
-            * if axis.is_logarithmic() {
-                axis.width()
-            } else {
-                longest
-            }
+    let separation = separation_of(&space, |axis| match axis.kind() {
+        AxisKind::Continuous => S::of(0.01) * axis.width(),
+        AxisKind::Integer | AxisKind::Categorical | AxisKind::Place => S::zero(),
     });
     FnProblem {
         space,
@@ -212,15 +202,16 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
     }
 }
 
-/// A radius for each continuous axis of a space, by its rule; the others are exact. Where all axes are alike and straight, it
-/// is that of the first one.
+/// A radius for each continuous axis of a space, by its rule; the others are exact. Where all axes are straight and have the
+/// same radius, distances are those of the space.
 fn separation_of<S: Real>(space: &Space<S>, radius: impl Fn(&Axis<S>) -> S) -> Separation<S> {
     let axes = space.axes();
     let straight =
         |axis: &Axis<S>| axis.kind() == AxisKind::Continuous && !axis.is_logarithmic() && !axis.is_periodic();
     let whole = |axis: &Axis<S>| axis.kind() == AxisKind::Integer && !axis.is_periodic();
-    if axes.iter().all(straight) || axes.iter().all(whole) {
-        return Separation::Radius(axes.first().map_or(S::zero(), radius));
+    let first = axes.first().map_or(S::zero(), &radius);
+    if axes.iter().all(|axis| straight(axis) && radius(axis) == first) || axes.iter().all(whole) {
+        return Separation::Radius(first);
     }
     Separation::axes(axes.iter().map(|axis| {
         if axis.kind() == AxisKind::Continuous {

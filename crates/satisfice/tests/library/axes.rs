@@ -188,6 +188,23 @@ fn radii_of_axes_make_an_ellipsoid() {
     assert!(!same([2.0, 0.5], [1.0, 0.0], [2.0, 0.45]));
 }
 
+/// By default two points are one within 1 % of each axis, whatever the lengths of the others.
+#[test]
+fn axes_of_other_units_are_told_apart_by_default() {
+    let metres = Axis::continuous(1e-3, 2e-3);
+    let pascals = Axis::continuous(0.0, 1e6);
+    let space = Space::new([metres, pascals, Axis::continuous(1.0, 100.0).logarithmic()]).unwrap();
+    let problem = from_fn(space, 0.5, |_: &[f64]| 0.0);
+    let same = |a: [f64; 3], b: [f64; 3]| problem.decode(&a).same(&problem.decode(&b));
+    assert!(same([1.1e-3, 0.0, 10.0], [1.109e-3, 0.0, 10.0]));
+    assert!(!same([1.1e-3, 0.0, 10.0], [1.111e-3, 0.0, 10.0]));
+    assert!(same([1.1e-3, 0.0, 10.0], [1.1e-3, 9e3, 10.0]));
+    assert!(!same([1.1e-3, 0.0, 10.0], [1.1e-3, 1.1e4, 10.0]));
+    // 1 % of ln 100.
+    assert!(same([1.1e-3, 0.0, 10.0], [1.1e-3, 0.0, 10.4]));
+    assert!(!same([1.1e-3, 0.0, 10.0], [1.1e-3, 0.0, 10.5]));
+}
+
 #[test]
 fn a_separation_that_is_not_usable_is_refused() {
     for radii in [&[0.1][..], &[-1.0, 0.1], &[0.1, f64::NAN], &[f64::INFINITY, 0.1]] {
