@@ -27,8 +27,7 @@ const SHARE_BESIDE_MODEL: f64 = 0.06;
 /// Share of the evaluations that do not hit for descents by components, after so many evaluations.
 const SHARE_BESIDE_COMPONENTS: f64 = 0.2;
 const FIRST_OF_COMPONENTS: f64 = 100.0;
-/// A source without a hit may begin with one evaluation for every `PLANNED` planned ones, and `BARREN_START` at most.
-const PLANNED: f64 = 50.0;
+/// A source without a hit may begin with so many evaluations.
 const BARREN_START: f64 = 8.0;
 /// Share of what a hit of the whole search costs: a source that has cost less is not known to be worse.
 const UNKNOWN: f64 = 0.25;
@@ -59,11 +58,10 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// For a search with `planned` evaluations, if that is known, and `barren` sources without a hit.
-    pub(super) fn new(planned: Option<u64>, barren: usize) -> Self {
-        let start = planned.map_or(BARREN_START, |planned| planned as f64 / PLANNED);
+    /// For a search with `barren` sources without a hit.
+    pub(super) fn new(barren: usize) -> Self {
         Self {
-            start: start.clamp(1.0, BARREN_START),
+            start: BARREN_START,
             share: (BARREN_SHARES / barren.max(1) as f64).min(BARREN_SHARE),
             always: false,
             until_known: 0.0,
@@ -329,7 +327,7 @@ mod tests {
     #[test]
     fn what_finds_nothing_takes_a_bounded_share() {
         let (mut barren, mut all) = (Credit::default(), Credit::default());
-        let alone = Trial::new(None, 1);
+        let alone = Trial::new(1);
         assert!(barren.is_worth_trying(&all, alone));
         for i in 0..10_000 {
             all.count(i == 0, 1.0);
@@ -343,16 +341,16 @@ mod tests {
             !barren.is_worth_trying(&all, alone) && barren.is_worth_trying(&all, alone.until_known(&all))
         );
         assert!((400.0..412.0).contains(&share), "{share}");
-        assert!(!barren.is_within(&all, Trial::new(None, 10)));
-        // One of ten, of 10,000: 8 and 1.8 %. Of 50 planned: one for a start.
+        assert!(!barren.is_within(&all, Trial::new(10)));
+        // One of ten, of 10,000: 8 and 1.8 %.
         let evaluations = |most: u64| Credit {
             total_cost: most as f64,
             ..Credit::default()
         };
-        assert!(evaluations(188).is_within(&evaluations(10_000), Trial::new(Some(10_000), 10)));
-        assert!(!evaluations(189).is_within(&evaluations(10_000), Trial::new(Some(10_000), 10)));
-        assert!(evaluations(1).is_within(&evaluations(10), Trial::new(Some(50), 10)));
-        assert!(!evaluations(2).is_within(&evaluations(10), Trial::new(Some(50), 10)));
+        assert!(evaluations(188).is_within(&evaluations(10_000), Trial::new(10)));
+        assert!(!evaluations(189).is_within(&evaluations(10_000), Trial::new(10)));
+        assert!(evaluations(8).is_within(&evaluations(10), Trial::new(10)));
+        assert!(!evaluations(9).is_within(&evaluations(10), Trial::new(10)));
         // One of six beside a model: the first evaluation after a hundred, even where nothing hits.
         let beside = Trial::beside_model(6, 1.0);
         assert!(!evaluations(0).is_worth_trying(&evaluations(99), beside));

@@ -82,7 +82,7 @@ mod tests {
                 steps: false,
                 yardstick: Yardstick::Latest,
             };
-            let weight = guest.weight(all, Trial::new(None, 1), situation);
+            let weight = guest.weight(all, Trial::new(1), situation);
             weight.unwrap() / all.price()
         };
         let (rare, mut frequent) = (Credit::default(), Credit::default());
