@@ -59,8 +59,8 @@ impl Budget {
     /// A budget of evaluations: reproducible.
     ///
     /// Evaluations are then taken to be what is dear. The default engine may think for about a millisecond on each of the first 1,000, whatever F
-    /// costs: a search of 1,000 evaluations of a cheap F of two coordinates takes about half a second, one of 10,000 evaluations, which is planned without a model of
-    /// F, a fiftieth of a second. If time matters as well, [limit it](Budget::and_time), too ([`Portfolio`](crate::engine::Portfolio)).
+    /// costs: a search of 1,000 to 10,000 evaluations of a cheap F of two coordinates takes about half a second, a longer one, which is planned without a model of
+    /// F, a few microseconds an evaluation. If time matters as well, [limit it](Budget::and_time), too ([`Portfolio`](crate::engine::Portfolio)).
     #[must_use]
     pub fn evaluations(evaluations: u64) -> Self {
         Self {

@@ -78,10 +78,9 @@ engine_settings! {
     ///   [components](crate::Components) of F, evaluations are limited or F takes more than 20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
     /// - a Gaussian process on at most 50 axes, where evaluations are limited, or where F takes more than 2 ms and only time is limited: up to
-    ///   1,000 proposals, of half a millisecond to a few. Unless the problem tells the components of F, they become fewer beyond 2,000 planned
-    ///   evaluations, so that thinking does not: 250 of 4,000, none from 6,400 on. Where F takes less than that, and the time matters more than
-    ///   the number of evaluations, limit the time, too: if the proposals would take longer than the limit, the model is not used. Of
-    ///   a batch it may propose all;
+    ///   1,000 proposals, of half a millisecond to a few. Unless the problem tells the components of F, there is none where more than 10,000
+    ///   evaluations are planned. Where F takes less than a proposal, and the time matters more than the number of evaluations, limit the
+    ///   time, too: if the proposals would take longer than the limit, the model is not used. Of a batch it may propose all;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the points of a lattice, or the orders of a permutation, one by one, where the budget has room for all: then the result is proved
     ///   complete, too, and where there is no room for probes beside them, none are made. A lattice of at most

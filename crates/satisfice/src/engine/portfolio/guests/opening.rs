@@ -1,8 +1,7 @@
-//! Engines that are opened once it is known what F costs, or how rare hits are.
+//! Engines that are opened once it is known what F costs.
 
 use super::{GuestKind, Guests, MODEL_AXES, MODELLED, is_smooth};
 use crate::context::Context;
-use crate::engine::portfolio::credit::Credit;
 use crate::scalar::Real;
 
 /// The model is opened where an evaluation takes more seconds than this and at most `MODELLED` have been made.
@@ -10,11 +9,6 @@ const EXPENSIVE: f64 = 2e-3;
 /// Descents by quadratic models run under a limit of evaluations, or where an evaluation takes more seconds than this: a proposal takes
 /// about half as long. Those by components always run.
 const QUADRATIC: f64 = 2e-5;
-/// Where nothing leads down and no model is at work because more evaluations are planned, it is opened after `UNMODELLED` evaluations, if a hit
-/// takes more than `RARE` of them, unless more than `MOST_PLANNED` are planned: then it makes no difference.
-const UNMODELLED: u64 = 250;
-const RARE: f64 = 16.0;
-const MOST_PLANNED: u64 = 10_000;
 
 impl<S: Real> Guests<S> {
     /// Opens the model and the descents by quadratic models once F turns out to be expensive enough for them.
@@ -34,21 +28,6 @@ impl<S: Real> Guests<S> {
         }
         if opens_quadratic {
             self.open(GuestKind::Quadratic, context);
-        }
-    }
-
-    /// Opens the model where nothing leads down, once hits turn out to be rare.
-    pub(in crate::engine::portfolio) fn look_at_yield(&mut self, context: &dyn Context<S>, all: &Credit) {
-        let is_due = (UNMODELLED..MODELLED).contains(&all.evaluations()) && all.price() > RARE;
-        if !is_due || self.ground.is_some() || self.modelled() {
-            return;
-        }
-        let is_short = context
-            .evaluations_planned()
-            .is_some_and(|planned| planned <= MOST_PLANNED);
-        if is_short && context.seconds_planned().is_none() && context.space().dimension() <= MODEL_AXES {
-            self.sizes.proposals = MODELLED;
-            self.open(GuestKind::Model, context);
         }
     }
 }

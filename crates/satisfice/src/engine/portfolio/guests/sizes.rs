@@ -6,11 +6,9 @@ use crate::scalar::Real;
 /// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
 const CANDIDATES: (usize, usize) = (256, 1024);
 const POINTS_OF_LEAST: f64 = 300.0;
-/// Proposals of the model, at most; where the problem does not tell the components of F, fewer where more than `PLANNED` evaluations are
-/// planned, so that thinking stays short beside them; and none where there would be less than `FEWEST_PROPOSALS`.
+/// Proposals of the model, at most; none where more than `MOST_PLANNED` evaluations are planned, unless the problem tells the components of F.
 pub(super) const MOST_PROPOSALS: u64 = 1_000;
-const PLANNED: u64 = 2_000;
-const FEWEST_PROPOSALS: u64 = 100;
+const MOST_PLANNED: u64 = 10_000;
 /// Proposals of the model in one batch: as many as evaluations go on at once, and so many at most.
 const MOST_PROPOSALS_AT_ONCE: usize = 32;
 /// Seconds of a proposal of the model.
@@ -101,19 +99,14 @@ impl Sizes {
 }
 
 /// How many proposals the model may make where so many evaluations are planned, in so many seconds, if time is limited, too: none if they
-/// would take longer. Without components in inverse proportion to the square of the evaluations, beyond `PLANNED`.
+/// would take longer.
 fn proposals(planned: u64, components: usize, seconds: Option<f64>) -> u64 {
-    let most = if components > 0 {
-        MOST_PROPOSALS
-    } else {
-        let planned = planned.max(PLANNED);
-        MOST_PROPOSALS * PLANNED / planned * PLANNED / planned
-    };
-    let takes = most.min(planned) as f64 * PROPOSAL;
-    if most < FEWEST_PROPOSALS || seconds.is_some_and(|seconds| takes > seconds) {
+    let takes = MOST_PROPOSALS.min(planned) as f64 * PROPOSAL;
+    let is_long = planned > MOST_PLANNED && components == 0;
+    if is_long || seconds.is_some_and(|seconds| takes > seconds) {
         0
     } else {
-        most
+        MOST_PROPOSALS
     }
 }
 
@@ -142,10 +135,10 @@ mod tests {
     }
 
     #[test]
-    fn the_model_proposes_less_in_long_searches() {
+    fn the_model_keeps_out_of_long_searches() {
         let plain = |planned| proposals(planned, 0, None);
-        assert_eq!([0, 1, 2_000].map(plain), [1_000; 3]);
-        assert_eq!([4_000, 6_000, 7_000, u64::MAX].map(plain), [250, 111, 0, 0]);
+        assert_eq!([0, 1, 10_000].map(plain), [1_000; 3]);
+        assert_eq!([10_001, u64::MAX].map(plain), [0; 2]);
         // Of components it knows too much to be left out.
         assert_eq!(proposals(30_000, 3, None), 1_000);
     }
