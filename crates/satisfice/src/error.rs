@@ -103,19 +103,21 @@ fn suggestion(nearest: Option<&str>) -> String {
 }
 
 impl Error {
-    /// An [`Error::Unknown`] with the nearest of the known names, by Damerau-Levenshtein distance.
+    /// An [`Error::Unknown`] with the nearest of the known names, by Damerau-Levenshtein distance; capitals and hyphens do not count.
     #[must_use]
     pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         let mut listed = std::collections::BTreeSet::new();
         let known = known.into_iter().filter(|name| listed.insert(*name));
         let known: Vec<String> = known.map(str::to_owned).collect();
-        let lower = name.to_lowercase();
+        let plain = |name: &str| name.to_lowercase().replace(['-', '_', ' '], "");
+        let asked = plain(name);
         let nearest = known
             .iter()
             .map(|k| {
-                let distance = strsim::damerau_levenshtein(&lower, k);
+                let plain = plain(k);
+                let distance = strsim::damerau_levenshtein(&asked, &plain);
                 // A part of a name is near to it, and nearer to a shorter one.
-                let is_part = lower.len() > 2 && k.contains(&lower);
+                let is_part = asked.len() > 2 && plain.contains(&asked);
                 (if is_part { distance.min(1) } else { distance }, distance, k)
             })
             .min()
@@ -159,6 +161,8 @@ mod tests {
             ("zzzzzz", None),
             ("qps", Some("qpso")),
             ("latest", Some("latest-hit-qpso")),
+            ("LatestHit_QPSO", Some("latest-hit-qpso")),
+            ("hitqpso", Some("latest-hit-qpso")),
         ] {
             let error = Error::unknown("engine", name, ["latest-hit-qpso", "pso", "qpso"]);
             let Error::Unknown { nearest, .. } = error else {

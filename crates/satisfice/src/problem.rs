@@ -331,7 +331,8 @@ impl<S: Real, F> FnProblem<S, F> {
     }
 
     /// The same problem with a radius for each axis, in units of the space: two points are one answer if the squares of
-    /// distance / radius sum to at most 1. With a radius of 0 only equal values are one, and so it is on a categorical axis.
+    /// distance / radius sum to at most 1. With a radius of 0 only equal values are one, and so it is on a categorical axis and on
+    /// the places of a permutation, whatever their radius. On a logarithmic axis distances are those of the natural logarithms.
     ///
     /// ```
     /// use satisfice::{from_fn, Axis, Space};

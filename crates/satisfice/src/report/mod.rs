@@ -175,6 +175,9 @@ impl<T> core::fmt::Display for Report<T> {
         if self.counts.bound_calls > 0 {
             write!(f, ", {} bounds", self.counts.bound_calls)?;
         }
+        if self.counts.non_finite > 0 {
+            write!(f, ", F not finite in {}", self.counts.non_finite)?;
+        }
         write!(
             f,
             " and {:.3} s by {} on {}, seed {}; {}",
@@ -186,6 +189,11 @@ impl<T> core::fmt::Display for Report<T> {
         )?;
         if let Some(first) = self.panic.as_ref().and_then(|message| message.lines().next()) {
             write!(f, ": {first}")?;
+        }
+        if self.archive.is_empty()
+            && let (Some(best), Some(threshold)) = (&self.best, self.threshold)
+        {
+            write!(f, "; least F {}, a hit needs F < {threshold}", best.fitness)?;
         }
         write!(f, "; completeness {:?}", self.completeness)?;
         match &self.unseen {

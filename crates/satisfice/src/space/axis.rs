@@ -95,7 +95,9 @@ impl<S: Real> Axis<S> {
         }
     }
 
-    /// The places of a permutation of the integers `0..count`, one axis each; they stand together, in this order. Engines move
+    /// The places of a permutation of the integers `0..count`, one axis each; they stand together, in this order: `x[i]` is what
+    /// stands at place `i`, such as the job that is done as number `i`. Different orders are different answers, whatever a separation
+    /// says. Engines move
     /// a key for each place: values are the ranks of the keys (Bean 1994, doi 10.1287/ijoc.6.2.154). A `count` of 0 is refused by
     /// [`Space::new`](crate::Space::new).
     pub fn permutation(count: u32) -> impl Iterator<Item = Self> {

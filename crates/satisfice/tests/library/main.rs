@@ -14,4 +14,5 @@ mod problem_suite_rare;
 mod rounds;
 mod start_points;
 mod tickets;
+mod told;
 mod unsized_problem;
