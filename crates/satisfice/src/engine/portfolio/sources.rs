@@ -44,6 +44,8 @@ pub(super) struct Sources<S> {
     batch: usize,
     /// Candidates of a batch that come from one choice of source.
     block: usize,
+    /// After how many choices in vain a batch ends.
+    patience: usize,
     /// Whether F takes less time than a choice of source.
     is_quick: bool,
     /// Whether the problem names neighbours.
@@ -94,6 +96,7 @@ impl<S: Real> Sources<S> {
             asked_for: settings.batch,
             batch: 1,
             block: 1,
+            patience: filling::REJECTED,
             is_quick: false,
             has_neighbours: false,
             chosen: None,
@@ -184,6 +187,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.grid = InnerGrid::default();
         self.levels = Levels::default();
         self.chosen = None;
+        self.patience = filling::REJECTED;
         // The tags of the last batch name sources of the slice before.
         self.tags.clear();
         self.trials.clear();
@@ -338,7 +342,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.drought.save(state);
         (self.even.clone(), self.grid.clone()).save(state);
         (self.chosen, self.planned, self.pace.is_timed()).save(state);
-        (self.batch, self.block, self.next_descent).save(state);
+        (self.batch, self.block, self.patience, self.next_descent).save(state);
         self.waiting.save(state);
         self.descents.len().save(state);
         for descent in &self.descents {
@@ -364,7 +368,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         let timed;
         (self.chosen, self.planned, timed) = from.read()?;
         self.pace = Pace::new(timed);
-        (self.batch, self.block, self.next_descent) = from.read()?;
+        (self.batch, self.block, self.patience, self.next_descent) = from.read()?;
         self.waiting = from.read()?;
         let descents: usize = from.read()?;
         self.descents.clear();

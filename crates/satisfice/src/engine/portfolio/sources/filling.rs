@@ -12,8 +12,10 @@ use crate::engine::portfolio::visited::Visited;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// A batch ends after this many choices of a source that gave no candidate.
-const REJECTED: usize = 100;
+/// A batch ends after this many choices of a source that gave no candidate: half as many after a batch without any, so that a search which knows
+/// nearly all hits does not try in vain, and twice as many after another.
+pub(super) const REJECTED: usize = 100;
+const LEAST_REJECTED: usize = 10;
 /// Fewest points of the first batch, in which no point can learn from another. With a model of F it is a single point.
 const FIRST: usize = 4;
 /// Batches grow by one point every `SLOW` evaluations, up to `LARGEST`: small ones learn sooner, large ones cost less time.
@@ -69,7 +71,7 @@ impl<S: Real> Sources<S> {
             return self.enumerate(context, rng, out);
         }
         let mut rejected = 0;
-        while out.len() < self.batch && rejected < REJECTED && !context.is_out_of_time() {
+        while out.len() < self.batch && rejected < self.patience && !context.is_out_of_time() {
             let (tag, left) = self.next_source(context, rng);
             let before = out.len();
             let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
@@ -129,6 +131,11 @@ impl<S: Real> Sources<S> {
         if out.is_empty() && self.visited.as_ref().is_some_and(Visited::is_all) {
             return Ask::Covered;
         }
+        self.patience = if out.is_empty() {
+            (self.patience / 2).max(LEAST_REJECTED)
+        } else {
+            (self.patience * 2).min(REJECTED)
+        };
         // Every draw was known. Propose uniform points, known or not.
         let least = if self.visited.is_some() { 1 } else { wanted };
         while out.len() < least {
