@@ -5,6 +5,7 @@ mod near;
 pub(crate) mod packed;
 #[cfg(test)]
 mod tests;
+mod truncate;
 
 use hashbrown::HashTable;
 

@@ -35,6 +35,12 @@ pub trait Identity {
     fn key(&self) -> u64;
     /// Whether both are the same answer. It must be symmetric.
     fn same(&self, other: &Self) -> bool;
+    /// Whether one stands for the other: whether both are the same as the very same solutions. Equal ones do. `false`, the default,
+    /// where that is not known: several [islands](crate::Search::islands) then prove less.
+    #[inline]
+    fn stands_for(&self, _other: &Self) -> bool {
+        false
+    }
     /// Visits the keys under which a solution that is the same may be filed, until `visit` returns `true`; returns
     /// whether it did.
     #[inline]
@@ -59,6 +65,10 @@ impl<T: Eq + Hash> Identity for T {
     }
     #[inline]
     fn same(&self, other: &Self) -> bool {
+        self == other
+    }
+    #[inline]
+    fn stands_for(&self, other: &Self) -> bool {
         self == other
     }
 }
@@ -247,6 +257,11 @@ impl<S: Real> Identity for Located<S> {
     #[inline]
     fn same(&self, other: &Self) -> bool {
         self.is_within(other.coordinates.iter().copied())
+    }
+
+    #[inline]
+    fn stands_for(&self, other: &Self) -> bool {
+        self == other
     }
 
     fn visit_keys(&self, visit: &mut impl FnMut(u64) -> bool) -> bool {

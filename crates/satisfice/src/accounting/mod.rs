@@ -6,10 +6,12 @@
 mod evaluate;
 mod price;
 mod settle;
+mod unlisted;
 
 use core::time::Duration;
 
 use self::price::Price;
+pub(crate) use self::unlisted::Unlisted;
 use crate::archive::Archive;
 use crate::best::BestSoFar;
 use crate::budget::{Budget, StopReason};
@@ -58,6 +60,8 @@ pub(crate) struct Ledger<T> {
     tick_is_due: bool,
     /// The hit that was found again last.
     recent: usize,
+    /// In one lane of several: what the others do not know.
+    pub(crate) unlisted: Option<Unlisted<T>>,
 }
 
 /// The progress of a saved slice.
@@ -117,6 +121,7 @@ impl<T> Ledger<T> {
             next_progress: elapsed.saturating_add(PROGRESS_EVERY),
             tick_is_due: false,
             recent: 0,
+            unlisted: None,
         }
     }
 

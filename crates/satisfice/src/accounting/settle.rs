@@ -3,7 +3,7 @@
 use num_traits::Float;
 
 use super::{Ledger, stale_at};
-use crate::archive::{Hit, Insertion, Mark};
+use crate::archive::{Insertion, Mark};
 use crate::batch::Outcome;
 use crate::best::Best;
 use crate::budget::StopReason;
@@ -181,6 +181,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         self.best.offer(solution, fitness.f64(), self.counts.evaluations);
         if fitness < threshold {
             if self.archive.is_again(solution, self.recent) {
+                self.note_rejected(problem, solution, fitness, self.recent);
                 return self.known(fitness, rules);
             }
             self.insert_hit(problem, solution, fitness, rules, observer)
@@ -203,13 +204,17 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             .archive
             .contains_again(solution, rules.absent, &mut self.recent)
         {
+            self.note_rejected(problem, solution, fitness, self.recent);
             return self.known(fitness, rules);
         }
         let evaluation = self.counts.evaluations;
         let (listed, its_fitness) = match self.representative(problem, solution) {
             Representative::Itself => (solution.clone(), fitness),
             Representative::Other(other, its_fitness) => (other, its_fitness),
-            Representative::Known => return self.known(fitness, rules),
+            Representative::Known(index) => {
+                self.note_rejected(problem, solution, fitness, index);
+                return self.known(fitness, rules);
+            }
         };
         let seconds = self.clock.elapsed().as_secs_f64();
         let its_fitness = its_fitness.f64();
@@ -226,7 +231,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         Outcome::Hit(fitness)
     }
 
-    /// The solution listed for a hit. A representative that is not a hit breaks the problem's law and is not used.
+    /// The solution listed for a hit.
     fn representative<P: SatisficingProblem<Solution = T> + ?Sized>(
         &self,
         problem: &P,
@@ -235,15 +240,22 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let Some(other) = problem.canonical(solution) else {
             return Representative::Itself;
         };
-        if self.archive.contains(&other) {
-            return Representative::Known;
+        let mut index = 0;
+        if self.archive.contains_again(&other, None, &mut index) {
+            return Representative::Known(index);
         }
-        let fitness = problem.fitness(&other);
-        if fitness.is_finite() && fitness < problem.threshold() {
+        Self::if_hit(problem, other).map_or(Representative::Itself, |(other, fitness)| {
             Representative::Other(other, fitness)
-        } else {
-            Representative::Itself
-        }
+        })
+    }
+
+    /// A representative with its fitness. One that is not a hit breaks the problem's law and is not used.
+    pub(super) fn if_hit<P: SatisficingProblem<Solution = T> + ?Sized>(
+        problem: &P,
+        other: T,
+    ) -> Option<(T, P::Scalar)> {
+        let fitness = problem.fitness(&other);
+        (fitness.is_finite() && fitness < problem.threshold()).then_some((other, fitness))
     }
 
     /// Counts a solution that was found before.
@@ -267,16 +279,19 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// Inserts a hit of a lane, as of now; returns whether it was new.
-    pub(crate) fn insert_from_lane(&mut self, hit: &Hit<'_, T>, observer: &mut dyn Observer<T>) -> bool {
+    pub(crate) fn insert_from_lane(
+        &mut self,
+        solution: &T,
+        fitness: f64,
+        observer: &mut dyn Observer<T>,
+    ) -> bool {
         let seconds = self.clock.elapsed().as_secs_f64();
         let evaluation = self.counts.evaluations;
         let is_new = self
             .archive
-            .insert(hit.solution.clone(), hit.fitness, evaluation, seconds);
+            .insert(solution.clone(), fitness, evaluation, seconds);
         if is_new {
             self.notify_hit(observer);
-        } else {
-            self.counts.duplicates += 1;
         }
         is_new
     }
@@ -309,6 +324,6 @@ enum Representative<S, T> {
     Itself,
     /// Another solution, with its fitness.
     Other(T, S),
-    /// Another solution, which is in the archive.
-    Known,
+    /// Another solution, which is the same as this hit.
+    Known(usize),
 }

@@ -128,6 +128,41 @@ fn crowded_solutions_on_mixed_axes_agree_with_all_pairs() {
     }));
 }
 
+/// Hits come and go; each time the archive is compared with a new one of those that are left.
+#[test]
+fn hits_taken_back_were_never_there() {
+    let mut rng = crate::SearchRng::new(10);
+    for (dimension, side, radius) in [(1, 1.0, 0.002), (6, 0.3, 0.1)] {
+        let (mut archive, mut left) = (Archive::default(), Vec::new());
+        let mut by_places = 0;
+        for round in 0..200 {
+            for n in 0..60 {
+                let point: Vec<f64> = (0..dimension).map(|_| side * rng.uniform()).collect();
+                let located = Located::new(&point, radius);
+                let is_new = left.iter().all(|other| !located.same(other));
+                assert_eq!(archive.contains(&located), !is_new, "{located:?}");
+                assert_eq!(archive.insert(located.clone(), -1.0, n, 0.0), is_new);
+                if is_new {
+                    left.push(located);
+                }
+            }
+            let probe = Located::new(&vec![9.0; dimension], radius);
+            assert_eq!(archive.enter(probe, -1.0, 60, 0.0, true), Insertion::New);
+            by_places += usize::from(archive.near.is_some());
+            let keep = if round % 20 == 19 {
+                0
+            } else {
+                left.len() - rng.below(left.len() / 2 + 1)
+            };
+            archive.truncate(keep);
+            left.truncate(keep);
+            assert_eq!((archive.solutions(), archive.probe_only()), (&left[..], 0));
+            assert!(left.iter().all(|hit| archive.contains(hit) && archive.holds(hit)));
+        }
+        assert_eq!(by_places > 100, dimension == 6);
+    }
+}
+
 #[test]
 fn a_point_without_coordinates_among_crowded_ones_is_found() {
     let mut archive = Archive::default();

@@ -8,6 +8,7 @@ use super::lanes::LanesProgress;
 use super::running::Running;
 use super::slice::Slice;
 use super::tickets::SavedTickets;
+use crate::accounting::Unlisted;
 use crate::archive::packed::Packable;
 use crate::archive::{Archive, packed};
 use crate::best::Best;
@@ -95,6 +96,8 @@ pub struct Unfinished<T> {
     pub(super) hits: u64,
     /// Hits that only probes have found, by index.
     pub(super) probe_only: Vec<u32>,
+    /// What the other lanes do not know of this one.
+    pub(super) unlisted: Option<Unlisted<T>>,
     pub(super) state: State,
 }
 
@@ -256,6 +259,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             best: ledger.best.get().cloned(),
             hits: ledger.archive.len() as u64,
             probe_only: ledger.archive.probe_only_indices(),
+            unlisted: ledger.unlisted.clone(),
             state,
         }
     }

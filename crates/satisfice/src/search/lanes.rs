@@ -2,6 +2,11 @@
 //!
 //! A hit enters the archive when the lanes exchange, after 256 evaluations of each of them, then 512, then every 1,024. Between
 //! two exchanges lanes know nothing of each other, so the number of threads they run on changes nothing.
+//!
+//! Two lanes may meanwhile find hits that are the same answer without being the same as the same solutions, as points within a radius of
+//! each other. The first is listed, and the lane of the other one forgets its own. What that lane had rejected because of it is listed
+//! unless it is the same as a listed hit; but what it had covered by it is not covered, and the lane proves nothing from then on. The
+//! first lane never forgets a hit, since its hits come first.
 
 use core::ops::Range;
 use core::time::Duration;
@@ -9,6 +14,7 @@ use core::time::Duration;
 use super::lane::RunningLane;
 use super::slice::Slice;
 use super::stage::{BatchSource, Stage};
+use crate::accounting::Unlisted;
 use crate::budget::{Budget, StopReason};
 use crate::identity::Identity;
 use crate::observer::Observer;
@@ -35,8 +41,8 @@ pub(super) struct LanesProgress {
     /// Evaluations of each lane before the next exchange, and in the round after it.
     until: u64,
     next_round: u64,
-    /// How many of the hits in each lane's own archive are known to all.
-    told: Vec<usize>,
+    /// Whether all hits that each lane has found are listed, so that what it has covered is covered.
+    proves: Vec<bool>,
     /// Duplicates counted by the lanes themselves, as of the last exchange.
     duplicates: u64,
     /// Why the lanes have ended, once they have.
@@ -48,7 +54,7 @@ impl LanesProgress {
         Self {
             until: FIRST_ROUND,
             next_round: 2 * FIRST_ROUND,
-            told: vec![0; lanes],
+            proves: vec![true; lanes],
             duplicates: 0,
             ended: None,
         }
@@ -68,7 +74,7 @@ impl LanesProgress {
 
     /// Whether it fits a search of so many lanes.
     pub(super) fn fits(&self, lanes: usize) -> bool {
-        self.told.len() == lanes
+        self.proves.len() == lanes
     }
 }
 
@@ -159,36 +165,93 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         common.record_sources(lanes.iter().map(|lane| lane.lane.engine.sources()));
         let known = common.ledger.archive.len();
         let mut finders = Vec::new();
-        for (i, lane) in lanes.iter().enumerate() {
-            let ledger = &lane.slice.ledger;
-            if let Some(best) = ledger.best.get() {
-                common.ledger.offer_from_lane(best);
-            }
-            for hit in ledger.archive.iter().skip(progress.told[i]) {
-                if common.ledger.stops_before_more() {
-                    return true;
-                }
-                if common.ledger.insert_from_lane(&hit, observer) {
-                    finders.push(i);
-                }
-            }
-        }
+        let listed = self.list_found(lanes, &mut finders, observer);
+        let Some(forgets) = listed.filter(|_| self.list_rejected(lanes, observer)) else {
+            return true;
+        };
+        let common = &mut self.common.ledger;
+        common.stop_if_stale();
+        let over = common.stops_before_more();
         // The engines are not told, but hits of other lanes are deleted for them: the lane that finds a cluster searches it.
         // When engines were told, each lane searched around the hits of all.
         for (i, lane) in lanes.iter_mut().enumerate() {
             let ledger = &mut lane.slice.ledger;
+            if forgets[i] {
+                self.progress.proves[i] = false;
+                ledger.keep_listed(&common.archive);
+            }
+            if !self.progress.proves[i] && ledger.stop == Some(StopReason::Covered) {
+                ledger.stop = Some(StopReason::Exhausted);
+            }
+            // It had as many hits as are wanted, but not all of them are listed.
+            if !over && ledger.stop == Some(StopReason::Hits) {
+                ledger.stop = None;
+            }
             let (now, seconds) = (ledger.counts.evaluations, ledger.clock.seen().as_secs_f64());
-            for (hit, &finder) in common.ledger.archive.iter().skip(known).zip(&finders) {
-                if finder != i {
+            // Rejected hits, which come last, are new to all lanes.
+            let finders = finders.iter().copied().map(Some).chain(core::iter::repeat(None));
+            for (hit, finder) in common.archive.iter().skip(known).zip(finders) {
+                if finder != Some(i) {
                     ledger
                         .archive
                         .insert(hit.solution.clone(), hit.fitness, now, seconds);
                 }
             }
-            progress.told[i] = ledger.archive.len();
+            ledger.unlisted = Some(Unlisted::after(ledger.archive.len()));
         }
-        common.ledger.stop_if_stale();
-        common.ledger.stops_before_more()
+        over
+    }
+
+    /// Lists what the lanes have found, with the finder of each new hit. Returns which of the lanes have found one that is not listed;
+    /// `None` at the limits.
+    fn list_found(
+        &mut self,
+        lanes: &[RunningLane<S, T>],
+        finders: &mut Vec<usize>,
+        observer: &mut dyn Observer<T>,
+    ) -> Option<Vec<bool>> {
+        let common = &mut self.common.ledger;
+        let mut forgets = vec![false; lanes.len()];
+        for (i, lane) in lanes.iter().enumerate() {
+            let ledger = &lane.slice.ledger;
+            if let Some(best) = ledger.best.get() {
+                common.offer_from_lane(best);
+            }
+            for hit in ledger.archive.iter().skip(ledger.listed()) {
+                if common.stops_before_more() {
+                    return None;
+                }
+                if common.insert_from_lane(hit.solution, hit.fitness, observer) {
+                    finders.push(i);
+                } else {
+                    common.counts.duplicates += 1;
+                    forgets[i] |= !common.archive.holds(hit.solution);
+                }
+            }
+        }
+        Some(forgets)
+    }
+
+    /// Lists what the lanes have rejected, where nothing listed is the same; `false` at the limits.
+    fn list_rejected(&mut self, lanes: &mut [RunningLane<S, T>], observer: &mut dyn Observer<T>) -> bool {
+        let common = &mut self.common.ledger;
+        for lane in lanes {
+            let ledger = &mut lane.slice.ledger;
+            let unlisted = ledger.unlisted.as_mut();
+            let rejected = unlisted.map(|unlisted| core::mem::take(&mut unlisted.rejected));
+            for (solution, fitness) in rejected.into_iter().flatten() {
+                if common.stops_before_more() {
+                    return false;
+                }
+                if common.insert_from_lane(&solution, fitness, observer) {
+                    // The lane has counted it as found twice.
+                    ledger.counts.duplicates -= 1;
+                    common.counts.duplicates -= 1;
+                    self.progress.duplicates -= 1;
+                }
+            }
+        }
+        true
     }
 
     /// Ends the lanes; returns why.

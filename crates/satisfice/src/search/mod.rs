@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use num_traits::Float;
 
-use crate::accounting::Reached;
+use crate::accounting::{Reached, Unlisted};
 use crate::archive::Archive;
 use crate::budget::{Budget, StopReason};
 use crate::engine::{ConfiguredEngine, WarmStart};
@@ -215,7 +215,10 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     ///
     /// The number of lanes is part of the search, like a seed. A hit is listed when the lanes exchange: after 256
     /// evaluations of each, then 512, then every 1,024. It carries the evaluation count and the time of the exchange. Each
-    /// lane has an archive of its own, so memory grows with their number. Random numbers are streams of one seed; the first
+    /// lane has an archive of its own, so memory grows with their number. Where points within a separation are one answer, two lanes may find
+    /// two such points between two exchanges, and one is listed: that of the lane that comes first. Every hit that was evaluated is the same as a
+    /// listed one, unless a limit ends the slice at an exchange. A lane that has covered a part of the space by a hit that is not listed
+    /// proves nothing from then on; the first lane always can. Random numbers are streams of one seed; the first
     /// lane's is that of a search with one lane. Uniform probes come at the end, after the engines.
     ///
     /// ```
@@ -441,6 +444,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
                 Reached::default(),
             );
             slice.ledger.at_once = at_once;
+            slice.ledger.unlisted = running.exchange.is_some().then(|| Unlisted::after(0));
             slice.starts = starts[lanes::verified_by(number, count, starts.len())].concat();
             if own_budget.evaluations == Some(0) {
                 slice.ledger.stop = Some(StopReason::Evaluations); // fewer evaluations than lanes

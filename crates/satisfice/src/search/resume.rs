@@ -171,6 +171,9 @@ pub(super) fn restore<S: Real, T: Identity + Clone + Send + Sync>(
                 .into_iter()
                 .map(|slice| Slice::restore(slice, dimension, previous))
                 .collect::<Result<Vec<_>, Error>>()?;
+            if slices.iter().any(|slice| slice.ledger.unlisted.is_none()) {
+                return Err(misfit());
+            }
             let common = reported;
             (slices, Some(Exchange { common, progress }))
         }
@@ -226,6 +229,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         {
             return Err(Error::State("its list of hits is not complete".to_owned()));
         }
+        let unlisted = saved.unlisted;
+        if unlisted
+            .as_ref()
+            .is_some_and(|unlisted| unlisted.listed > archive.len())
+        {
+            return Err(Error::State("its list of hits is not complete".to_owned()));
+        }
         let reached = Reached {
             counts: saved.counts,
             archive,
@@ -237,6 +247,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let mut slice = Self::begin(&saved.budget, dimension, probes, from..to, reached);
         slice.last = last;
         slice.starts = starts;
+        slice.ledger.unlisted = unlisted;
         (slice.sources, slice.next_row) = (sources, next_row);
         if let Some(pending) = pending {
             slice.stage = Stage::Repeat(pending);

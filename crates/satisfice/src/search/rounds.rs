@@ -276,10 +276,12 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
             return Err(misfit());
         };
         let place = self.running.lanes.get_mut(done.island).ok_or_else(misfit)?;
+        let listed = |lane: &RunningLane<_, _>| lane.slice.ledger.listed();
         let fits = exchange.is_searching()
             && place.slice.pause == done.until
             && exchange.is_due(core::slice::from_ref(&lane))
-            && lane.slice.ledger.archive.len() >= place.slice.ledger.archive.len();
+            && lane.slice.ledger.archive.len() >= place.slice.ledger.archive.len()
+            && listed(&lane) == listed(place);
         if !fits {
             return Err(misfit());
         }

@@ -6,6 +6,7 @@ mod closures;
 mod equations;
 mod isolated_hits;
 mod lanes;
+mod lanes_apart;
 mod panics;
 mod patience;
 mod portfolio;

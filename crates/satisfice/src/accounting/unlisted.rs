@@ -1,0 +1,76 @@
+//! What one lane of several has found since the lanes exchanged their hits.
+
+use super::Ledger;
+use crate::identity::Identity;
+use crate::problem::SatisficingProblem;
+use crate::scalar::Real;
+
+/// What the other lanes do not know of a lane.
+///
+/// Two lanes may find two hits within the separation of each other, and only one of these is listed. What a lane has rejected
+/// because of the other one is then near nothing that is listed, and a hit of its own.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Unlisted<T> {
+    /// So many hits of its archive, the first ones, are listed.
+    pub(crate) listed: usize,
+    /// Hits, with F, that were evaluated and rejected because of a later one.
+    pub(crate) rejected: Vec<(T, f64)>,
+}
+
+impl<T> Unlisted<T> {
+    /// Nothing, after an exchange that left the lane with so many hits.
+    pub(crate) fn after(listed: usize) -> Self {
+        Self {
+            listed,
+            rejected: Vec::new(),
+        }
+    }
+}
+
+impl<T> Ledger<T> {
+    /// How many hits, the first ones, are listed: all of them but in one lane of several.
+    pub(crate) fn listed(&self) -> usize {
+        let unlisted = self.unlisted.as_ref();
+        unlisted.map_or(self.archive.len(), |unlisted| unlisted.listed)
+    }
+}
+
+impl<T: Identity + Clone + Send + Sync> Ledger<T> {
+    /// Notes a solution that is rejected because it is the same as hit `index`, if that hit may turn out not to be listed.
+    #[inline]
+    pub(super) fn note_rejected<P: SatisficingProblem<Solution = T> + ?Sized>(
+        &mut self,
+        problem: &P,
+        solution: &T,
+        fitness: P::Scalar,
+        index: usize,
+    ) {
+        if index < self.listed() {
+            return;
+        }
+        let hit = self.archive.solutions().get(index);
+        if hit.is_some_and(|hit| hit.stands_for(solution)) {
+            return;
+        }
+        let other = problem.canonical(solution);
+        let other = other.and_then(|other| Self::if_hit(problem, other));
+        let noted = other.unwrap_or_else(|| (solution.clone(), fitness));
+        if let Some(unlisted) = &mut self.unlisted {
+            unlisted.rejected.push((noted.0, noted.1.f64()));
+        }
+    }
+
+    /// After an exchange: keeps of the hits since the one before only those that `common` lists.
+    pub(crate) fn keep_listed(&mut self, common: &crate::archive::Archive<T>) {
+        let listed = self.listed();
+        let own = self.archive.iter().skip(listed);
+        let kept = own.filter(|hit| common.holds(hit.solution));
+        let kept: Vec<_> = kept
+            .map(|hit| (hit.solution.clone(), hit.fitness, hit.evaluation, hit.seconds))
+            .collect();
+        self.archive.truncate(listed);
+        for (solution, fitness, evaluation, seconds) in kept {
+            self.archive.insert(solution, fitness, evaluation, seconds);
+        }
+    }
+}
