@@ -235,6 +235,7 @@ impl Search {
         for (name, count) in [
             ("asked", counts.asked),
             ("taken", counts.taken),
+            ("unused", counts.unused),
             ("again", counts.again),
             ("late", counts.late),
             ("over", counts.over),

@@ -179,8 +179,8 @@ class Search:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Tickets: ``asked``, ``taken``, ``again`` (a second value), ``late`` (after `forget`), ``over`` (after the end) and
-        ``forgotten``."""
+        """Tickets: ``asked``, ``taken``, ``unused`` (taken and dropped, because an earlier value of the batch ended the slice by a limit
+        of hits or by patience), ``again`` (a second value), ``late`` (after `forget`), ``over`` (after such an end) and ``forgotten``."""
         return self._search.ticket_counts()
 
     def report(self) -> _satisfice.Report:

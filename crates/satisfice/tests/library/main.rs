@@ -15,5 +15,6 @@ mod problem_suite_rare;
 mod rounds;
 mod start_points;
 mod tickets;
+mod tickets_unused;
 mod told;
 mod unsized_problem;

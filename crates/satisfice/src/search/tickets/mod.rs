@@ -233,7 +233,8 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     }
 
     /// Tells the fitness of a solution that was [asked](Tickets::ask). NaN and infinite values are counted as such, and are
-    /// never a hit. A value for a ticket that has one or that was forgotten is counted and dropped.
+    /// never a hit. A value for a ticket that has one or that was forgotten is counted and dropped. What else may become of it, [`Told`]
+    /// says.
     ///
     /// # Errors
     /// [`Error::Ticket`] for a ticket that was never given out.
@@ -357,7 +358,14 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// What happened to the tickets so far.
     #[must_use]
     pub fn ticket_counts(&self) -> TicketCounts {
-        self.counts
+        let unused = match &self.state {
+            Inner::Ordered(ordered) => ordered.unused,
+            Inner::Eager(_) => 0,
+        };
+        TicketCounts {
+            unused,
+            ..self.counts
+        }
     }
 
     /// The problem.

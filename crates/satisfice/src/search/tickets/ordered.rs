@@ -20,6 +20,8 @@ pub(super) struct Ordered<S, T> {
     pub(super) informed: Vec<(T, S, Vec<S>)>,
     /// Whether a proposal was forgotten: then nothing is proved.
     pub(super) has_gaps: bool,
+    /// Values that were taken and dropped, because an earlier one of their batch had ended the slice.
+    pub(super) unused: u64,
 }
 
 /// A batch that is out.
@@ -62,6 +64,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             out: Vec::new(),
             informed: Vec::new(),
             has_gaps: false,
+            unused: 0,
         }
     }
 
@@ -221,15 +224,22 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
     {
         let computed = out.computed();
+        let values = computed.iter().flatten().count();
+        let before = self.fitness_values(out.turn);
         if let Some(slice) = self.running.slice_at(out.turn) {
             slice.candidates.resume(&computed);
-            slice
-                .ledger
-                .evaluated_elsewhere(computed.iter().flatten().count());
+            slice.ledger.evaluated_elsewhere(values);
         }
         self.running.settle(out.turn, problem, previous, &mut ());
+        self.unused += (before + values as u64).saturating_sub(self.fitness_values(out.turn));
         self.withdraw_proofs();
         self.enter_informed(problem, previous);
+    }
+
+    /// How many values of the fitness have been entered there.
+    fn fitness_values(&mut self, turn: Turn) -> u64 {
+        let slice = self.running.slice_at(turn);
+        slice.map_or(0, |slice| slice.ledger.counts.fitness_calls)
     }
 
     /// Takes a value from elsewhere. It waits while a batch is out that was prepared without it.

@@ -50,7 +50,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
             next: self.next,
             open: open.collect(),
             forgotten: self.forgotten.iter().copied().collect(),
-            counts: self.counts,
+            counts: self.ticket_counts(),
             waits: self.waits,
             log: self.log.clone(),
             informed,
@@ -90,6 +90,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
             Order::Ordered => {
                 let mut ordered = Ordered::new(crate::search::resume::restore(saved, lanes)?);
                 ordered.has_gaps = !tickets.forgotten.is_empty();
+                ordered.unused = tickets.counts.unused;
                 let out: Vec<Out<P::Scalar>> = reader.read()?;
                 for out in out {
                     if !ordered.propose_again(out, &*problem, &search.previous) {

@@ -36,13 +36,16 @@ pub struct Asked<T> {
 /// What became of a told value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Told {
-    /// It was taken.
+    /// It was taken. In [eager](Order::Eager) order it is entered at once. In [ordered](Order::Ordered) order it is entered once its batch is complete,
+    /// unless an earlier value of that batch ends the slice by a limit of hits or by patience: then it is dropped, as
+    /// [`Search::run`](crate::Search::run) makes no use of it, and counts as [`TicketCounts::unused`].
     Taken,
     /// The ticket had a value already: the first one counts.
     Again,
     /// The ticket was forgotten before.
     Late,
-    /// The slice had ended, by its number of hits.
+    /// The slice had ended, by its limit of hits or by its patience, and the value was dropped. Only in [eager](Order::Eager) order: in the other one
+    /// no ticket stays open when a slice ends so.
     Over,
 }
 
@@ -60,13 +63,16 @@ pub enum Order {
 pub struct TicketCounts {
     /// Given out.
     pub asked: u64,
-    /// Values taken.
+    /// Values taken, the unused ones included.
     pub taken: u64,
+    /// Values taken and then dropped because an earlier one of their batch had ended the slice by a limit of hits or by patience; only in
+    /// [ordered](Order::Ordered) order. They are no evaluations of the report.
+    pub unused: u64,
     /// Values that were dropped because their ticket had one.
     pub again: u64,
     /// Values that were dropped because their ticket was forgotten.
     pub late: u64,
-    /// Values that were dropped because the slice had ended.
+    /// Values that were dropped because the slice had ended by a limit of hits or by patience.
     pub over: u64,
     /// Tickets forgotten.
     pub forgotten: u64,
