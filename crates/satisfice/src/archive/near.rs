@@ -4,12 +4,19 @@
 //! ball meets too many cells of all of them. A box is passed by as soon as it is farther away than a radius. Where hits come in one
 //! direction, a part of the tree that has become deep is built again (Galperin, Rivest 1993).
 
+mod around;
+#[cfg(test)]
+mod tests;
+
 use core::cell::RefCell;
 
+use self::around::{Around, WIDEST};
 use crate::identity::Identity;
 
-/// Points of a leaf, at most, unless all are in one place.
+/// Points of a leaf, at most, unless no axis tells enough of them apart.
 const LEAF: usize = 32;
+/// Points on either side of a split, at least: a box of fewer takes longer to pass by than they do. Along each of many axes there are few.
+const SIDE: usize = 8;
 /// Squared distances, in radii, of what may be the same are at most this, by what distances are rounded.
 const FARTHEST: f64 = 1.001;
 /// Where a path is longer than in a tree whose parts have at most `LOPSIDED` of their points on one side, a part is built again that has more
@@ -56,9 +63,13 @@ fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(&mut Point) -
     result
 }
 
-/// Whether distances along all coordinates are at most a radius together.
+/// The sum of the squares of the distances along all coordinates, unless it is more than `limit`.
 #[inline(always)]
-fn is_within<T>(chunks: impl Iterator<Item = T>, distance: impl Fn(&T, usize) -> f64) -> bool {
+fn square<T>(
+    chunks: impl Iterator<Item = T>,
+    limit: f64,
+    distance: impl Fn(&T, usize) -> f64,
+) -> Option<f64> {
     let mut squares = [0.0; LANES];
     for chunk in chunks {
         for (lane, square) in squares.iter_mut().enumerate() {
@@ -66,11 +77,23 @@ fn is_within<T>(chunks: impl Iterator<Item = T>, distance: impl Fn(&T, usize) ->
             *square += distance * distance;
         }
         let [a, b, c, d] = squares;
-        if (a + b) + (c + d) > FARTHEST {
-            return false;
+        if (a + b) + (c + d) > limit {
+            return None;
         }
     }
-    true
+    let [a, b, c, d] = squares;
+    Some((a + b) + (c + d))
+}
+
+/// The squared distance of two points, in radii, unless it is more than `limit`.
+#[inline(always)]
+fn distance(a: &[f64], b: &[f64], scales: &[f64], limit: f64) -> Option<f64> {
+    let lanes = a.chunks_exact(LANES).zip(b.chunks_exact(LANES));
+    square(
+        lanes.zip(scales.chunks_exact(LANES)),
+        limit,
+        |((a, b), scales), lane| (a[lane] - b[lane]) * scales[lane],
+    )
 }
 
 impl NearIndex {
@@ -121,6 +144,8 @@ struct Tree {
     free: Vec<usize>,
     /// Memory of one way down.
     path: Vec<usize>,
+    /// The hits around the last points looked up.
+    around: Around,
 }
 
 #[derive(Debug, Clone)]
@@ -153,6 +178,7 @@ impl Tree {
             boxes: Vec::new(),
             free: Vec::new(),
             path: Vec::new(),
+            around: Around::default(),
         };
         tree.add_node();
         tree
@@ -177,6 +203,7 @@ impl Tree {
 
     /// Makes a node a leaf of these points.
     fn set_leaf(&mut self, node: usize, numbers: Vec<u32>, points: Vec<f64>) {
+        self.around.clear();
         let dimension = self.dimension();
         let (lower, upper) = self.box_of_mut(node);
         lower.fill(f64::INFINITY);
@@ -227,9 +254,14 @@ impl Tree {
                 }
                 NodeKind::Leaf { numbers, points } => {
                     numbers.push(number);
+                    let row = points.len();
                     points.extend_from_slice(point);
-                    if numbers.len().is_multiple_of(LEAF + 1) {
-                        self.split(at);
+                    let scales = &self.scales;
+                    self.around
+                        .add(number, at, row, |centre| distance(centre, point, scales, WIDEST));
+                    let times = numbers.len() / (LEAF + 1);
+                    if numbers.len().is_multiple_of(LEAF + 1) && times.is_power_of_two() {
+                        self.split_all(at);
                     }
                     break;
                 }
@@ -243,9 +275,10 @@ impl Tree {
 
     /// Removes a point that was inserted. Boxes stay as large as they are.
     fn remove(&mut self, point: &[f64], number: u32) {
+        self.around.clear();
+        let dimension = self.dimension();
         let mut at = 0;
         loop {
-            let dimension = self.radii.len();
             let node = &mut self.nodes[at];
             node.count -= 1;
             match &mut node.kind {
@@ -263,23 +296,48 @@ impl Tree {
         }
     }
 
-    /// Splits a leaf across its widest axis, in the middle of its points; not if all of them are in one place. Returns the first
-    /// part.
+    /// Splits a leaf, and its parts, as long as they have too many points.
+    fn split_all(&mut self, leaf: usize) {
+        let mut left = vec![leaf];
+        while let Some(node) = left.pop() {
+            if self.nodes[node].count > LEAF
+                && let Some(first) = self.split(node)
+            {
+                left.extend([first, first + 1]);
+            }
+        }
+    }
+
+    /// Splits a leaf across the axis that is widest without its outermost points, in the middle of its points; not if that has no width on
+    /// any. Returns the first part.
     fn split(&mut self, leaf: usize) -> Option<usize> {
         let dimension = self.dimension();
-        let (lower, upper) = self.box_of(leaf);
-        let widths = lower.iter().zip(upper).zip(&self.scales);
-        let widest = widths
-            .map(|((lower, upper), scale)| (upper - lower) * scale)
-            .enumerate()
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        let (Some((axis, _)), NodeKind::Leaf { numbers, points }) = (widest, &self.nodes[leaf].kind) else {
+        let NodeKind::Leaf { numbers, points } = &self.nodes[leaf].kind else {
             return None;
         };
-        let mut order: Vec<f64> = points.iter().skip(axis).step_by(dimension).copied().collect();
+        let last = numbers.len().checked_sub(SIDE)?;
+        let mut order = Vec::with_capacity(numbers.len());
+        let (mut chosen, mut widest) = (None, 0.0);
+        let (lower, upper) = self.box_of(leaf);
+        for axis in 0..dimension {
+            if (upper[axis] - lower[axis]) * self.scales[axis] <= widest {
+                continue;
+            }
+            order.clear();
+            order.extend(points.iter().skip(axis).step_by(dimension));
+            let high = *order.select_nth_unstable_by(last, f64::total_cmp).1;
+            let low = *order.select_nth_unstable_by(SIDE - 1, f64::total_cmp).1;
+            let width = (high - low) * self.scales[axis];
+            if width > widest {
+                (chosen, widest) = (Some(axis), width);
+            }
+        }
+        let axis = chosen?;
+        order.clear();
+        order.extend(points.iter().skip(axis).step_by(dimension));
         order.sort_unstable_by(f64::total_cmp);
         let middle = order.len() / 2;
-        let steps = (1..order.len()).filter(|&i| order[i - 1] < order[i]);
+        let steps = (SIDE..=last).filter(|&i| order[i - 1] < order[i]);
         let step = steps.min_by_key(|&i| i.abs_diff(middle))?;
         let value = order[step];
         let mut parts = [(Vec::new(), Vec::new()), (Vec::new(), Vec::new())];
@@ -338,21 +396,27 @@ impl Tree {
             }
         }
         self.set_leaf(top, all, places);
-        left.push(top);
-        while let Some(node) = left.pop() {
-            if self.nodes[node].count > LEAF
-                && let Some(first) = self.split(node)
-            {
-                left.extend([first, first + 1]);
-            }
-        }
+        self.split_all(top);
     }
 
     fn any(&self, point: &[f64], left: &mut Vec<usize>, test: &mut impl FnMut(u32) -> bool) -> bool {
+        let around = self.around.any(self, point, left, test);
+        around.unwrap_or_else(|| self.walk(point, left, test, &mut 0))
+    }
+
+    /// [`Tree::any`], by the boxes; counts them and the points that are looked at.
+    fn walk(
+        &self,
+        point: &[f64],
+        left: &mut Vec<usize>,
+        test: &mut impl FnMut(u32) -> bool,
+        cost: &mut usize,
+    ) -> bool {
         left.clear();
         left.push(0);
         while let Some(at) = left.pop() {
-            if !self.is_box_near(at, point) {
+            *cost += 1;
+            if !self.is_box_within(at, point, FARTHEST) {
                 continue;
             }
             match &self.nodes[at].kind {
@@ -361,8 +425,10 @@ impl Tree {
                     left.extend([first + 1 - own, first + own]);
                 }
                 NodeKind::Leaf { numbers, points } => {
+                    *cost += numbers.len();
                     let mut points = points.chunks_exact(self.dimension()).zip(numbers);
-                    if points.any(|(other, &number)| self.is_near(point, other) && test(number)) {
+                    let is_near = |other| distance(point, other, &self.scales, FARTHEST).is_some();
+                    if points.any(|(other, &number)| is_near(other) && test(number)) {
                         return true;
                     }
                 }
@@ -371,24 +437,56 @@ impl Tree {
         false
     }
 
-    fn is_near(&self, a: &[f64], b: &[f64]) -> bool {
-        let lanes = a.chunks_exact(LANES).zip(b.chunks_exact(LANES));
-        is_within(
-            lanes.zip(self.scales.chunks_exact(LANES)),
-            |((a, b), scales), lane| (a[lane] - b[lane]) * scales[lane],
-        )
+    /// Visits the points around one, with their number, their leaf, their first coordinate there and the square of their distance, until `visit`
+    /// returns `false`; returns whether it did not.
+    fn each_around(
+        &self,
+        point: &[f64],
+        left: &mut Vec<usize>,
+        mut visit: impl FnMut(u32, usize, usize, f64) -> bool,
+    ) -> bool {
+        left.clear();
+        left.push(0);
+        while let Some(at) = left.pop() {
+            if !self.is_box_within(at, point, WIDEST) {
+                continue;
+            }
+            match &self.nodes[at].kind {
+                NodeKind::Split { first, .. } => left.extend([first + 1, *first]),
+                NodeKind::Leaf { numbers, points } => {
+                    for (index, &number) in numbers.iter().enumerate() {
+                        let row = index * self.dimension();
+                        let other = &points[row..row + self.dimension()];
+                        if let Some(square) = distance(point, other, &self.scales, WIDEST)
+                            && !visit(number, at, row, square)
+                        {
+                            return false;
+                        }
+                    }
+                }
+            }
+        }
+        true
     }
 
-    fn is_box_near(&self, node: usize, point: &[f64]) -> bool {
+    /// The coordinates of a point of a leaf, from their first.
+    fn point(&self, leaf: usize, row: usize) -> &[f64] {
+        match &self.nodes[leaf].kind {
+            NodeKind::Leaf { points, .. } => &points[row..row + self.dimension()],
+            NodeKind::Split { .. } => &[],
+        }
+    }
+
+    /// Whether a box is that near to a point.
+    fn is_box_within(&self, node: usize, point: &[f64], limit: f64) -> bool {
         let (lower, upper) = self.box_of(node);
         let ends = lower.chunks_exact(LANES).zip(upper.chunks_exact(LANES));
         let lanes = point.chunks_exact(LANES).zip(ends);
-        is_within(
-            lanes.zip(self.scales.chunks_exact(LANES)),
-            |((x, (lower, upper)), scales), lane| {
-                (lower[lane] - x[lane]).max(x[lane] - upper[lane]).max(0.0) * scales[lane]
-            },
-        )
+        let chunks = lanes.zip(self.scales.chunks_exact(LANES));
+        let square = square(chunks, limit, |((x, (lower, upper)), scales), lane| {
+            (lower[lane] - x[lane]).max(x[lane] - upper[lane]).max(0.0) * scales[lane]
+        });
+        square.is_some()
     }
 
     fn bytes(&self) -> usize {
@@ -396,73 +494,9 @@ impl Tree {
             NodeKind::Leaf { numbers, points } => numbers.capacity() * 4 + points.capacity() * 8,
             NodeKind::Split { .. } => 0,
         });
-        leaves.sum::<usize>() + self.nodes.capacity() * size_of::<Node>() + self.boxes.capacity() * 8
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Located;
-
-    /// The longest way down.
-    fn depth(index: &NearIndex) -> usize {
-        let tree = &index.trees[0];
-        let (mut deepest, mut left) = (0, vec![(0, 1)]);
-        while let Some((node, depth)) = left.pop() {
-            deepest = deepest.max(depth);
-            if let NodeKind::Split { first, .. } = tree.nodes[node].kind {
-                left.extend([(first, depth + 1), (first + 1, depth + 1)]);
-            }
-        }
-        let used = tree.nodes.len() - 2 * tree.free.len();
-        assert_eq!(tree.nodes[0].count, index.count());
-        assert!(used < index.count() / 4 + 2, "{used} nodes");
-        deepest
-    }
-
-    impl NearIndex {
-        /// Hits, counted leaf by leaf.
-        fn count(&self) -> usize {
-            let nodes = self.trees.iter().flat_map(|tree| &tree.nodes);
-            let leaves = nodes.map(|node| match &node.kind {
-                NodeKind::Leaf { numbers, .. } => numbers.len(),
-                NodeKind::Split { .. } => 0,
-            });
-            leaves.sum()
-        }
-    }
-
-    #[test]
-    fn hits_in_one_direction_do_not_make_it_deep() {
-        let mut index = NearIndex::default();
-        let at = |x: f64| Located::new(&[x, 2.0 * x, 0.0, 1.0, 0.0], 0.5);
-        for number in 0..20_000 {
-            index.insert(&at(f64::from(number)), number);
-        }
-        assert!(depth(&index) < 30, "{}", depth(&index));
-        for number in (0..20_000).step_by(7) {
-            assert!(index.any(&at(f64::from(number) + 0.1), |found| found == number));
-            assert!(!index.any(&at(f64::from(number) + 0.5), |_| true));
-        }
-    }
-
-    /// Along each of many axes: most points are zero on each.
-    #[test]
-    fn a_star_is_searched_without_recursion() {
-        let mut index = NearIndex::default();
-        let at = |number: u32| {
-            let mut x = vec![0.0; 200];
-            x[number as usize % 200] = f64::from(1 + number / 200);
-            Located::new(&x, 0.5)
-        };
-        for number in 0..8000 {
-            index.insert(&at(number), number);
-        }
-        assert!(depth(&index) < 2000, "{}", depth(&index));
-        for number in (0..8000).step_by(31) {
-            assert!(index.any(&at(number), |found| found == number));
-            assert!(!index.any(&at(number), |found| found != number));
-        }
+        leaves.sum::<usize>()
+            + self.nodes.capacity() * size_of::<Node>()
+            + self.boxes.capacity() * 8
+            + self.around.bytes()
     }
 }

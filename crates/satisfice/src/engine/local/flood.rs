@@ -110,7 +110,7 @@ impl<S: Real> Flood<S> {
         self.queue = waiting.into_iter().map(Reverse).collect();
     }
 
-    /// Proposes neighbours of the next hit that has any left; `false` when all is flooded.
+    /// Proposes neighbours of the next hit that has any left, none once time is out; `false` when all is flooded.
     pub(in crate::engine) fn ask(&mut self, context: &dyn Context<S>, out: &mut Batch<S>) -> bool {
         let dimension = out.dimension();
         while out.is_empty() {
@@ -129,9 +129,12 @@ impl<S: Real> Flood<S> {
                 self.next = 0;
                 self.forget_old(dimension);
             }
+            if context.is_out_of_time() {
+                break;
+            }
             let seen = &mut self.seen;
             let mut propose = |position: &[S]| {
-                if !context.is_deleted(position) && is_new(seen, position) {
+                if is_new(seen, position) {
                     out.push(position);
                 }
             };
@@ -139,11 +142,15 @@ impl<S: Real> Flood<S> {
             let end = (count + dimension).min(self.next.saturating_add(points_at_once(dimension)));
             let neighbours = self.next..end.min(count);
             if !neighbours.is_empty() {
-                context.neighbours(&self.centre, neighbours, &mut |_, position| propose(position));
+                context.neighbours(&self.centre, neighbours, &mut |_, position| {
+                    if !context.is_deleted(position) {
+                        propose(position);
+                    }
+                });
             }
             let axes = self.next.max(count) - count..end.max(count) - count;
             self.doublings.resize(dimension, 0);
-            frontier(
+            let left = frontier(
                 context,
                 &mut self.centre,
                 axes,
@@ -151,8 +158,8 @@ impl<S: Real> Flood<S> {
                 &mut self.doublings,
                 &mut propose,
             );
-            self.next = end;
-            if end == count + dimension {
+            self.next = end - left;
+            if self.next == count + dimension {
                 self.centre.clear();
             }
         }
@@ -207,7 +214,7 @@ fn is_new<S: Real>(seen: &mut HashTable<u64>, position: &[S]) -> bool {
 }
 
 /// Visits, in both directions of some continuous axes, the nearest point to `centre` that is not deleted. The search begins with the step
-/// at which the last one of the axis ended: hits are about as far apart as they were there.
+/// at which the last one of the axis ended: hits are about as far apart as they were there. Returns how many axes are left when time runs out.
 fn frontier<S: Real>(
     context: &dyn Context<S>,
     centre: &mut [S],
@@ -215,9 +222,12 @@ fn frontier<S: Real>(
     first_step: S,
     doublings: &mut [u32],
     visit: &mut dyn FnMut(&[S]),
-) {
+) -> usize {
     let two = S::of(2.0);
-    for j in axes {
+    for j in axes.clone() {
+        if context.is_out_of_time() {
+            return axes.end - j;
+        }
         let axis = &context.space().axes()[j];
         if axis.is_integer() || axis.width() == S::zero() {
             continue;
@@ -267,5 +277,98 @@ fn frontier<S: Real>(
             visit(centre);
         }
         centre[j] = here;
+    }
+    0
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+    use crate::space::{Region, Space};
+    use crate::testing::BareContext;
+
+    /// Everything within a distance of the middle is deleted, and time is out after some looks into C.
+    struct Timed {
+        bare: BareContext<f64>,
+        looks: Cell<usize>,
+        most: usize,
+    }
+
+    impl Context<f64> for Timed {
+        fn space(&self) -> &Space<f64> {
+            self.bare.space()
+        }
+        fn threshold(&self) -> f64 {
+            self.bare.threshold()
+        }
+        fn elapsed_share(&self) -> f64 {
+            0.0
+        }
+        fn evaluations(&self) -> u64 {
+            0
+        }
+        fn hits(&self) -> usize {
+            1
+        }
+        fn is_deleted(&self, position: &[f64]) -> bool {
+            self.looks.set(self.looks.get() + 1);
+            position.iter().map(|x| x * x).sum::<f64>() < 0.01
+        }
+        fn is_out_of_time(&self) -> bool {
+            self.looks.get() >= self.most
+        }
+        fn neighbour_count(&self, of: &[f64]) -> usize {
+            self.bare.neighbour_count(of)
+        }
+        fn neighbours(&self, _: &[f64], _: Range<usize>, _: &mut dyn FnMut(usize, &[f64])) {}
+        fn offers_neighbours(&self) -> bool {
+            false
+        }
+        fn lower_bound(&self, _: &Region<f64>) -> Option<f64> {
+            None
+        }
+        fn previous_hits(&self) -> usize {
+            0
+        }
+        fn previous_hit(&self, _: usize, _: &mut [f64]) -> bool {
+            false
+        }
+    }
+
+    #[test]
+    fn the_steps_along_many_axes_end_with_the_time_and_go_on_from_there() {
+        let axes = 1000;
+        let proposals = |most: usize| {
+            let context = Timed {
+                bare: BareContext::new(Space::cube(axes, -1.0, 1.0).unwrap()),
+                looks: Cell::new(0),
+                most,
+            };
+            let (mut flood, mut batch) = (Flood::new(1e-3, Order::First), Batch::new(axes));
+            batch.push(&vec![0.0; axes]);
+            flood.add_hits(&batch, &[Outcome::Hit(0.0)]);
+            let (mut all, mut asks) = (Vec::new(), 0);
+            loop {
+                batch.clear();
+                context.looks.set(0);
+                asks += 1;
+                if !flood.ask(&context, &mut batch) {
+                    return (all, asks);
+                }
+                // One axis: fewer than thirty looks.
+                assert!(
+                    context.looks.get() < most.saturating_add(30),
+                    "{}",
+                    context.looks.get()
+                );
+                all.extend(batch.points().map(<[f64]>::to_vec));
+            }
+        };
+        let (all, asks) = proposals(usize::MAX);
+        assert_eq!(all.len(), 2 * axes);
+        let (same, more) = proposals(100);
+        assert!(all == same && more > 10 * asks, "{more} asks in place of {asks}");
     }
 }
