@@ -121,28 +121,34 @@ impl<S: Real> Located<S> {
         self.separation.set(separation);
     }
 
-    /// Whether all points of `region` are the same as this one: whether its farthest corner is. On axes that are periodic or
-    /// logarithmic that is said of equal ends only.
+    /// Whether all points of `region` are the same as this one: whether its farthest corner is; on axes that are periodic or
+    /// logarithmic, whether even a point that is farther than that by rounding would be.
     ///
     /// That decides for all of them, rounding included: differences, quotients, squares and sums are monotone in every
     /// coordinate on either side of this point, and rounding keeps the order.
     #[must_use]
     pub fn covers(&self, region: &Region<S>) -> bool {
-        if let Separation::Axes(axes) = &self.separation {
-            let mut ends = region.lower.iter().zip(&region.upper).zip(axes.iter());
-            if ends.any(|((lower, upper), axis)| lower != upper && !axis.is_plain()) {
-                return false;
-            }
+        if region.lower.len() != self.coordinates.len() {
+            return false;
         }
         let ends = region.lower.iter().zip(&region.upper);
-        let farthest = self.coordinates.iter().zip(ends).map(|(&x, (&lower, &upper))| {
-            if (x - lower).abs() > (x - upper).abs() {
-                lower
-            } else {
-                upper
+        let sides = self.coordinates.iter().zip(ends);
+        let square = match &self.separation {
+            Separation::Radius(_) => {
+                let farther = |(&x, (&lower, &upper)): (&S, (&S, &S))| {
+                    let is_lower = (x - lower).abs() > (x - upper).abs();
+                    if is_lower { lower } else { upper }
+                };
+                return self.is_within(sides.map(farther));
             }
-        });
-        region.lower.len() == self.coordinates.len() && self.is_within(farthest)
+            Separation::Axes(axes) => {
+                let pairs = sides.zip(axes.iter());
+                pairs.fold(S::zero(), |sum, ((&x, (&lower, &upper)), axis)| {
+                    sum + axis.farthest_square(x, lower, upper)
+                })
+            }
+        };
+        square <= S::one()
     }
 
     #[inline]

@@ -348,7 +348,8 @@ pub struct Region<S> {
 }
 
 impl<S: Real> Region<S> {
-    /// The value in the middle of axis `axis` of a region of `space`, rounded down on an integer axis.
+    /// The value in the middle of axis `axis` of a region of `space`: rounded down on an integer axis, that of the mean logarithm on a
+    /// logarithmic one.
     ///
     /// # Panics
     /// If region or space have no such axis.
@@ -356,11 +357,18 @@ impl<S: Real> Region<S> {
     pub fn middle(&self, space: &Space<S>, axis: usize) -> S {
         let (lower, upper) = (self.lower[axis], self.upper[axis]);
         let half = (upper - lower) / S::of(2.0);
-        if space.axes[axis].kind != AxisKind::Continuous {
-            lower + half.floor()
-        } else {
-            lower + half
+        let axis = &space.axes[axis];
+        if axis.kind != AxisKind::Continuous {
+            return lower + half.floor();
         }
+        if axis.logarithmic {
+            let middle = axis.value_between(lower, upper, S::of(0.5));
+            // Where logarithms are too coarse to tell the ends apart, values may not be.
+            if lower < middle && middle < upper {
+                return middle;
+            }
+        }
+        lower + half
     }
 
     /// Whether a point of values lies inside.

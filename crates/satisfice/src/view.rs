@@ -45,6 +45,18 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
         position: &[P::Scalar],
         use_it: impl FnOnce(&mut Scratch<P::Scalar, P::Solution>) -> R,
     ) -> R {
+        self.lend(position, |scratch| {
+            self.problem.space().keep_inside(&mut scratch.values);
+            use_it(scratch)
+        })
+    }
+
+    /// Lends memory that holds these numbers.
+    fn lend<R>(
+        &self,
+        numbers: &[P::Scalar],
+        use_it: impl FnOnce(&mut Scratch<P::Scalar, P::Solution>) -> R,
+    ) -> R {
         let free = self.scratches.borrow_mut().pop();
         let mut scratch = free.unwrap_or(Scratch {
             values: Vec::new(),
@@ -52,8 +64,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
             neighbour: None,
         });
         scratch.values.clear();
-        scratch.values.extend_from_slice(position);
-        self.problem.space().keep_inside(&mut scratch.values);
+        scratch.values.extend_from_slice(numbers);
         let result = use_it(&mut scratch);
         self.scratches.borrow_mut().push(scratch);
         result
@@ -283,7 +294,7 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         let Some(encoding) = self.problem.encoding() else {
             return false;
         };
-        self.with_scratch(&region.lower, |scratch| {
+        self.lend(&region.lower, |scratch| {
             self.problem.space().positions(&mut scratch.values);
             let (corner, _) = self.decode(scratch);
             // A hit that covers the region is the same as its corner.

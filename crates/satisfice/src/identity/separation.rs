@@ -131,6 +131,40 @@ impl<S: Real> AxisSeparation<S> {
         }
     }
 
+    /// No less than the distance of `x` from any coordinate between two: what a distance may be wrong by is added.
+    fn farthest(&self, x: S, lower: S, upper: S) -> S {
+        let [x, lower, upper] = [x, lower, upper].map(|x| self.measured(x));
+        let rounding = S::of(8.0) * S::epsilon() * (x.abs() + lower.abs() + upper.abs() + self.period);
+        if self.period == S::zero() {
+            return (x - lower).abs().max((x - upper).abs()) + rounding;
+        }
+        let half = self.period / S::of(2.0);
+        // How far the point opposite is ahead of the lower end.
+        let turns = (x + half - lower) / self.period;
+        let opposite = (turns - turns.floor()) * self.period;
+        if opposite <= upper - lower {
+            return half + rounding;
+        }
+        let around = |end: S| {
+            let d = (x - end).abs() % self.period;
+            d.min(self.period - d)
+        };
+        around(lower).max(around(upper)) + rounding
+    }
+
+    /// The square of the distance / radius of `x` from the farthest coordinate between two, or more; exact where distances are differences.
+    pub(super) fn farthest_square(&self, x: S, lower: S, upper: S) -> S {
+        if lower == upper {
+            return self.square(x, lower);
+        }
+        if self.is_plain() {
+            let is_lower = (x - lower).abs() > (x - upper).abs();
+            return self.square(x, if is_lower { lower } else { upper });
+        }
+        let d = self.farthest(x, lower, upper) / self.radius;
+        d * d
+    }
+
     /// The square of distance / radius; infinite if the axis is exact and they differ.
     #[inline]
     pub(super) fn square(&self, a: S, b: S) -> S {

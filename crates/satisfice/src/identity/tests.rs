@@ -191,3 +191,63 @@ fn sameness_agrees_with_whole_numbers() {
     // Few units: what one coordinate may be apart at most is rounded to a whole number of them.
     same_is_what_integers_say::<f64>(100, f64::from_bits(1));
 }
+
+/// A plain, a logarithmic and a periodic axis: against the farthest of many coordinates on each.
+#[test]
+fn a_region_is_covered_where_its_farthest_point_is_the_same() {
+    let radii = [0.5, 0.3, 40.0];
+    let separation = Separation::axes([
+        AxisSeparation::within(radii[0]),
+        AxisSeparation::within(radii[1]).logarithmic(),
+        AxisSeparation::within(radii[2]).periodic(360.0),
+    ]);
+    let distance = |axis: usize, a: f64, b: f64| match axis {
+        0 => (a - b).abs(),
+        1 => (a / b).ln().abs(),
+        _ => {
+            let d = (a - b).rem_euclid(360.0);
+            d.min(360.0 - d)
+        }
+    };
+    let mut rng = crate::SearchRng::new(4);
+    let mut counts = [0, 0];
+    for trial in 0..20_000 {
+        let centre = [
+            rng.uniform(),
+            (20.0 * rng.uniform() - 10.0).exp(),
+            360.0 * rng.uniform(),
+        ];
+        // Some regions are a whole turn, some go over its end.
+        let size = if trial % 10 == 0 { 3.0 } else { rng.uniform() };
+        let shares = [rng.uniform(), rng.uniform(), rng.uniform()].map(|share| size * share);
+        let lower = [
+            centre[0] - radii[0] * shares[0],
+            centre[1] * (-radii[1] * shares[1]).exp(),
+            centre[2] - radii[2] * shares[2] - if trial % 3 == 0 { 360.0 } else { 0.0 },
+        ];
+        let region = Region {
+            lower: lower.to_vec(),
+            upper: vec![
+                lower[0] + radii[0] * size * rng.uniform(),
+                lower[1] * (radii[1] * size * rng.uniform()).exp(),
+                lower[2] + if trial % 10 == 0 { 9.0 } else { 1.0 } * radii[2] * size * rng.uniform(),
+            ],
+        };
+        let square: f64 = (0..3)
+            .map(|axis| {
+                let (lower, upper) = (region.lower[axis], region.upper[axis]);
+                let farthest = (0..=100)
+                    .map(|i| lower + (upper - lower) * f64::from(i) / 100.0)
+                    .map(|x| distance(axis, centre[axis], x.min(upper)))
+                    .fold(0.0, f64::max);
+                (farthest / radii[axis]).powi(2)
+            })
+            .sum();
+        let covers = Located::new(&centre, separation.clone()).covers(&region);
+        if !(0.98..=1.0).contains(&square) {
+            assert_eq!(covers, square < 1.0, "{centre:?} {region:?} {square}");
+            counts[usize::from(covers)] += 1;
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 2000), "{counts:?}");
+}

@@ -56,8 +56,9 @@ pub(super) fn is_contradicted<P: SatisficingProblem + ?Sized>(
 /// Halves a region on its longest axis, relative to the length of the whole axis, around values inside; `false` if all axes are fixed.
 fn halve<S: Real>(space: &Space<S>, region: &mut Region<S>, values: &[S]) -> bool {
     let length = |j: usize| {
-        let axis = &space.axes()[j];
-        ((region.upper[j] - region.lower[j]) / (axis.upper() - axis.lower())).f64()
+        space.axes()[j]
+            .share_between(region.lower[j], region.upper[j])
+            .f64()
     };
     let longest = (0..values.len())
         .filter(|&j| region.lower[j] < region.upper[j])

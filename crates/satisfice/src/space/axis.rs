@@ -248,6 +248,22 @@ impl<S: Real> Axis<S> {
         }
     }
 
+    /// The share of the axis between two values: of its logarithms on a logarithmic one. NaN on an axis of one value.
+    pub(crate) fn share_between(&self, lower: S, upper: S) -> S {
+        if self.logarithmic {
+            (self.position(upper) - self.position(lower)) / self.width()
+        } else {
+            (upper - lower) / (self.upper - self.lower)
+        }
+    }
+
+    /// The value of a continuous axis at `share` in `[0, 1]` of the way from one value to another, by their logarithms on a logarithmic one.
+    pub(crate) fn value_between(&self, lower: S, upper: S, share: S) -> S {
+        let (start, end) = self.positions_between(lower, upper);
+        let value = self.value(start + share * (end - start));
+        value.max(lower).min(upper)
+    }
+
     /// The position at `share` in `[0, 1)` of the axis: how uniform draws become positions.
     #[inline]
     #[must_use]

@@ -59,7 +59,7 @@ engine_settings! {
         pub regions: usize = 1 << 20, 1..=1 << 30;
         /// The axis to split: the longest relative to the whole axis, or the first that is not fixed.
         pub split: SplitRule = SplitRule::Longest;
-        /// A region shorter than this share of every continuous axis is given up unproved.
+        /// A region shorter than this share of every continuous axis, by logarithms on a logarithmic one, is given up unproved.
         pub resolution: f64 = 1e-12, 0.0..=1.0;
     }
 }

@@ -37,7 +37,7 @@ impl<S: Real> Node<S> {
             })
     }
 
-    /// Values inside: on continuous axes in the middle half, at a place that depends on the index and the attempt
+    /// Values inside: on continuous axes in the middle half of the positions, at a place that depends on the index and the attempt
     /// only.
     ///
     /// Midpoints fail: hits on a regular grid leave points that are a separation away from several hits, and no region
@@ -49,7 +49,7 @@ impl<S: Real> Node<S> {
                 return self.region.middle(space, axis);
             }
             let share = S::of(0.25 + 0.5 * scatter(self.index, attempt, axis));
-            (lower + share * (upper - lower)).max(lower).min(upper)
+            kind.value_between(lower, upper, share)
         };
         let mut values: Vec<S> = space.axes().iter().enumerate().map(inside).collect();
         // Regions without an order are not entered.
@@ -125,18 +125,18 @@ pub(in crate::engine) enum Split<S> {
 pub(in crate::engine) struct Splitter<S> {
     /// The first axis that is not fixed instead of the longest.
     pub(in crate::engine) first: bool,
-    /// Share of a continuous axis below which it is not split.
+    /// Share of a continuous axis, of the logarithms of a logarithmic one, below which it is not split.
     pub(in crate::engine) resolution: S,
 }
 
 impl<S: Real> Splitter<S> {
-    /// Splits in the middle.
+    /// Splits in the [middle](Region::middle).
     pub(in crate::engine) fn split(&self, space: &Space<S>, region: &Region<S>) -> Split<S> {
         let mut chosen: Option<(usize, S)> = None;
         for (j, axis) in space.axes().iter().enumerate() {
-            let (length, whole) = (region.upper[j] - region.lower[j], axis.upper() - axis.lower());
-            let share = length / whole; // NaN on an axis of one value
-            let splits = length > S::zero() && (is_discrete(axis) || share > self.resolution);
+            let (lower, upper) = (region.lower[j], region.upper[j]);
+            let share = axis.share_between(lower, upper);
+            let splits = lower < upper && (is_discrete(axis) || share > self.resolution);
             if splits && chosen.is_none_or(|(_, longest)| !self.first && share > longest) {
                 chosen = Some((j, share));
             }

@@ -131,7 +131,8 @@ impl<S: Real> LeafSwarms<S> {
             if axis.is_integer() {
                 upper - lower < self.leaf
             } else {
-                upper - lower <= self.splitter.resolution * (axis.upper() - axis.lower())
+                // An axis of one value has no share.
+                lower == upper || axis.share_between(lower, upper) <= self.splitter.resolution
             }
         })
     }
@@ -283,12 +284,10 @@ fn size<S: Real>(space: &Space<S>, region: &Region<S>) -> f64 {
         .iter()
         .zip(sides)
         .fold(1.0, |size, (axis, (&lower, &upper))| {
-            let length = (upper - lower).f64();
-            let whole = (axis.upper() - axis.lower()).f64();
             size * if axis.is_integer() {
-                length + 1.0
-            } else if whole > 0.0 {
-                length / whole
+                (upper - lower).f64() + 1.0
+            } else if axis.lower() < axis.upper() {
+                axis.share_between(lower, upper).f64()
             } else {
                 1.0
             }

@@ -1,5 +1,7 @@
 //! Proofs are checked by enumeration, or by new samples of the space.
 
+mod axes;
+
 use crate::{Bounds, Encoding};
 use std::collections::BTreeSet;
 
