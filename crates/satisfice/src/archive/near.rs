@@ -5,12 +5,14 @@
 //! direction, a part of the tree that has become deep is built again (Galperin, Rivest 1993).
 
 mod around;
+mod distance;
 #[cfg(test)]
 mod tests;
 
 use core::cell::RefCell;
 
 use self::around::{Around, WIDEST};
+use self::distance::{LANES, distance, square};
 use crate::identity::Identity;
 
 /// Points of a leaf, at most, unless no axis tells enough of them apart.
@@ -23,9 +25,6 @@ const FARTHEST: f64 = 1.001;
 /// there and `MORE` times the share that it had when it was built: so it has grown by a third at least, and helps.
 const LOPSIDED: f64 = 0.7;
 const MORE: f64 = 1.2;
-/// So many coordinates are looked at together: each point has a multiple of them.
-const LANES: usize = 4;
-
 /// The hits of an archive: a tree, and another one for each further list of radii, of which there should be none.
 #[derive(Debug, Clone, Default)]
 pub(super) struct NearIndex {
@@ -61,39 +60,6 @@ fn with_point<T: Identity, R>(solution: &T, use_point: impl FnOnce(&mut Point) -
     let result = use_point(&mut point);
     POINT.set(point);
     result
-}
-
-/// The sum of the squares of the distances along all coordinates, unless it is more than `limit`.
-#[inline(always)]
-fn square<T>(
-    chunks: impl Iterator<Item = T>,
-    limit: f64,
-    distance: impl Fn(&T, usize) -> f64,
-) -> Option<f64> {
-    let mut squares = [0.0; LANES];
-    for chunk in chunks {
-        for (lane, square) in squares.iter_mut().enumerate() {
-            let distance = distance(&chunk, lane);
-            *square += distance * distance;
-        }
-        let [a, b, c, d] = squares;
-        if (a + b) + (c + d) > limit {
-            return None;
-        }
-    }
-    let [a, b, c, d] = squares;
-    Some((a + b) + (c + d))
-}
-
-/// The squared distance of two points, in radii, unless it is more than `limit`.
-#[inline(always)]
-fn distance(a: &[f64], b: &[f64], scales: &[f64], limit: f64) -> Option<f64> {
-    let lanes = a.chunks_exact(LANES).zip(b.chunks_exact(LANES));
-    square(
-        lanes.zip(scales.chunks_exact(LANES)),
-        limit,
-        |((a, b), scales), lane| (a[lane] - b[lane]) * scales[lane],
-    )
 }
 
 impl NearIndex {
