@@ -1,8 +1,11 @@
 //! The permutations among the axes: keys and ranks, and what regions hold of them.
 
+use core::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use super::{Axis, AxisKind, Region, Space};
 use crate::error::Error;
-use crate::scalar::Real;
+use crate::scalar::{Real, ordered};
 
 /// First axis and length of each permutation.
 pub(super) fn permutations<S: Real>(axes: &[Axis<S>]) -> Result<Vec<(usize, usize)>, Error> {
@@ -68,33 +71,43 @@ impl<S: Real> Space<S> {
         !self.permutations.is_empty()
     }
 
-    /// First axis and length of the first permutation in which a value is there twice.
+    /// First axis and length of the first permutation in which a value is there twice. Cost: O(n log n).
     pub(crate) fn first_repeated(&self, values: &[S]) -> Option<(usize, usize)> {
-        let repeats = |&(first, length): &(usize, usize)| {
-            let ranks = &values[first..first + length];
-            (1..length).any(|j| ranks[..j].contains(&ranks[j]))
+        let mut sorted = Vec::new();
+        let mut repeats = |&(first, length): &(usize, usize)| {
+            sorted.clear();
+            sorted.extend(values[first..first + length].iter().map(|value| value.f64()));
+            sorted.sort_unstable_by(f64::total_cmp);
+            sorted.windows(2).any(|pair| pair[0] == pair[1])
         };
-        self.permutations.iter().copied().find(repeats)
+        self.permutations
+            .iter()
+            .copied()
+            .find(|permutation| repeats(permutation))
     }
 
-    /// Replaces the values of each permutation by an order that lies inside a region; `false` if there is none.
+    /// Replaces the values of each permutation by an order that lies inside a region; `false` if there is none. Cost: O(n log n).
     ///
     /// Of the places that a value fits into, the one whose region ends first takes it: Glover 1967, doi 10.1002/nav.3800140304.
     pub(crate) fn order_inside(&self, region: &Region<S>, values: &mut [S]) -> bool {
+        let (mut places, mut begun) = (Vec::new(), BinaryHeap::new());
         self.permutations.iter().all(|&(first, length)| {
             let (lower, upper) = (&region.lower[first..], &region.upper[first..]);
-            let values = &mut values[first..first + length];
-            let is_free = S::neg_infinity();
-            values.fill(is_free);
+            places.clear();
+            places.extend(0..length);
+            places.sort_unstable_by(|&a: &usize, &b| lower[a].f64().total_cmp(&lower[b].f64()));
+            let mut later = places.iter().copied().peekable();
+            begun.clear();
             let mut rank = self.axes[first].lower;
             for _ in 0..length {
-                let fits = |&j: &usize| values[j] == is_free && lower[j] <= rank && rank <= upper[j];
-                let ends = |j: usize| upper[j].f64();
-                let place = (0..length)
-                    .filter(fits)
-                    .min_by(|&a, &b| ends(a).total_cmp(&ends(b)));
-                let Some(place) = place else { return false };
-                values[place] = rank;
+                while let Some(place) = later.next_if(|&place| lower[place] <= rank) {
+                    begun.push(Reverse((ordered(upper[place].f64()), place)));
+                }
+                match begun.pop() {
+                    // A place that has ended gets no value.
+                    Some(Reverse((_, place))) if rank <= upper[place] => values[first + place] = rank,
+                    _ => return false,
+                }
                 rank = rank + S::one();
             }
             true

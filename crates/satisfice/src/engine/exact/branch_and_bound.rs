@@ -29,7 +29,8 @@ engine_settings! {
     ///
     /// A region is closed if its bound is at least delta, if one hit [covers](Context::covers) it, or, once it holds at most `leaf`
     /// points, by proposing all of them. Other regions are split in two, least bound first, then least F at a point inside (on
-    /// continuous axes only, where these points find the hits), then latest first. When no region is left, every hit is in C or the
+    /// continuous axes only, where these points find the hits), then latest first. Until the first leaf, which is far on a large
+    /// permutation, a point inside the next region is evaluated now and then. When no region is left, every hit is in C or the
     /// same answer as one in C: [`Ask::Covered`].
     ///
     /// * On integer axes and permutations this always happens. Without bounds it is an enumeration, in the order of halving: completeness `Proved`,
@@ -92,6 +93,7 @@ impl BranchAndBound {
             next_index: 0,
             unanswered: 0,
             answered: false,
+            enumerated: false,
             given_up: false,
         })
     }
@@ -99,6 +101,8 @@ impl BranchAndBound {
 
 /// If the first calls, this many, are unanswered, the problem has no bounds.
 const SILENCE: u32 = 64;
+/// Regions that are kept until points of the next ones are evaluated, if none has been enumerated by then.
+const LONG_WAY: u64 = 256;
 /// Points tried in a region to find one that is not in C.
 const ATTEMPTS: u64 = 4;
 /// Coordinates of regions in best-first order, at most, and of those that are processed depth first: 256 MB each.
@@ -122,6 +126,8 @@ struct RegionSearch<S> {
     next_index: u64,
     unanswered: u32,
     answered: bool,
+    /// Whether a region has been closed by proposing all its points.
+    enumerated: bool,
     given_up: bool,
 }
 
@@ -196,6 +202,20 @@ impl<S: Real> RegionSearch<S> {
         }
     }
 
+    /// Proposes a point inside the next region, if its points are countable: others have had one.
+    fn look_ahead(&self, context: &dyn Context<S>, out: &mut Batch<S>) {
+        let space = context.space();
+        let next = self.depth_first.last().or_else(|| self.best_first.peek());
+        let Some(node) = next.filter(|node| node.cardinality(space).is_some()) else {
+            return;
+        };
+        let mut point = node.exchanged_point(space);
+        space.positions(&mut point);
+        if context.evaluations_left() > 0 && !context.is_deleted(&point) {
+            out.push(&point);
+        }
+    }
+
     /// Closes a region or splits it.
     fn open(&mut self, context: &dyn Context<S>, node: Node<S>, out: &mut Batch<S>) {
         let space = context.space();
@@ -204,6 +224,7 @@ impl<S: Real> RegionSearch<S> {
         }
         if node.cardinality(space).is_some_and(|points| points <= self.leaf) {
             node.each_point(space, |point| out.push(point));
+            self.enumerated = true;
             return;
         }
         match self.splitter.split(space, &node.region) {
@@ -236,6 +257,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         self.next_index = 0;
         self.unanswered = 0;
         self.answered = false;
+        self.enumerated = false;
         self.given_up = false;
     }
 
@@ -247,6 +269,9 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         // Few enough that the clock is read in between, and no more than the points that are wanted at once.
         let work = points_at_once(context.space().dimension()) / 4;
         for _ in 0..work.min(self.batch).max(1) {
+            if context.is_out_of_time() {
+                return Ask::More;
+            }
             let next = self.depth_first.pop().or_else(|| self.best_first.pop());
             let Some(node) = next else { break };
             self.open(context, node, out);
@@ -255,6 +280,9 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
             }
         }
         if self.depth_first.len() + self.best_first.len() + self.proposed.len() > 0 {
+            if out.is_empty() && !self.enumerated && self.next_index >= LONG_WAY {
+                self.look_ahead(context, out);
+            }
             return Ask::More;
         }
         // Hits found since may cover regions that were too small to split.
@@ -292,6 +320,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         self.next_index.save(state);
         self.unanswered.save(state);
         self.answered.save(state);
+        self.enumerated.save(state);
         self.given_up.save(state);
     }
 
@@ -304,6 +333,7 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         self.next_index = from.read()?;
         self.unanswered = from.read()?;
         self.answered = from.read()?;
+        self.enumerated = from.read()?;
         self.given_up = from.read()?;
         Ok(())
     }

@@ -57,6 +57,25 @@ impl<S: Real> Node<S> {
         values
     }
 
+    /// Values inside a region of countable points: the places of permutations are exchanged, as far as they stay inside, so that regions inside
+    /// one another do not give one point.
+    pub(in crate::engine) fn exchanged_point(&self, space: &Space<S>) -> Vec<S> {
+        let mut values = self.inner_point(space, 0);
+        let mut draws = 0;
+        space.shuffle_inside(&self.region, &mut values, &mut |places| {
+            draws += 1;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                clippy::cast_precision_loss,
+                reason = "below the number of places"
+            )]
+            let place = (scatter(self.index, 0, draws) * places.len() as f64) as usize;
+            places.start + place
+        });
+        values
+    }
+
     /// Visits the positions of all points of a finite region, the last axis fastest.
     pub(in crate::engine) fn each_point(&self, space: &Space<S>, mut visit: impl FnMut(&[S])) {
         let Region { lower, upper } = &self.region;

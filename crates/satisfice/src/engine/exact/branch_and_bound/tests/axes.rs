@@ -125,3 +125,60 @@ fn a_periodic_axis_is_proved_over_its_end() {
         );
     }
 }
+
+/// The sum of the distances of values from their places, with its bound.
+struct Displacement {
+    space: Space<f64>,
+}
+
+impl SatisficingProblem for Displacement {
+    type Scalar = f64;
+    type Solution = Vec<u32>;
+    fn space(&self) -> &Space<f64> {
+        &self.space
+    }
+    fn decode(&self, values: &[f64]) -> Vec<u32> {
+        values.iter().map(|&x| x as u32).collect()
+    }
+    fn fitness(&self, order: &Vec<u32>) -> f64 {
+        (0..)
+            .zip(order)
+            .map(|(place, &x)| f64::from(x.abs_diff(place)))
+            .sum()
+    }
+    fn threshold(&self) -> f64 {
+        1e6
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<f64>> {
+        Some(self)
+    }
+}
+
+impl Bounds<f64> for Displacement {
+    fn lower_bound(&self, region: &Region<f64>) -> Option<f64> {
+        let sides = region.lower.iter().zip(&region.upper).zip(0..);
+        let away = |((&lower, &upper), place): ((&f64, &f64), u32)| {
+            (lower - f64::from(place)).max(f64::from(place) - upper).max(0.0)
+        };
+        Some(sides.map(away).sum())
+    }
+}
+
+/// The way to the first leaf of a permutation of hundreds is thousands of regions long, of which each one's bound counts.
+#[test]
+fn large_permutations_are_evaluated_before_the_first_leaf() {
+    let problem = Displacement {
+        space: Space::new(Axis::permutation(300)).unwrap(),
+    };
+    let report = run(&problem, &[], 2000);
+    assert!(report.counts.bound_calls > 1500, "{report}");
+    assert!(
+        report.counts.evaluations > 10 && report.hit_count() > 5,
+        "{report}"
+    );
+    for hit in report.hits() {
+        let mut order = hit.solution.clone();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..300));
+    }
+}
