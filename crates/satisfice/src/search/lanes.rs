@@ -244,10 +244,15 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
                     return false;
                 }
                 if common.insert_from_lane(&solution, fitness, observer) {
-                    // The lane has counted it as found twice.
-                    ledger.counts.duplicates -= 1;
-                    common.counts.duplicates -= 1;
-                    self.progress.duplicates -= 1;
+                    // The lane has counted it as found twice; a crafted checkpoint may not have.
+                    let counts = [
+                        &mut ledger.counts.duplicates,
+                        &mut common.counts.duplicates,
+                        &mut self.progress.duplicates,
+                    ];
+                    for count in counts {
+                        *count = count.saturating_sub(1);
+                    }
                 }
             }
         }
