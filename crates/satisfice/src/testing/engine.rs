@@ -58,7 +58,7 @@ pub enum EngineLaw {
 /// Evaluations of an ordinary run, and how many are planned: too many for a model of F.
 const RUN: RunLength = RunLength {
     evaluations: 1_200,
-    planned: 10_000,
+    planned: 20_000,
 };
 /// Those of a run by an engine whose proposals are expensive.
 const EXPENSIVE_RUN: RunLength = RunLength {
