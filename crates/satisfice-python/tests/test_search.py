@@ -48,7 +48,7 @@ def test_tickets_are_checked_and_counted():
     search.tell(batch.tickets[0], 0.0)
     search.forget(batch.tickets[1])
     search.tell([1], [0.0])
-    assert search.counts == {"asked": 3, "taken": 1, "again": 1, "late": 1, "over": 0, "forgotten": 1}
+    assert search.counts == {"asked": 3, "taken": 1, "unused": 0, "again": 1, "late": 1, "over": 0, "forgotten": 1}
     assert search.report().non_finite == 1 and search.report().hits == 0
     assert np.array_equal(search.pending.x, batch.x[2:])
     for tickets, values, says in [([99], [0.0], "99"), ([2], [0.0, 1.0], "2 values for 1 tickets"), ([-1], [0.0], "-1")]:
