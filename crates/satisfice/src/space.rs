@@ -273,6 +273,13 @@ impl<S: Real> Space<S> {
         }
     }
 
+    /// Moves a position that is inside to that of its values: the centre of its cell on integer axes, and the keys of ranks in
+    /// permutations.
+    pub(crate) fn centre(&self, position: &mut [S]) {
+        self.to_values(position);
+        self.positions(position);
+    }
+
     /// The whole space as a region.
     #[must_use]
     pub fn region(&self) -> Region<S> {

@@ -204,6 +204,10 @@ fn keys_become_ranks_and_ranks_keys() {
     let mut at_once = [0.0; 7];
     space.keep_inside_with_values(&mut position, &mut at_once);
     assert_eq!(at_once, values);
+    let (mut other, mut same) = ([0.5, 0.8, 0.3, 0.3, 0.35, 0.9, 0.2], position);
+    space.centre(&mut other);
+    space.centre(&mut same);
+    assert_eq!(other, same);
     for bad in [
         [0.5, 3.0, 0.0, 1.0, 3.0, 1.0, 0.0],
         [0.5, 3.0, 0.0, 1.0, 2.0, 1.0, 1.0],

@@ -15,6 +15,7 @@ pub mod config;
 mod configured;
 mod decorate;
 mod exact;
+mod hit_list;
 mod local;
 mod low_discrepancy;
 mod model;

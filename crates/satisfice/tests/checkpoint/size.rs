@@ -1,6 +1,7 @@
 //! How large a checkpoint is.
 
 use satisfice::engine::{self, EngineSpec};
+use satisfice::space::Axis;
 use satisfice::{Budget, Encoding, Located, Neighbourhood, SatisficingProblem, Search, Space, from_fn};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -38,6 +39,18 @@ fn coordinates_of_many_digits_do_not_make_it_longer() {
 #[test]
 fn many_axes_do_not_make_that_of_the_default_longer() {
     assert!(hits_of(engine::find("portfolio").unwrap(), &ball(20, 0.1)) > 0);
+}
+
+/// Any order of the keys stands for a permutation: what is kept is its rank.
+#[test]
+fn permutations_do_not_make_it_longer() {
+    const PLACES: u32 = 30;
+    let space = Space::new(Axis::permutation(PLACES)).unwrap();
+    let detours = from_fn(space, f64::from(PLACES * PLACES / 3), |x: &[f64]| {
+        x.windows(2).map(|pair| (pair[0] - pair[1]).abs()).sum()
+    });
+    let most = most_hits(&detours);
+    assert!(most > 20_000, "{most}");
 }
 
 /// Runs every engine and looks at the size of its checkpoint; the most hits of any.

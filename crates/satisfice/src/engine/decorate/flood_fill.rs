@@ -67,7 +67,7 @@ impl<S: Real> Engine<S> for FloodFill<S> {
     }
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
-        self.flood.add_hits(batch, outcomes);
+        self.flood.add_hits(context.space(), batch, outcomes);
         let origin = if origin == Origin::Engine && self.flooding {
             Origin::Exhaustion
         } else {

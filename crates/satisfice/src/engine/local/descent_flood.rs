@@ -80,8 +80,8 @@ impl<S: Real> Engine<S> for FloodingDescent<S> {
         Ask::More
     }
 
-    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
-        self.flood.add_hits(batch, outcomes);
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+        self.flood.add_hits(context.space(), batch, outcomes);
         if origin == Origin::Engine && !self.flooding {
             self.descent.learn(batch.point(0), outcomes[0]);
         } else if origin == Origin::Start {

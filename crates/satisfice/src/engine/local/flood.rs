@@ -12,7 +12,8 @@ use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_at_once};
 use crate::error::Error;
 use crate::scalar::{Real, ordered};
-use crate::state::{Part, Reader, Saved, State};
+use crate::space::Space;
+use crate::state::{Part, Reader, Saved, State, read_rows, write_rows};
 
 /// Of positions; fixed, so that a run is the same on every machine.
 const KEYS: FixedState = FixedState::with_seed(0xf100_d000_0000_0001);
@@ -45,8 +46,9 @@ pub(in crate::engine) struct Flood<S> {
     order: Order,
     /// The hits that wait, the next one on top: the ordered bits of its fitness where the best are first, and its row of `positions`.
     queue: BinaryHeap<Reverse<(u64, usize)>>,
-    /// Of the hits since the queue was empty, flat.
+    /// Of the hits since the queue was empty, flat, with so many coordinates each.
     positions: Vec<S>,
+    dimension: usize,
     /// Keys of the points proposed in this flood; two points under one key, 2^-64 likely, would cost one of them its turn.
     seen: HashTable<u64>,
     /// The hit whose neighbours are proposed, and the index of the next one; steps along axes follow the neighbours.
@@ -64,6 +66,7 @@ impl<S: Real> Flood<S> {
             order,
             queue: BinaryHeap::new(),
             positions: Vec::new(),
+            dimension: 0,
             seen: HashTable::new(),
             centre: Vec::new(),
             next: 0,
@@ -79,16 +82,23 @@ impl<S: Real> Flood<S> {
     }
 
     /// Puts new hits into the queue.
-    pub(in crate::engine) fn add_hits(&mut self, batch: &Batch<S>, outcomes: &[Outcome<S>]) {
+    pub(in crate::engine) fn add_hits(
+        &mut self,
+        space: &Space<S>,
+        batch: &Batch<S>,
+        outcomes: &[Outcome<S>],
+    ) {
         for (position, outcome) in batch.points().zip(outcomes) {
             if let Outcome::Hit(fitness) = *outcome {
                 let key = match self.order {
                     Order::First => 0,
                     Order::Best => ordered(fitness.f64()),
                 };
-                let row = self.positions.len() / position.len().max(1);
-                self.queue.push(Reverse((key, row)));
+                let start = self.positions.len();
+                self.dimension = position.len();
+                self.queue.push(Reverse((key, start / self.dimension.max(1))));
                 self.positions.extend_from_slice(position);
+                space.centre(&mut self.positions[start..]);
             }
         }
     }
@@ -172,7 +182,8 @@ impl<S: Real> Part for Flood<S> {
         let mut queue: Vec<(u64, usize)> = self.queue.iter().map(|&Reverse(entry)| entry).collect();
         queue.sort_unstable();
         Saved::save(&queue, state);
-        Saved::save(&self.positions, state);
+        write_rows(state, &self.positions, self.dimension);
+        Saved::save(&self.dimension, state);
         Saved::save(&self.centre, state);
         Saved::save(&self.next, state);
         Saved::save(&self.doublings, state);
@@ -187,7 +198,8 @@ impl<S: Real> Part for Flood<S> {
             .into_iter()
             .map(Reverse)
             .collect();
-        self.positions = from.read()?;
+        self.positions = read_rows(from)?;
+        self.dimension = from.read()?;
         self.centre = from.read()?;
         self.next = from.read()?;
         self.doublings = from.read()?;
@@ -286,7 +298,7 @@ mod tests {
     use core::cell::Cell;
 
     use super::*;
-    use crate::space::{Region, Space};
+    use crate::space::Region;
     use crate::testing::BareContext;
 
     /// Everything within a distance of the middle is deleted, and time is out after some looks into C.
@@ -348,7 +360,7 @@ mod tests {
             };
             let (mut flood, mut batch) = (Flood::new(1e-3, Order::First), Batch::new(axes));
             batch.push(&vec![0.0; axes]);
-            flood.add_hits(&batch, &[Outcome::Hit(0.0)]);
+            flood.add_hits(context.space(), &batch, &[Outcome::Hit(0.0)]);
             let (mut all, mut asks) = (Vec::new(), 0);
             loop {
                 batch.clear();

@@ -13,6 +13,7 @@ use super::strategy::{Strategy, usual_size};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_between_looks};
 use crate::engine::compiled::both_scalars;
+use crate::engine::hit_list::HitList;
 use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
@@ -120,7 +121,7 @@ struct StrategyRun {
 struct NichingSearch<S> {
     settings: Niching,
     ends: Ends,
-    hits: Vec<S>,
+    hits: HitList<S>,
     pairs: Pairs,
     /// Recombinations that were no hits.
     misses: MissList,
@@ -170,7 +171,7 @@ impl<S: Real> NichingSearch<S> {
         Self {
             settings,
             ends: Ends::default(),
-            hits: Vec::new(),
+            hits: HitList::default(),
             pairs: Pairs::default(),
             misses: MissList::default(),
             arms: [Arm::default(); 2],
@@ -329,7 +330,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
         let dimension = self.position.len();
         if !self.run.running || self.distribution.sampled() == 0 {
             if dimension > 1
-                && self.pairs.is_left(self.hits.len() / dimension)
+                && self.pairs.is_left(self.hits.rows())
                 && self.arms[1].draw(rng) > self.arms[0].draw(rng)
             {
                 self.recombine(context, rng, out);
@@ -377,10 +378,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
         let space = context.space();
         for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
-                // Hits are kept at the centres of their cells.
-                let axes = space.axes().iter().zip(position);
-                self.hits
-                    .extend(axes.map(|(axis, &x)| axis.position(axis.value(x))));
+                self.hits.push(space, position);
                 self.place.resize(position.len(), 0.0);
                 to_place(space, position, &mut self.place);
                 self.ends.add(&self.place, outcome.fitness().f64(), true);
@@ -435,7 +433,8 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
             && self.ends.fit(dimension)
             && self.approaching.is_none_or(|index| index < self.ends.len())
             && self.misses.fit(dimension)
-            && self.pairs.fit(self.hits.len() / dimension.max(1), dimension);
+            && self.hits.fit(dimension)
+            && self.pairs.fit(self.hits.rows(), dimension);
         fits.then_some(())
             .ok_or_else(|| Error::State("its parts do not fit each other".to_owned()))
     }

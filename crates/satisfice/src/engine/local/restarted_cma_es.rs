@@ -7,6 +7,7 @@ use super::recombination::Pairs;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
+use crate::engine::hit_list::HitList;
 use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
@@ -98,7 +99,7 @@ struct Searches<S> {
     restarts: u64,
     /// Where searches start.
     even: EvenPoints,
-    hits: Vec<S>,
+    hits: HitList<S>,
     pairs: Pairs,
     /// Near misses, the first `kept` of them; what stands behind is memory.
     misses: Vec<Miss<S>>,
@@ -127,7 +128,7 @@ impl<S: Real> Searches<S> {
             climbs: vec![climb; searches],
             restarts: 0,
             even: EvenPoints::default(),
-            hits: Vec::new(),
+            hits: HitList::default(),
             pairs: Pairs::default(),
             misses: Vec::new(),
             kept: 0,
@@ -267,7 +268,7 @@ impl<S: Real> Engine<S> for Searches<S> {
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
         self.stepped = 0;
         if self.position.len() > 1
-            && self.pairs.is_left(self.hits.len() / self.position.len())
+            && self.pairs.is_left(self.hits.rows())
             && self.arms[1].draw(rng) > self.arms[0].draw(rng)
         {
             self.recombine(context, rng, out);
@@ -299,10 +300,7 @@ impl<S: Real> Engine<S> for Searches<S> {
         let converged = converged(space);
         for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
-                // Hits are kept at the centres of their cells.
-                let axes = space.axes().iter().zip(position);
-                self.hits
-                    .extend(axes.map(|(axis, &x)| axis.position(axis.value(x))));
+                self.hits.push(space, position);
             }
         }
         if origin == Origin::Start {
@@ -340,7 +338,8 @@ impl<S: Real> Engine<S> for Searches<S> {
         let fits = self.climbs.len() == searches
             && self.stepped <= searches
             && self.kept <= self.misses.len()
-            && self.pairs.fit(self.hits.len() / dimension.max(1), dimension)
+            && self.hits.fit(dimension)
+            && self.pairs.fit(self.hits.rows(), dimension)
             && self
                 .climbs
                 .iter()

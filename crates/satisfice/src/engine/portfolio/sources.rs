@@ -23,6 +23,7 @@ use super::visited::Visited;
 use super::{Omitted, Portfolio};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
+use crate::engine::hit_list::HitList;
 use crate::engine::local::descent::RestartedDescent;
 use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Answers, Ask, Engine, Origin};
@@ -75,7 +76,7 @@ pub(super) struct Sources<S> {
     /// Evaluations that were planned when the slice began, if that was known.
     planned: Option<u64>,
     guests: Guests<S>,
-    hits: Vec<S>,
+    hits: HitList<S>,
     visited: Option<Visited>,
     /// The lattice point by point, once uniform draws would mostly repeat points, or if the budget has room for all.
     scan: Scan,
@@ -116,7 +117,7 @@ impl<S: Real> Sources<S> {
             levels: Levels::default(),
             planned: None,
             guests: Guests::new(settings.without),
-            hits: Vec::new(),
+            hits: HitList::default(),
             visited: None,
             scan: Scan::default(),
             swarms: Swarms::new(
@@ -145,7 +146,7 @@ impl<S: Real> Sources<S> {
     }
 
     fn hit_count(&self) -> usize {
-        self.hits.len() / self.position.len().max(1)
+        self.hits.rows()
     }
 }
 
@@ -228,13 +229,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         };
         for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
-                // Hits are kept at the centres of their cells, so that steps between them are whole.
-                let centre = space
-                    .axes()
-                    .iter()
-                    .zip(position)
-                    .map(|(axis, &x)| axis.position(axis.value(x)));
-                self.hits.extend(centre);
+                self.hits.push(space, position);
             } else if let Outcome::Miss(fitness) = *outcome {
                 self.near_misses.keep(position, fitness);
             }
@@ -324,7 +319,8 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn save(&self, state: &mut State) {
-        (self.tally, self.arms, self.hits.clone()).save(state);
+        (self.tally, self.arms).save(state);
+        self.hits.save(state);
         if self.pace.is_timed() {
             self.visited.as_ref().map(Visited::shortened).save(state);
         } else {
@@ -352,7 +348,8 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        (self.tally, self.arms, self.hits) = from.read()?;
+        (self.tally, self.arms) = from.read()?;
+        self.hits.restore(from)?;
         self.visited = from.read()?;
         self.scan = from.read()?;
         self.swarms.restore(from)?;
@@ -388,6 +385,9 @@ impl<S: Real> Engine<S> for Sources<S> {
             || !self.guests.fit(self.tags.len(), out(), chosen)
         {
             return Err(Error::State("its batches do not fit its sources".to_owned()));
+        }
+        if !self.hits.fit(self.position.len()) {
+            return Err(Error::State("its hits are of another space".to_owned()));
         }
         if !self.near_misses.fit(self.position.len()) {
             return Err(Error::State("its near misses are of another space".to_owned()));

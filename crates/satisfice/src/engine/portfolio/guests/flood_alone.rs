@@ -30,8 +30,8 @@ impl<S: Real> Engine<S> for FloodAlone<S> {
         Ask::More
     }
 
-    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
-        self.0.add_hits(batch, outcomes);
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], _: Origin) {
+        self.0.add_hits(context.space(), batch, outcomes);
     }
 
     fn save(&self, state: &mut State) {

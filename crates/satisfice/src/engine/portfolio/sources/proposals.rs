@@ -164,7 +164,7 @@ impl<S: Real> Sources<S> {
 
     /// Whether there are hits that the engine is not told of, such as those of other islands: they are not among the visited points.
     fn has_hits_of_others(&self, context: &dyn Context<S>) -> bool {
-        context.hits() * self.position.len() > self.hits.len()
+        context.hits() > self.hits.rows()
     }
 
     /// Whether points of a source are remembered among those visited, and no point is proposed twice. Of a large lattice that takes longer
@@ -260,14 +260,13 @@ impl<S: Real> Sources<S> {
                 (b + apart).min(count - 1)
             }
         };
-        let row = |hit: usize| &self.hits[hit * dimension..(hit + 1) * dimension];
         let mut moves = false;
         let start = self.trials.len();
         for j in 0..dimension {
-            let difference = row(b)[j] - row(c)[j];
+            let difference = self.hits.row(b)[j] - self.hits.row(c)[j];
             moves |= difference != S::zero();
             self.trials.push(difference);
-            self.position[j] = row(a)[j] + difference;
+            self.position[j] = self.hits.row(a)[j] + difference;
         }
         if !moves {
             self.trials.truncate(start);
