@@ -7,6 +7,7 @@ mod equations;
 mod isolated_hits;
 mod lanes;
 mod lanes_apart;
+mod model_at_work;
 mod panics;
 mod patience;
 mod portfolio;

@@ -2,6 +2,7 @@
 
 use super::candidates::{CandidateSource, least};
 use super::duplicates::{is_duplicate, radius};
+use super::failures::tells;
 use super::lanes::LANES;
 use super::likelihood::likeliest;
 use super::one_answer::OneAnswer;
@@ -119,7 +120,7 @@ impl Model {
             None => (Scales::new(given.units.shapes()), Pool::default(), STEPS.0),
         };
         let region = if points <= most {
-            TrustRegion::whole(record)
+            TrustRegion::whole(record, given.units)
         } else {
             pool.clear();
             TrustRegion::local(record, given.units, &scales, most, rng)
@@ -175,10 +176,10 @@ impl Model {
     }
 
     /// Adds the points that were told since, each of which is first predicted.
-    pub(super) fn follow(&mut self, record: &Record, skill: &mut Skill) {
+    pub(super) fn follow(&mut self, record: &Record, units: &Units, skill: &mut Skill) {
         let first = self.first_mean(record);
         for i in self.taken..record.len() {
-            if record.duplicates.binary_search(&i).is_err() {
+            if tells(record, units, i) {
                 self.region.known.push(i);
                 let values = self.target.of_point(record, i);
                 let errors = self.process.push(record.point(i), &values);

@@ -3,6 +3,7 @@
 mod candidates;
 mod duplicates;
 mod factor;
+mod failures;
 mod gaussian_process;
 mod kernel;
 mod lanes;

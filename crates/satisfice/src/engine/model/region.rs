@@ -1,5 +1,6 @@
 //! Which points the model knows.
 
+use super::failures::tells;
 use super::record::Record;
 use super::scales::Scales;
 use super::units::{Shape, Units};
@@ -21,9 +22,9 @@ pub(super) struct TrustRegion {
 
 impl TrustRegion {
     /// All points and the whole space.
-    pub(super) fn whole(record: &Record) -> Self {
+    pub(super) fn whole(record: &Record, units: &Units) -> Self {
         Self {
-            known: known(record).collect(),
+            known: known(record, units).collect(),
             lower: vec![0.0; record.axes()],
             upper: vec![1.0; record.axes()],
         }
@@ -37,7 +38,7 @@ impl TrustRegion {
         most: usize,
         rng: &mut SearchRng,
     ) -> Self {
-        let all: Vec<usize> = known(record).collect();
+        let all: Vec<usize> = known(record, units).collect();
         let centre = if !record.hits.is_empty() && rng.uniform() < AROUND_HITS {
             record.hits[rng.below(record.hits.len())]
         } else {
@@ -83,7 +84,7 @@ impl TrustRegion {
     }
 }
 
-/// The points that a model learns from: all but duplicates, whose F is not F of something new.
-fn known(record: &Record) -> impl Iterator<Item = usize> {
-    (0..record.len()).filter(|i| record.duplicates.binary_search(i).is_err())
+/// The points that a model learns from.
+fn known(record: &Record, units: &Units) -> impl Iterator<Item = usize> {
+    (0..record.len()).filter(|&i| tells(record, units, i))
 }

@@ -27,8 +27,10 @@ engine_settings! {
     ///   proposed, not told yet, and probably a hit. Where such points will say more of a candidate, it waits: its probability p counts
     ///   `p (1 - (1 - s) (1 - p))`, where s is the share of its variance that their values will leave. The design goes on until as many points
     ///   are told.
-    /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. NaN counts as bad. Where F takes few values, such as a
-    ///   number of violated constraints, delta is taken to be halfway between those of hits and of misses.
+    /// - The model learns `F - delta`, clipped at the 80 % quantile of the misses. Where F takes few values, such as a number of violated
+    ///   constraints, delta is taken to be halfway between those of hits and of misses.
+    /// - A point without a finite F counts as bad if most of the eight points next to it have none either, or fewer are known. Elsewhere it
+    ///   failed by chance and is left out.
     /// - Where the problem tells the [components](crate::Components) of F, each is modelled, with length scales in common, and the score
     ///   is the probability that all are within their limits; that the sum of their squares is at most 1, where F turns out to be their
     ///   Euclidean norm or its square. Damped Gauss-Newton steps lead from candidates to roots of the models.
@@ -53,7 +55,7 @@ engine_settings! {
     /// # Ok::<(), satisfice::Error>(())
     /// ```
     pub struct Surrogate {
-        /// Points proposed at once, for evaluation in parallel.
+        /// Points proposed at once, for evaluation in parallel; more if the search asks for more.
         pub batch: usize = 1, 1..=1024;
         /// Candidates that compete for each proposal.
         pub candidates: usize = 1024, 32..=1 << 20;
@@ -104,6 +106,8 @@ pub(in crate::engine) struct ModelledSearch<S> {
     /// The next proposal, from [`Self::expectation`] until it is asked for or more is told.
     prepared: Option<ModelProposal>,
     position: Vec<S>,
+    /// Points to be proposed at once, where that is not left to the settings and the search.
+    at_once: Option<usize>,
     /// Points of the enumeration that were looked at.
     enumerated: usize,
 }
@@ -123,13 +127,14 @@ impl<S: Real> ModelledSearch<S> {
             one_answer: OneAnswer::default(),
             prepared: None,
             position: Vec::new(),
+            at_once: None,
             enumerated: 0,
         }
     }
 
     /// How many points it is to propose at once from now on.
     pub(in crate::engine) fn set_batch(&mut self, points: usize) {
-        self.settings.batch = points.max(1);
+        self.at_once = Some(points.max(1));
     }
 
     /// Whether the model predicts F better than this mean does; `None` before that is known.
@@ -223,7 +228,7 @@ impl<S: Real> ModelledSearch<S> {
                 rng,
             ),
         };
-        model.follow(&self.record, &mut self.skill);
+        model.follow(&self.record, &self.units, &mut self.skill);
         model.refresh(&mut given, rng);
         let known = model.process.len();
         for pending in &self.pending {
@@ -307,7 +312,10 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
         if self.is_covered() {
             return Ask::Covered;
         }
-        for proposed in 0..self.settings.batch {
+        let at_once = self
+            .at_once
+            .unwrap_or(self.settings.batch.max(context.parallel()));
+        for proposed in 0..at_once {
             if proposed > 0 && context.is_out_of_time() {
                 break;
             }

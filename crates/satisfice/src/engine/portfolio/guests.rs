@@ -37,7 +37,7 @@ use crate::state::{Part, Reader, State};
 /// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited and time leaves room for it, or where it is
 /// opened [later](opening). It leads while fewer than `MODELLED` evaluations have been made; from then on it competes by its yield.
 const MODELLED: u64 = MOST_PROPOSALS;
-const MODEL_AXES: usize = 50;
+const MODEL_AXES: usize = 200;
 /// With fewer evaluations left none are spent on bounds: a split asks for several before there is anything to evaluate.
 const LAST_BOUNDS: u64 = 8;
 /// With at most this many axes, a matrix takes no more memory and time than a few steps.

@@ -77,7 +77,7 @@ engine_settings! {
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where the problem tells the
     ///   [components](crate::Components) of F, evaluations are limited or F takes more than 20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
-    /// - a Gaussian process on at most 50 axes, where evaluations are limited, or where F takes more than 2 ms and only time is limited: up to
+    /// - a Gaussian process on at most 200 axes, where evaluations are limited, or where F takes more than 2 ms and only time is limited: up to
     ///   1,000 proposals, of half a millisecond to a few. Unless the problem tells the components of F, there is none where more than 10,000
     ///   evaluations are planned. Where F takes less than a proposal, and the time matters more than the number of evaluations, limit the
     ///   time, too: if the proposals would take longer than the limit, the model is not used. Of a batch it may propose all;
