@@ -18,10 +18,7 @@ from ._arguments import question, run_arguments
 from ._checked import exceptions, processes, reals, seconds, whole
 from ._drive import Drive
 from ._files import Keeper, write
-from ._workers import ExecutorLike, Guarded, Own, check_pickle, shaped
-
-#: Points out at a time where nothing says how many workers there are.
-_IN_FLIGHT = 64
+from ._workers import ExecutorLike, Guarded, Own, assumed_workers, check_pickle, shaped
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,9 +236,12 @@ class Search:
             Without `executor`: the number of processes, 1 for none but this one; one that dies is replaced, and what it had is evaluated again. Or a
             function such as ``pool.map``, which is given one batch after the other.
         in_flight : int, optional
-            The number of points out at a time; by default the number of processes, twice as many if evaluations take less
-            than 0.1 s, and 64 for other workers. A Dask client says how many workers it has: by default each has one task and another one waiting,
-            of up to 8 points if these take less than 50 ms together.
+            The number of points out at a time. By default the number of workers; with a number of processes, twice as many if
+            evaluations take less than 0.1 s. The executors of `concurrent.futures`, the pools of `multiprocessing`, loky, mpi4py and
+            Dask say how many workers they have; for others it is the number of CPUs of this machine, so give it where the workers
+            are on other machines. More than there are workers costs hits: the engine proposes points before it knows the values
+            of those that wait. With a Dask client each worker by default has one task and another one waiting, of up to 8
+            points if these take less than 50 ms together.
         time : float, optional
             Stop after so many seconds; what is out then stays pending.
         catch : exception type or tuple of them
@@ -272,11 +272,11 @@ class Search:
             if executor is None and workers == 1:
                 self._map(f, map, 1, deadline, catch, keeper)
             elif executor is None and not isinstance(workers, int):
-                self._map(f, workers, in_flight or _IN_FLIGHT, deadline, catch, keeper)
+                self._map(f, workers, in_flight or assumed_workers(workers), deadline, catch, keeper)
             elif executor is not None:
                 pool, known = shaped(executor)
                 if in_flight or not known or not pool.is_far:
-                    Drive(self, f, pool, in_flight or _IN_FLIGHT, deadline, catch, keeper).run()
+                    Drive(self, f, pool, in_flight or known or assumed_workers(executor), deadline, catch, keeper).run()
                 else:
                     Drive(self, f, pool, 2 * known, deadline, catch, keeper, workers=known).run()
             elif isinstance(workers, int):

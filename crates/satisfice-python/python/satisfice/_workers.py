@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import concurrent.futures as futures
+import os
 import pickle
 import signal
 import time as clock
@@ -100,8 +101,26 @@ def shaped(executor: Any) -> tuple[Given, int | None]:
         return Dask(executor), sum(threads.values()) or None
     if not hasattr(executor, "submit"):
         raise TypeError(f"{executor!r} is no executor: it has no method submit")
-    workers = getattr(executor, "_max_workers", None)
-    return Given(executor), workers if isinstance(workers, int) else None
+    return Given(executor), known_workers(executor)
+
+
+def known_workers(pool: Any) -> int | None:
+    """How many workers an executor or a pool says it has: those of `concurrent.futures` and loky, `multiprocessing`, mpi4py, Dask."""
+    client = getattr(pool, "_client", None)
+    if client is not None and hasattr(client, "nthreads"):
+        return sum(client.nthreads().values()) or None
+    for name in ("_max_workers", "_processes", "num_workers"):
+        workers = getattr(pool, name, None)
+        if isinstance(workers, int) and workers > 0:
+            return workers
+    return None
+
+
+def assumed_workers(pool: Any) -> int:
+    """As many workers as a pool, or the pool of a bound ``pool.map``, says it has; as many as this machine has CPUs where it says nothing."""
+    if pool is map:
+        return 1
+    return known_workers(getattr(pool, "__self__", pool)) or os.cpu_count() or 1
 
 
 class Given:
