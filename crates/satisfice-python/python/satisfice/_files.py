@@ -8,6 +8,7 @@ import os
 import secrets
 import stat
 import time as clock
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -86,22 +87,66 @@ def _beside(target: str, content: bytes, mode: int | None) -> None:
         raise
 
 
+class Writer:
+    """Writes a search to its file again and again. A write that fails after one that did not is a warning, and the search goes on."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._path = path
+        self._has_written, self._has_warned = False, False
+        #: Why the last write failed.
+        self._unwritten: OSError | None = None
+
+    def __call__(self, content: bytes) -> None:
+        try:
+            write(self._path, content)
+        except OSError as error:
+            if not self._has_written:
+                raise
+            self._unwritten = error
+            if not self._has_warned:
+                self._has_warned = True
+                _warn(f"{error}; the search goes on, and later writes are tried again")
+        else:
+            self._has_written, self._unwritten = True, None
+
+    def end(self) -> None:
+        """Tell that the file does not hold the end of the search, if so."""
+        if self._unwritten is not None:
+            _warn(f"the file of the search does not hold its end: {self._unwritten}")
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text, RuntimeWarning, stacklevel=3)
+
+
 class Keeper:
     """Writes a search to a file now and then; to none without a path."""
 
     def __init__(self, path: str | os.PathLike[str] | None, state: Callable[[], bytes]) -> None:
-        self._path, self._state = path, state
+        self._writer, self._state = None if path is None else Writer(path), state
         self._next, self._every = clock.monotonic(), _FIRST
 
     def save_if_due(self) -> None:
-        if self._path is not None and clock.monotonic() >= self._next:
-            self.save()
+        if self._writer is not None and clock.monotonic() >= self._next:
+            self._save(self._writer)
 
-    def save(self) -> None:
-        if self._path is None:
-            return
+    def end(self) -> None:
+        """Write the end of the search."""
+        if self._writer is not None:
+            self._save(self._writer)
+            self._writer.end()
+
+    def end_with(self, error: BaseException) -> None:
+        """Write the end of a search that an exception ends, which is more than that the file cannot be written."""
+        try:
+            self.end()
+        except OSError as unwritten:
+            if not isinstance(error, OSError) or str(error) != str(unwritten):
+                _warn(str(unwritten))
+
+    def _save(self, writer: Writer) -> None:
         begun = clock.monotonic()
-        write(self._path, self._state())
+        writer(self._state())
         end = clock.monotonic()
         self._next = end + max(self._every, 9 * (end - begun))
         self._every = _EVERY

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import functools
+import contextlib
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from . import _files, _satisfice
@@ -154,7 +154,8 @@ def find(
         Exceptions of `f` that count as a value of NaN. They are counted in ``report.failed``; with `vectorized` an
         exception fails its whole batch.
     checkpoint : path, optional
-        Keep the search in this file: at the beginning, after a second, then every five, and at the end, however it comes. If
+        Keep the search in this file: at the beginning, after a second, then every five, and at the end, however it comes. A file
+        that cannot be written at the beginning is an error; later it is a warning, and the search goes on. If
         the file is there, the search goes on from it, and all other arguments must be the same (`seed` may be left out).
         Under a budget of evaluations the report is then that of one uninterrupted search, except with `workers`
         that are not `ordered`.
@@ -238,7 +239,8 @@ def find(
         for name, is_given in given.items():
             if is_given:
                 raise ValueError(f"{name} does not apply: a problem of the catalogue has its own")
-        return f._run(run, told, reference, saved, _writer(checkpoint))
+        with _writer(checkpoint) as writer:
+            return f._run(run, told, reference, saved, writer)
     if not callable(f):
         raise TypeError(f"f must be callable or a satisfice.Problem, not {type(f).__name__}")
     for name, value, default in [("threads", threads, 1), ("slices", slices, 1), ("reference", reference, False)]:
@@ -280,11 +282,18 @@ def find(
             search._set(search._search.load_same(saved))
         on = {"executor": workers} if hasattr(workers, "submit") else {"workers": workers}
         return search.run(f, **on, catch=catch, checkpoint=checkpoint)
-    return _satisfice.find(f, asked, run, bool(vectorized), told, catch, saved, _writer(checkpoint))
+    with _writer(checkpoint) as writer:
+        return _satisfice.find(f, asked, run, bool(vectorized), told, catch, saved, writer)
 
 
-def _writer(path: str | os.PathLike[str] | None) -> Callable[[bytes], None] | None:
-    return None if path is None else functools.partial(_files.write, path)
+@contextlib.contextmanager
+def _writer(path: str | os.PathLike[str] | None) -> Iterator[_files.Writer | None]:
+    writer = None if path is None else _files.Writer(path)
+    try:
+        yield writer
+    finally:
+        if writer is not None:
+            writer.end()
 
 
 def _told(callback: Callable[[Progress], Any]) -> Callable[[int, int, float, float], bool]:

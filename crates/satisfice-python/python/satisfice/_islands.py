@@ -78,11 +78,12 @@ def find_with_islands(
                 answers = dict(crew.run({number: functools.partial(probes, part) for number, part in enumerate(parts)}))
                 values = np.concatenate([answers[number][0] for number in range(len(parts))])
                 rounds.tell_probes(values, sum(failed for _, failed in answers.values()))
-            keeper.save()
+            keeper.end()
         except _TimeIsUp:
+            keeper.end()
             rounds.end("time")
         except BaseException as error:
-            keeper.save()
+            keeper.end_with(error)
             rounds.end("cancelled")
             with contextlib.suppress(AttributeError):
                 error.report = rounds.report()  # type: ignore[attr-defined]

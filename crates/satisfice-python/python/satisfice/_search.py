@@ -248,7 +248,7 @@ class Search:
             Exceptions of `f` that count as a value of NaN.
         checkpoint : path, optional
             Save the search to this file at the beginning, after a second, then every five, and at the end, however it comes.
-            `load` reads it.
+            `load` reads it. If it cannot be written at the beginning, that is an error; later it is a warning, and the search goes on.
 
         Returns
         -------
@@ -287,12 +287,12 @@ class Search:
                     drive.run()
             if clock.monotonic() >= self._deadline:
                 self._end()
-            keeper.save()
+            keeper.end()
         except BaseException as error:
-            keeper.save()
             with contextlib.suppress(AttributeError):
                 error.report = self.report()  # type: ignore[attr-defined]
                 error.add_note("satisfice: what was found until then is in the attribute `report` of this exception")
+            keeper.end_with(error)
             raise
         return self.report()
 
