@@ -78,3 +78,18 @@ def diverging_crossings(x):
     if x[0] > 1.9:
         raise ArithmeticError("diverged")
     return crossings(x)
+
+
+class Unpicklable(Exception):
+    """It can be pickled, and not be made again from that."""
+
+    def __init__(self, what, where):
+        super().__init__(what)
+
+
+def raises_unpicklable(x):
+    raise Unpicklable("the mesh is torn", x)
+
+
+def exits(x):
+    os._exit(1)

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._files import Keeper
-from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Own, is_killed
+from ._processes import Own
+from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Sent, is_killed
 
 if TYPE_CHECKING:
     from ._search import Search
@@ -25,6 +26,9 @@ _SHORT = 0.1
 #: Seconds that a task takes where one costs milliseconds to send, and the most points in it.
 _TASK = 0.05
 _MOST_POINTS = 8
+
+#: Where so many evaluations are lost with their workers before one gives a value, none will. As for programs of the command.
+_HOPELESS = 8
 
 #: A ticket and its point.
 _Point = tuple[int, NDArray[np.float64]]
@@ -54,7 +58,7 @@ class Drive:
         self.size = 1
         #: So many more tasks are out if evaluations are so short that workers would wait for the next.
         self.prefetch = 0
-        self.f = Guarded(f, catch, search._search.components())
+        self.f = Sent(Guarded(f, catch, search._search.components()).all)
         self.done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         #: Points, generation of the pool and start by future; and the number of these points.
         self.out: dict[Any, tuple[list[_Point], int, float]] = {}
@@ -65,6 +69,8 @@ class Drive:
         #: Points that were out when a worker died. One at a time, so that it is seen which one kills its worker.
         self.suspects: list[_Point] = []
         self.losses: collections.Counter[int] = collections.Counter()
+        #: Evaluations that were given up, and whether any gave a value.
+        self.given_up, self.has_value = 0, search._search.evaluations() > 0
 
     def run(self) -> None:
         try:
@@ -109,10 +115,10 @@ class Drive:
     def _submit(self, points: list[_Point]) -> None:
         x = [x.copy() for _, x in points]
         try:
-            future = self.pool.submit(self.f.all, x)
+            future = self.pool.submit(self.f, x)
         except futures.BrokenExecutor as error:
             self.pool.replace(error)
-            future = self.pool.submit(self.f.all, x)
+            future = self.pool.submit(self.f, x)
         self.out[future] = (points, self.pool.generation, clock.monotonic())
         self.points_out += len(points)
         future.add_done_callback(self.done.put)
@@ -126,24 +132,31 @@ class Drive:
         if isinstance(outcome, (futures.BrokenExecutor, futures.CancelledError)):
             if generation == self.pool.generation:
                 self.pool.replace(outcome)
-            self._lost(points, alone)
+            self._lost(points, alone, outcome)
         elif isinstance(outcome, Exception):
             if not is_killed(outcome):
                 raise outcome
-            self._lost(points, alone)
+            self._lost(points, alone, outcome)
         else:
             values, seconds = outcome
+            self.has_value = True
             for (ticket, _), value in zip(points, values, strict=True):
                 self.search._take(ticket, value)
             if self.workers is not None:
                 short = seconds / len(points)
                 self.size = max(1, min(_MOST_POINTS, round(_TASK / max(short, 1e-9))))
 
-    def _lost(self, points: list[_Point], alone: bool) -> None:
-        """Evaluate points again that were lost with their worker, unless one has killed several."""
+    def _lost(self, points: list[_Point], alone: bool, error: BaseException) -> None:
+        """Evaluate points again that were lost with their worker, unless one has killed several. An exception if all do."""
         for ticket, x in points:
             self.losses[ticket] += alone
             if self.losses[ticket] >= MOST_LOSSES:
+                self.given_up += 1
+                if self.given_up >= _HOPELESS and not self.has_value:
+                    raise RuntimeError(
+                        f"the first {self.given_up} evaluations all failed: each ended every worker that it was sent to; "
+                        "f exits or crashes there, or cannot be loaded there"
+                    ) from error
                 self.search._take(ticket, None)
             else:
                 self.suspects.append((ticket, x))

@@ -173,6 +173,9 @@ def find(
         For arguments that are not usable; the message says what is.
     TypeError
         For a value of `f` that is no real number, or is missing its components.
+    RuntimeError
+        With workers, for an exception of `f` that cannot be sent from process to process, with its text; and if the first 8 evaluations are
+        all lost with their workers.
     KeyboardInterrupt, or an exception of `f` or `callback`
         Ends the search. What was found until then is its attribute ``report``.
 

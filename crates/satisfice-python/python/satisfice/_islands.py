@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from . import _satisfice
 from ._files import Keeper
-from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Own, check_pickle, is_killed, pair, shaped
+from ._processes import Own
+from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Sent, check_pickle, is_killed, pair, shaped
 
 #: After the deadline islands that end by themselves are waited for: so long, in seconds, or this share of the time.
 _GRACE, _GRACE_SHARE = 1.0, 0.1
@@ -44,10 +45,10 @@ def find_with_islands(
     latest = clock.monotonic() + limit + max(_GRACE, _GRACE_SHARE * limit)
 
     def island(number: int) -> tuple[Any, ...]:
-        return _run_island, f, plan, rounds.island(number), vectorized, catch
+        return Sent(_run_island), f, plan, rounds.island(number), vectorized, catch
 
     def probes(part: NDArray[np.float64]) -> tuple[Any, ...]:
-        return _evaluate, f, part, vectorized, catch, question["components"]
+        return Sent(_evaluate), f, part, vectorized, catch, question["components"]
 
     def stops() -> bool:
         keeper.save_if_due()

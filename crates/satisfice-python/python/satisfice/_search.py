@@ -18,7 +18,8 @@ from ._arguments import question, run_arguments
 from ._checked import exceptions, processes, reals, seconds, whole
 from ._drive import Drive
 from ._files import Keeper, write
-from ._workers import ExecutorLike, Guarded, Own, assumed_workers, check_pickle, shaped
+from ._processes import Own
+from ._workers import ExecutorLike, Guarded, Sent, assumed_workers, check_pickle, shaped
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,6 +259,9 @@ class Search:
         ------
         KeyboardInterrupt, or an exception of `f` or of the executor
             What was found until then is its attribute ``report``. The search can go on: what was out is pending.
+        RuntimeError
+            For an exception of `f` that cannot be sent from its process to this one, with its text; and if the first 8 evaluations
+            are all lost with their workers. An evaluation that is lost three times counts as failed otherwise.
         """
         catch = exceptions(catch)
         if isinstance(workers, int):
@@ -311,7 +315,7 @@ class Search:
         keeper: Keeper,
     ) -> None:
         """Evaluate one batch after the other."""
-        guarded = Guarded(f, catch, self._search.components())
+        guarded = Sent(Guarded(f, catch, self._search.components()))
         batch = self.pending
         while True:
             if len(batch) == 0:

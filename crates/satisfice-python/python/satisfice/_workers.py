@@ -1,12 +1,12 @@
-"""Where functions are evaluated: executors, processes of our own, and what happens when one of these dies."""
+"""Where functions are evaluated: calls that are sent there, and the executors of the user."""
 
 from __future__ import annotations
 
 import concurrent.futures as futures
 import os
 import pickle
-import signal
 import time as clock
+import traceback
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -59,6 +59,36 @@ class Guarded:
         begun = clock.monotonic()
         values = [self(x) for x in points]
         return values, clock.monotonic() - begun
+
+
+class Sent:
+    """A function that an executor calls, maybe in another process: an exception that could not come back from there is told as text."""
+
+    def __init__(self, f: Callable[..., Any]) -> None:
+        self.f, self.is_elsewhere = f, False
+        #: By which Dask calls its tasks.
+        self.__name__ = getattr(f, "__name__", "f")
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "is_elsewhere": True}
+
+    def __call__(self, *args: Any) -> Any:
+        try:
+            return self.f(*args)
+        except BaseException as error:
+            if not self.is_elsewhere or _comes_back(error):
+                raise
+            text = "".join(traceback.format_exception(error))
+            kind = type(error).__qualname__
+            told = RuntimeError(f"f raised {kind}, an exception that cannot be sent from process to process (pickled):\n{text}")
+        raise told
+
+
+def _comes_back(error: BaseException) -> bool:
+    try:
+        return isinstance(pickle.loads(pickle.dumps(error)), type(error))
+    except Exception:
+        return False
 
 
 def pair(value: Any, components: int) -> tuple[Any, Any]:
@@ -135,7 +165,7 @@ class Given:
 
     def outcomes(self, done: list[Any]) -> list[Any]:
         """What came of calls that are done: a result or an exception each."""
-        return [_outcome(future) for future in done]
+        return [outcome(future) for future in done]
 
     def replace(self, error: BaseException) -> None:
         raise error
@@ -157,53 +187,11 @@ class Dask(Given):
         found = dict(zip(whole, self.client.gather(whole, errors="skip"), strict=False)) if whole else {}
         if len(found) < len(whole):
             found = {}  # some were lost with their worker: which ones is seen one by one
-        return [found[future] if future in found else _outcome(future) for future in done]
+        return [found[future] if future in found else outcome(future) for future in done]
 
 
-def _outcome(future: Any) -> Any:
+def outcome(future: Any) -> Any:
     try:
         return future.result()
     except Exception as error:
         return error
-
-
-class Own:
-    """Processes of our own, which are replaced when one dies."""
-
-    def __init__(self, workers: int) -> None:
-        if workers < 1:
-            raise ValueError(f"workers = {workers} is not allowed: at least 1")
-        self.workers, self.generation = workers, 0
-        self.pool = self._start()
-
-    def _start(self) -> futures.ProcessPoolExecutor:
-        # Ctrl-C is for the process that searches.
-        return futures.ProcessPoolExecutor(
-            self.workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
-        )
-
-    def __enter__(self) -> Own:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._end()
-
-    def _end(self) -> None:
-        processes = list((getattr(self.pool, "_processes", None) or {}).values())
-        self.pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.terminate()
-
-    def submit(self, f: Callable[..., Any], /, *args: Any) -> Any:
-        return self.pool.submit(f, *args)
-
-    def outcomes(self, done: list[Any]) -> list[Any]:
-        """What came of calls that are done: a result or an exception each."""
-        return [_outcome(future) for future in done]
-
-    def replace(self, error: BaseException) -> None:
-        self._end()
-        self.pool = self._start()
-        self.generation += 1
-
-
