@@ -58,6 +58,24 @@ def test_tickets_are_checked_and_counted():
         search.tell([0.5], [0.0])
 
 
+def test_tickets_are_whole_numbers_of_any_kind():
+    search = satisfice.Search(SQUARE, **RING)
+    batch = search.ask(9)
+    search.tell([batch.tickets[0], 1], [1.0, 1.0])  # numpy alone takes these for floats
+    search.tell((2, np.int8(3)), [1.0, 1.0])
+    search.forget([batch.tickets[4], np.int64(5)])
+    search.tell(np.array([6, batch.tickets[7]], dtype=object), [1.0, 1.0])
+    assert search.pending.tickets.tolist() == [8]
+    search.tell([], [])
+    for wrong in ([2**63 + 1, np.int64(3)], [2**64, 1], [2**63, -1]):
+        with pytest.raises(ValueError, match="never given out|unknown|ticket"):
+            search.tell(wrong, [1.0, 1.0])
+    for wrong in ([8.0], [batch.tickets[8], 1.0], [True], ["8"], [None], np.array([8.0])):
+        with pytest.raises(TypeError, match="tickets are of type .*: they are whole numbers"):
+            search.tell(wrong, [1.0] * len(wrong))
+    assert search.counts["taken"] == 6 and search.counts["forgotten"] == 2
+
+
 def test_values_from_elsewhere_are_entered():
     search = satisfice.Search(SQUARE, **RING)
     search.inform([[1.0, 0.0], [0.0, 1.5]], [0.0, 0.5])

@@ -40,6 +40,8 @@ def seconds(value: Any, name: str = "time") -> float | None:
     number = real(name, value)
     if not (0 < number < math.inf):
         raise ValueError(f"{name} = {number} is not allowed: a positive number of seconds, or None for no limit")
+    if number >= 2.0**64:
+        raise ValueError(f"{name} = {number} is not allowed: at most 1e19 seconds, or None for no limit")
     return number
 
 
@@ -48,6 +50,8 @@ def whole(name: str, value: Any, least: int = 1, most: int = 2**64 - 1) -> int:
     if isinstance(value, (float, np.floating)) and float(value).is_integer():
         value = int(value)
     try:
+        if isinstance(value, bool):
+            raise TypeError
         number = int(value.__index__())
     except (AttributeError, TypeError):
         raise TypeError(f"{name} must be a whole number, not {value!r}") from None
@@ -65,6 +69,23 @@ def whole_or_none(name: str, value: Any, least: int = 1) -> int | None:
 def processes(name: str, value: Any) -> int:
     """A number of processes, within the limit that the command has; more is a typing error."""
     return whole(name, value, 1, 1024)
+
+
+def ticket_numbers(value: Any) -> NDArray[np.uint64]:
+    """An array of tickets: whole numbers, exactly. numpy makes floats of unsigned and signed ones together."""
+    array = np.atleast_1d(value)
+    if array.dtype.kind not in "iu" and (array.dtype.kind == "O" or not isinstance(value, np.ndarray)):
+        array = np.atleast_1d(np.array(value, dtype=object))
+    if array.dtype.kind == "O":
+        strange = [entry for entry in array.flat if isinstance(entry, bool) or not hasattr(entry, "__index__")]
+        if strange:
+            kind = type(strange[0]).__name__
+            raise TypeError(f"tickets are of type {kind}: they are whole numbers, as `ask` gave them, not {strange[0]!r}")
+    elif array.size and array.dtype.kind not in "iu":
+        raise TypeError(f"tickets are of type {array.dtype}: they are whole numbers, as `ask` gave them")
+    if array.size and not (array.min() >= 0 and array.max() < 2**64):
+        raise ValueError(f"ticket {array.min() if array.min() < 0 else array.max()} was never given out")
+    return np.ascontiguousarray(array, dtype=np.uint64)
 
 
 def reals(name: str, value: Any) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _satisfice
 from ._arguments import question, run_arguments
-from ._checked import exceptions, processes, reals, seconds, whole
+from ._checked import exceptions, processes, reals, seconds, ticket_numbers, whole
 from ._drive import Drive
 from ._files import Keeper, write
 from ._processes import Own
@@ -151,11 +151,11 @@ class Search:
         ValueError
             For a ticket that was never given out; for components that are missing, too many, or not those of a hit.
         """
-        self._search.tell(_tickets(tickets), _numbers(values), _rows(components))
+        self._search.tell(ticket_numbers(tickets), _numbers(values), _rows(components))
 
     def forget(self, tickets: ArrayLike) -> None:
         """Give up points whose evaluations were lost. They use up no budget."""
-        self._search.forget(_tickets(tickets))
+        self._search.forget(ticket_numbers(tickets))
 
     def inform(self, x: ArrayLike, values: ArrayLike, components: ArrayLike | None = None) -> None:
         """Enter values, shape (m,), at points, shape (m, d), that are known from elsewhere, with their components if the search has some.
@@ -346,12 +346,3 @@ def _numbers(values: ArrayLike) -> NDArray[np.float64]:
 
 def _rows(components: ArrayLike | None) -> NDArray[np.float64] | None:
     return None if components is None else np.atleast_2d(reals("components", components))
-
-
-def _tickets(value: ArrayLike) -> NDArray[np.uint64]:
-    array = np.atleast_1d(value)
-    if array.size and array.dtype.kind not in "iu":
-        raise TypeError(f"tickets are of type {array.dtype}: they are whole numbers, as `ask` gave them")
-    if array.size and array.dtype.kind == "i" and array.min() < 0:
-        raise ValueError(f"ticket {array.min()} was never given out")
-    return np.ascontiguousarray(array, dtype=np.uint64)
