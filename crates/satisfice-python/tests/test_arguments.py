@@ -62,6 +62,25 @@ def step():
         (lambda: find(delta=10**400), ValueError, "delta is too large"),
         (lambda: find(separation=["1", 1]), TypeError, "separation must be a real number"),
         (lambda: satisfice.find(norm, [("0", "1")], delta=0.1, evaluations=9), ValueError, r"bounds of axis 0 are \('0', '1'\)"),
+        (lambda: find(time=1e300), ValueError, r"^time = 1e\+300 is not allowed: at most 1e19 seconds, or None for no limit$"),
+        (lambda: find(evaluations=True), TypeError, "evaluations must be a whole number, not True"),
+        (lambda: find(seed=True), TypeError, "seed must be a whole number, not True"),
+        (lambda: find(workers=True), TypeError, "workers must be a whole number, not True"),
+        (lambda: find(workers=1.5), TypeError, "workers must be a whole number"),
+        (lambda: find(workers="x"), TypeError, "workers must be a number of processes, a function such as pool.map.* not 'x'"),
+        (lambda: search().run(norm, workers="x"), TypeError, "workers must be a number of processes"),
+        (lambda: find(executor="x"), TypeError, "'x' is no executor: give a number of processes"),
+        (lambda: find(executor=map), TypeError, "is no executor"),
+        (lambda: find(integrality=["yes", "no"]), TypeError, "integrality must be True or False, .* not 'yes'"),
+        (lambda: find(periodic="no"), TypeError, "periodic must be True or False"),
+        (lambda: find(integrality=[2, 0]), TypeError, "integrality must be True or False, .* not 2"),
+        (lambda: find(categories=[["a"]]), TypeError, r"categories must map axes to their labels, such as \{2: \['steel'"),
+        (lambda: find(categories={1: 3}), TypeError, r"categories of axis 1 must be its labels, such as \['steel'.* not 3"),
+        (lambda: find(categories={"b": ["a"]}), TypeError, "categories names axis 'b': axes are whole numbers"),
+        (lambda: find(permutations=range(0, 2)), TypeError, r"permutations must be groups of axes, such as .* not range\(0, 2\)"),
+        (lambda: find(permutations=3), TypeError, "permutations must be groups of axes"),
+        (lambda: find(permutations=[[0, "1"]]), TypeError, "permutations names axis '1': axes are whole numbers"),
+        (lambda: satisfice.find(norm, 3, delta=0.1, evaluations=9), TypeError, "bounds must be a sequence .* not 3"),
         (lambda: find(x0=[1j, 0]), ValueError, "x0 must be real numbers"),
         (lambda: search().ask(-1), ValueError, "n = -1 is not allowed: a whole number from 0"),
         (lambda: search().ask(10**30), ValueError, "n = 10000"),
@@ -127,6 +146,16 @@ def test_numbers_of_other_types_are_numbers():
     assert len(collision.close_pairs(mesh, mesh, threshold=np.float32(0.5))) == 1
     unmasked = np.ma.array(TRIANGLE[0])
     assert len(collision.mesh(unmasked).vertices) == 3
+
+
+def test_flags_axes_and_numbers_of_processes_have_types_of_numpy_too():
+    parameters = find(integrality=np.array([1, 0]), periodic=(np.bool_(False), 1.0)).to_dict()["problem_parameters"]
+    assert parameters["integrality"] == [True, False] and parameters["periodic"] == [False, True]
+    parameters = find(categories={np.int64(1): np.array(["a", "b"])}).to_dict()["problem_parameters"]
+    assert parameters["categories"] == {"1": ["a", "b"]}
+    parameters = find(permutations=np.array([[0, 1]])).to_dict()["problem_parameters"]
+    assert parameters["permutations"] == [[0, 1]]
+    assert find(workers=np.int64(2)).to_dict()["budget"]["parallel"] == 2
 
 
 def test_as_many_points_as_there_are_numbers_can_be_asked():

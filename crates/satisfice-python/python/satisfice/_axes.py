@@ -7,7 +7,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ._checked import real
+import numpy as np
+
+from ._checked import real, whole
 
 _MOST = 2.0**53
 
@@ -41,14 +43,14 @@ class Axes:
         }
         self._labels: dict[int, list[Any]] = {}
         self._places: dict[int, list[int]] = {}
-        for axis, labels in dict(categories or {}).items():
+        for axis, labels in _categories(categories):
             self._take("categories", axis, pairs)
-            self._labels[axis] = list(labels)
+            self._labels[axis] = labels
             if not self._labels[axis]:
                 raise ValueError(f"axis {axis} has no category: give at least one label")
             pairs[axis] = (0, len(self._labels[axis]) - 1)
-        for group in permutations or ():
-            self._take_permutation([int(axis) for axis in group], pairs)
+        for group in _groups(permutations):
+            self._take_permutation(group, pairs)
         self.exact = {*self._labels, *(axis for group in self._places.values() for axis in group)}
         self.ends = [self._ends(axis, pair) for axis, pair in enumerate(pairs)]
 
@@ -114,7 +116,10 @@ class Axes:
 
 def _pairs(bounds: Any) -> list[Any]:
     if not (hasattr(bounds, "lb") and hasattr(bounds, "ub")):
-        return list(bounds)
+        try:
+            return list(bounds)
+        except TypeError:
+            raise TypeError(f"bounds must be a sequence of (lower, upper), one for each axis, not {bounds!r}") from None
     lower, upper = as_list(bounds.lb), as_list(bounds.ub)  # scipy.optimize.Bounds
     count = max(len(lower), len(upper))
     if not {len(lower), len(upper)} <= {1, count}:
@@ -126,11 +131,49 @@ def _pairs(bounds: Any) -> list[Any]:
 def _flags(name: str, value: Any, count: int) -> list[bool]:
     if value is None:
         return [False] * count
-    flags = [bool(flag) for flag in as_list(value)]
+    flags = [_flag(name, flag) for flag in as_list(value)]
     flags = flags * count if is_number(value) else flags
     if len(flags) != count:
         raise ValueError(f"{name} has {len(flags)} entries for {count} axes")
     return flags
+
+
+def _flag(name: str, value: Any) -> bool:
+    # scipy's integrality is 0 or 1.
+    if isinstance(value, (bool, np.bool_, int, float, np.number)) and value in (0, 1):
+        return bool(value)
+    raise TypeError(f"{name} must be True or False, or one of them for each axis, not {value!r}")
+
+
+def _categories(value: Any) -> Iterator[tuple[int, list[Any]]]:
+    if value is None:
+        return
+    if not isinstance(value, Mapping):
+        raise TypeError(f"categories must map axes to their labels, such as {{2: ['steel', 'brass']}}, not {value!r}")
+    for axis, labels in value.items():
+        try:
+            yield _axis("categories", axis), list(labels)
+        except TypeError:
+            if hasattr(labels, "__iter__"):
+                raise
+            raise TypeError(f"categories of axis {axis} must be its labels, such as ['steel', 'brass'], not {labels!r}") from None
+
+
+def _groups(value: Any) -> Iterator[list[int]]:
+    if value is None:
+        return
+    groups = list(value) if hasattr(value, "__iter__") else [value]
+    if isinstance(value, str) or not all(hasattr(group, "__iter__") for group in groups):
+        raise TypeError(f"permutations must be groups of axes, such as [range(0, 5)], not {value!r}")
+    for group in groups:
+        yield [_axis("permutations", axis) for axis in group]
+
+
+def _axis(name: str, value: Any) -> int:
+    try:
+        return whole(name, value, least=-(2**63))
+    except TypeError:
+        raise TypeError(f"{name} names axis {value!r}: axes are whole numbers, the first one is 0") from None
 
 
 def _is_whole(number: float) -> bool:

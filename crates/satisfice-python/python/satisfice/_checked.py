@@ -71,6 +71,29 @@ def processes(name: str, value: Any) -> int:
     return whole(name, value, 1, 1024)
 
 
+def is_count(value: Any) -> bool:
+    """Whether a place for evaluations is a number of processes."""
+    return hasattr(value, "__index__") or isinstance(value, float)
+
+
+def workers_of(value: Any) -> Any:
+    """The workers of `workers=`: a number of processes, a function like ``map``, or an executor."""
+    if is_count(value):
+        return processes("workers", value)
+    if not (callable(value) or hasattr(value, "submit")):
+        raise TypeError(f"workers must be a number of processes, a function such as pool.map, or an executor, not {value!r}")
+    return value
+
+
+def executor_of(value: Any) -> Any:
+    """The executor of `executor=`: a number of processes, an executor, or a Dask client."""
+    if is_count(value):
+        return processes("executor", value)
+    if value is not None and not hasattr(value, "submit"):
+        raise TypeError(f"{value!r} is no executor: give a number of processes, an executor of concurrent.futures, or a Dask client")
+    return value
+
+
 def ticket_numbers(value: Any) -> NDArray[np.uint64]:
     """An array of tickets: whole numbers, exactly. numpy makes floats of unsigned and signed ones together."""
     array = np.atleast_1d(value)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from . import _files, _satisfice
 from ._arguments import question, run_arguments
-from ._checked import exceptions, processes
+from ._checked import exceptions, executor_of, workers_of
 from ._search import Search
 
 
@@ -197,10 +197,7 @@ def find(
     saved = _files.read(checkpoint)
     if seed is None and saved is not None:
         seed = _satisfice.saved_seed(saved)
-    if isinstance(workers, int):
-        workers = processes("workers", workers)
-    if isinstance(executor, int):
-        executor = processes("executor", executor)
+    workers, executor = workers_of(workers), executor_of(executor)
     if executor is not None:
         if not _is_one(workers):
             raise ValueError("workers evaluate, and an executor runs islands: give one of them")

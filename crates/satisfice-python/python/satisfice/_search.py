@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _satisfice
 from ._arguments import question, run_arguments
-from ._checked import exceptions, processes, reals, seconds, ticket_numbers, whole
+from ._checked import exceptions, reals, seconds, ticket_numbers, whole, workers_of
 from ._drive import Drive
 from ._files import Keeper, write
 from ._processes import Own
@@ -264,8 +264,7 @@ class Search:
             are all lost with their workers. An evaluation that is lost three times counts as failed otherwise.
         """
         catch = exceptions(catch)
-        if isinstance(workers, int):
-            workers = processes("workers", workers)
+        workers = workers_of(workers)
         if in_flight is not None:
             in_flight = whole("in_flight", in_flight)
         time = seconds(time)
