@@ -149,6 +149,31 @@ def test_parallel_is_part_of_the_search_and_the_number_of_workers_is_not():
         alone(parallel=100_000)
 
 
+def batches(engine, **changes):
+    """How many points an ordered search has at a time, after the first batches."""
+    search = satisfice.Search([(-1, 1)] * 4, **{**RING, "evaluations": 1000}, engine=engine, ordered=True, **changes)
+    sizes = []
+    while len(batch := search.ask(64)) and len(sizes) < 10:
+        sizes.append(len(batch))
+        search.tell(batch.tickets, (batch.x**2).sum(axis=1))
+    return sizes[7:]
+
+
+def test_which_engines_look_at_parallel_is_as_the_help_says():
+    assert sorted(batches("portfolio", parallel=16))[1] >= 16  # now and then one has fewer
+    steps = ["walk", "descent", "descent-flood", "quadratic-descent"]
+    swarms = [name for name in satisfice.engines() if "pso" in name]
+    groups = {1: steps + swarms, 5: ["bounded-swarms"], 64: ["random", "branch-and-bound"]}
+    for size, engines in groups.items():
+        for engine in engines:
+            assert set(batches(engine, parallel=16)) == {size}, engine
+    for engine in ["pso", "random", "surrogate"]:
+        assert set(batches(engine, options={"batch": 4})) <= {4, 2}  # 30 particles are no multiple of 4
+    help_ = satisfice.find.__doc__.split("    parallel : int")[1].split("\n    integrality")[0]
+    assert all(f"`{engine}`" in help_ for engine in [*steps, "random", "branch-and-bound", "niching", "restarted-cma-es", "bounded-swarms"])
+    assert {"niching", "restarted-cma-es", "surrogate", "portfolio", *steps, *swarms, *groups[5], *groups[64]} == set(satisfice.engines())
+
+
 def test_eager_workers_do_not_wait():
     report = satisfice.find(evaluations.slow, SQUARE, **{**RING, "evaluations": 100}, workers=2)
     assert report.evaluations == 100 and report.hits > 0

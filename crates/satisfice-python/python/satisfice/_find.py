@@ -110,10 +110,13 @@ def find(
     threads : int, default 1
         For a problem of the catalogue: the threads that evaluate, 0 for one per core, at most 1,024. It does not change the report.
     parallel : int, optional
-        How many evaluations can go on at once, from 1 to 65,536: the engine proposes at least so many points at a time. One that
-        proposes fewer learns from each value before the next point. It is part of the search, like a seed: the report depends on
-        it, and not on how many workers there really are. By default 1; with `workers` given as a number and not
-        `ordered`, that number.
+        How many evaluations can go on at once, from 1 to 65,536. The default engine and `surrogate` as a rule propose at least so many
+        points at a time. Other engines do not look at it. Where they have an option ``batch``, that is how many they propose: 64
+        for `random` and `branch-and-bound`, where so many are left, 1 for particle swarms. `niching`, `restarted-cma-es` and
+        `bounded-swarms` propose a generation; `walk`, `descent`, `descent-flood` and `quadratic-descent` one point. Workers that are
+        `ordered` wait where an engine proposes fewer points than there are workers; others always have one. `parallel` is part
+        of the search, like a seed: the report depends on it, and not on how many workers there really are. By default 1; with
+        `workers` given as a number and not `ordered`, that number.
     integrality : bool or sequence of bool, optional
         Which axes are integers (as in `scipy.optimize.differential_evolution`).
     logarithmic : bool or sequence of bool, optional
@@ -147,7 +150,7 @@ def find(
         until the last exchange of the islands. With one island, the same as `workers`.
     ordered : bool, default False
         With several workers: whether the report does not depend on the order of their values, nor on how many there are. Give
-        `parallel` as well, or they wait for each other. See `Search`.
+        `parallel` as well, or the ``batch`` of an engine that does not look at it, or they wait for each other. See `Search`.
     callback : callable, optional
         Called with a `Progress` at most about a hundred times a second; the search ends when it returns true.
     catch : exception type or tuple of them, default ()

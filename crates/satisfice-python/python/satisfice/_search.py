@@ -53,7 +53,7 @@ class Search:
     ordered : bool, default False
         Whether values reach the engine in the order in which points were asked. Then the report under a budget of
         evaluations is that of `find` with the same seed, whatever the order of the values; but while values of a batch of
-        the engine are awaited, nothing more can be asked: `parallel` says how large these are at least. Otherwise there is
+        the engine are awaited, nothing more can be asked: `parallel` says how large those of the default are at least. Otherwise there is
         always more to ask, and the report depends on the order of the values.
 
     Examples
