@@ -177,7 +177,11 @@ pub(crate) fn completeness(report: &RunReport) -> String {
     }
     match (report.unseen_estimate, report.unseen_interval) {
         (Some(estimate), Some(interval)) => format!("unknown: {}", unseen(estimate, interval)),
-        _ => "unknown: there may be more".to_owned(),
+        _ => match report.failed {
+            0 => "unknown: there may be more".to_owned(),
+            1 => "unknown: the evaluation that failed may be a hit".to_owned(),
+            failed => format!("unknown: the {failed} evaluations that failed may be hits"),
+        },
     }
 }
 

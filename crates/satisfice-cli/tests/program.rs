@@ -185,6 +185,53 @@ fn the_time_ends_a_search_whatever_hangs() {
     );
 }
 
+/// The five hits of the space are a hundred evaluations away; one that failed may be a hit, one that is NaN is none.
+#[test]
+fn an_evaluation_that_failed_is_no_miss() {
+    let place = folder("");
+    let near = |otherwise: &str| {
+        format!(
+            "awk -v a={{a}} -v b={{b}} 'BEGIN {{ if (a == 3 && b == 1) {{ {otherwise} }} print (a-3)^2 + (b-1)^2 }}'"
+        )
+    };
+    for (otherwise, completeness, failed, hits) in [
+        ("", "Proved", Value::Null, 5),
+        ("print \"nan\"; exit", "Proved", Value::Null, 4),
+        ("exit 1", "Unknown", 1.into(), 4),
+    ] {
+        let program = near(otherwise);
+        let arguments = [
+            "--program",
+            &program,
+            "--engine",
+            "branch-and-bound",
+            "--workers",
+            "4",
+        ];
+        let report = report(&run(place.path(), &arguments));
+        assert_eq!(
+            (
+                &report["completeness"],
+                report.get("failed").unwrap_or(&Value::Null),
+                &report["hits"]
+            ),
+            (&completeness.into(), &failed, &hits.into()),
+            "{otherwise}"
+        );
+        assert_eq!(report["unseen_estimate"].is_null(), !failed.is_null());
+        let mut command = common::command(
+            place.path(),
+            "run --space space.toml --threshold 2 --evaluations 150 --seed 1",
+        );
+        let text: Done = command.args(arguments).output().unwrap().into();
+        let says = match completeness {
+            "Proved" => "proved: these are all",
+            _ => "unknown: the evaluation that failed may be a hit",
+        };
+        assert!(text.stdout.contains(says), "{}", text.stdout);
+    }
+}
+
 #[test]
 fn failures_are_tried_again() {
     let place = folder("");

@@ -65,7 +65,7 @@ impl Report {
         let reports = core::slice::from_ref(report);
         let mut report = RunReport::of_slices(spec, reports, serde_json::to_value).map_err(refused)?;
         report.slices.clear();
-        report.failed = failed;
+        report.set_failed(failed);
         Ok(Self::new(report))
     }
 
@@ -278,7 +278,7 @@ impl Report {
         self.report.counts.non_finite
     }
 
-    /// Values lost to exceptions that were caught.
+    /// Evaluations that gave no value: exceptions that were caught, tickets that failed.
     #[getter]
     fn failed(&self) -> u64 {
         self.report.failed

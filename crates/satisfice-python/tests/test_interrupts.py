@@ -1,6 +1,7 @@
 """Signals, exceptions and the interpreter's lock."""
 
 import os
+import pickle
 import signal
 import threading
 import time
@@ -86,6 +87,31 @@ def test_exceptions_that_are_caught_are_counted():
         satisfice.find(f, SQUARE, delta=0, evaluations=1000, seed=1, engine="random", catch=(ValueError, KeyError))
     report = satisfice.find(lambda x: 1 / 0, SQUARE, delta=0, evaluations=64, seed=1, vectorized=True, catch=(ArithmeticError,))
     assert report.failed == report.nfev == 64 and report.best is None
+
+
+def test_an_evaluation_that_failed_is_no_miss(tmp_path):
+    def f(x):
+        if x[0] == 3:
+            raise ArithmeticError("diverged")
+        return x[0] if x[0] != 5 else float("nan")
+
+    line = {"bounds": [(0, 9)], "integrality": 1, "delta": 9, "engine": "branch-and-bound", "evaluations": 200, "seed": 1}
+    whole = satisfice.find(lambda x: x[0] if x[0] != 5 else float("nan"), **line)
+    assert (whole.completeness, whole.hits, whole.unseen_estimate) == ("Proved", 8, 0)
+    path = tmp_path / "run.json"
+    again = [satisfice.find(f, **line, catch=ArithmeticError, checkpoint=path) for _ in range(2)]
+    for report in [*again]:
+        assert (report.completeness, report.hits, report.failed) == ("Unknown", 7, 1)
+        assert report.unseen_estimate is report.unseen_interval is None
+    search = satisfice.Search(**line)
+    while len(batch := search.ask(1)):
+        if batch.x[0, 0] == 3:
+            search.fail(batch.tickets)
+            search = pickle.loads(pickle.dumps(search))
+        else:
+            search.tell(batch.tickets, f(batch.x[0]))
+    report = search.report()
+    assert (report.completeness, report.hits, report.failed, report.to_dict()["completeness"]) == ("Unknown", 7, 1, "Unknown")
 
 
 def test_an_exception_of_the_callback_keeps_the_report():

@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     })?;
     let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value)?;
     report.slices.clear();
-    report.failed = failed;
+    report.set_failed(failed);
     let mut steps = Steps::default();
     if let Some(file) = &mut json_file {
         steps.step(
@@ -275,7 +275,7 @@ fn drive(
     }
     if failed > TOLD {
         message::say(format_args!(
-            "{failed} evaluations failed in all; they count as NaN"
+            "{failed} evaluations failed in all; they count as NaN, and nothing is proved"
         ));
     }
     Ok((tickets.finish(), failed))

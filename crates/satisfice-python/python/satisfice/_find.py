@@ -154,8 +154,8 @@ def find(
     callback : callable, optional
         Called with a `Progress` at most about a hundred times a second; the search ends when it returns true.
     catch : exception type or tuple of them, default ()
-        Exceptions of `f` that count as a value of NaN. They are counted in ``report.failed``; with `vectorized` an
-        exception fails its whole batch.
+        Exceptions of `f` that count as a value of NaN. They are counted in ``report.failed``, and nothing is proved with them; with
+        `vectorized` an exception fails its whole batch.
     checkpoint : path, optional
         Keep the search in this file: at the beginning, after a second, then every five, and at the end, however it comes. A file
         that cannot be written at the beginning is an error; later it is a warning, and the search goes on. If

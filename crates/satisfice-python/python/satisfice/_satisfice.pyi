@@ -194,7 +194,8 @@ class Report:
         """Values that were NaN or infinite."""
     @property
     def failed(self) -> int:
-        """Values lost to exceptions that were caught; they are among `non_finite`."""
+        """Evaluations that gave no value: exceptions that were caught, tickets that failed. They are among `non_finite`; where there are
+        any, `completeness` is never ``Proved``."""
     @property
     def seed(self) -> int:
         """The seed, given or drawn."""

@@ -153,6 +153,12 @@ class Search:
         """
         self._search.tell(ticket_numbers(tickets), _numbers(values), _rows(components))
 
+    def fail(self, tickets: ArrayLike) -> None:
+        """Tell that the evaluations of tickets gave no value. They count as NaN, use up budget, and are counted in ``report.failed``:
+        each may have been a hit, so that nothing is proved. A value of NaN says that a point is no hit."""
+        for ticket in _tickets(tickets).tolist():
+            self._search.fail(ticket)
+
     def forget(self, tickets: ArrayLike) -> None:
         """Give up points whose evaluations were lost. They use up no budget."""
         self._search.forget(ticket_numbers(tickets))
@@ -246,7 +252,7 @@ class Search:
         time : float, optional
             Stop after so many seconds; what is out then stays pending.
         catch : exception type or tuple of them
-            Exceptions of `f` that count as a value of NaN.
+            Exceptions of `f` that count as a value of NaN and in ``report.failed``: then nothing is proved.
         checkpoint : path, optional
             Save the search to this file at the beginning, after a second, then every five, and at the end, however it comes.
             `load` reads it. If it cannot be written at the beginning, that is an error; later it is a warning, and the search goes on.

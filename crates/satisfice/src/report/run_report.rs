@@ -38,7 +38,8 @@ pub struct RunReport<Spec, S> {
     /// The counts, summed over the slices.
     #[serde(flatten)]
     pub counts: Counts,
-    /// Evaluations that gave no value: a program that failed, an exception that was caught. They are non-finite as well.
+    /// Evaluations that gave no value: a program that failed, an exception that was caught. They are non-finite as well, and
+    /// nothing is proved with them: see [`set_failed`](RunReport::set_failed).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub failed: u64,
     /// Wall time in seconds, summed over the slices.
@@ -359,6 +360,21 @@ impl<Spec, S> RunReport<Spec, S> {
         self.unseen_interval = Some((0.0, Some(0.0)));
         self.unseen_confidence = Some(1.0);
         self.unseen_method = Some(Method::Proved);
+    }
+
+    /// Enters how many evaluations gave no value. Each of them may have been a hit, so that nothing is proved if there is one.
+    pub fn set_failed(&mut self, failed: u64) {
+        self.failed = failed;
+        if failed == 0 {
+            return;
+        }
+        self.completeness = Completeness::Unknown;
+        for slice in &mut self.slices {
+            slice.completeness = Completeness::Unknown;
+        }
+        if self.unseen_method == Some(Method::Proved) {
+            self.set_unseen(None, 0);
+        }
     }
 
     /// Enters the number of all hits, and the recall that follows.

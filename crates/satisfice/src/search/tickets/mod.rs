@@ -233,7 +233,8 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     }
 
     /// Tells the fitness of a solution that was [asked](Tickets::ask). NaN and infinite values are counted as such, and are
-    /// never a hit. A value for a ticket that has one or that was forgotten is counted and dropped. What else may become of it, [`Told`]
+    /// never a hit. Where the evaluation itself has failed, tell NaN and count it with
+    /// [`RunReport::set_failed`](crate::RunReport::set_failed), for a proof takes NaN for no hit. A value for a ticket that has one or that was forgotten is counted and dropped. What else may become of it, [`Told`]
     /// says.
     ///
     /// # Errors
