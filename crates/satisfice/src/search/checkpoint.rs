@@ -138,15 +138,17 @@ impl Fingerprint {
     }
 
     /// # Errors
-    /// [`Error::State`] if `now` is another problem.
-    pub(super) fn check(&self, now: &Self) -> Result<(), Error> {
+    /// [`Error::State`] if `now`, of scalars `S` as this one, is another problem.
+    pub(super) fn check<S: Real>(&self, now: &Self) -> Result<(), Error> {
         if self.description != now.description {
             fits("problem", &named(&self.description), &named(&now.description))?;
         }
+        let delta = |of: &Self| S::from_word(of.threshold).to_string();
+        fits("threshold", &delta(self), &delta(now))?;
+        let components = |of: &Self| of.components.to_string();
+        fits("number of components", &components(self), &components(now))?;
         if self != now {
-            return Err(Error::State(
-                "its problem has another space, threshold or number of components".to_owned(),
-            ));
+            return Err(Error::State("its problem has another space".to_owned()));
         }
         Ok(())
     }

@@ -108,7 +108,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     pub fn start_resumed<'a>(&'a mut self, problem: &'a P) -> Result<Stepper<'a, P>, Error> {
         self.check(problem)?;
         if let Some(saved) = &self.problem {
-            saved.check(&Fingerprint::of(problem))?;
+            saved.check::<P::Scalar>(&Fingerprint::of(problem))?;
         }
         let running = self.unfinished.take();
         let mut running = running.ok_or_else(|| Error::State("no slice has begun".to_owned()))?;

@@ -211,7 +211,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
         let mut search = Search::<P>::resume(checkpoint, engine)?;
         search.check(&*problem)?;
         if let Some(saved) = &search.problem {
-            saved.check(&Fingerprint::of(&*problem))?;
+            saved.check::<P::Scalar>(&Fingerprint::of(&*problem))?;
         }
         let running = search
             .unfinished

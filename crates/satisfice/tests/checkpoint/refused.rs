@@ -59,7 +59,7 @@ fn what_does_not_fit_is_refused() {
     let mut resumed = Search::resume(saved, with(&[])).unwrap();
     assert!(matches!(
         resumed.run_resumed(&wider, RunOptions::new()),
-        Err(Error::State(why)) if why.contains("another space, threshold")
+        Err(Error::State(why)) if why == "its threshold is 0.4, not 0.5"
     ));
     // How far apart answers are is a part of their description; the boundary rule is one of the space.
     let start = |separation: f64, boundary: Boundary| {

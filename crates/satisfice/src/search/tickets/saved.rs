@@ -78,7 +78,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         };
         search.check(&problem)?;
         if let Some(fingerprint) = &search.problem {
-            fingerprint.check(&Fingerprint::of(&*problem))?;
+            fingerprint.check::<P::Scalar>(&Fingerprint::of(&*problem))?;
         }
         search.resumed = false;
         let dimension = problem.space().dimension();
