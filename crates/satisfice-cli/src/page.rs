@@ -10,7 +10,7 @@ use satisfice_page::SearchPage;
 use crate::summary;
 
 /// A page lists at most so many hits, evenly chosen; it says so.
-const LISTED: usize = 100_000;
+pub(crate) const LISTED: usize = 100_000;
 
 /// Refuses a file that is not a page, before the work begins.
 pub(crate) fn check(path: Option<&Path>) -> anyhow::Result<()> {
@@ -27,9 +27,9 @@ pub(crate) fn check(path: Option<&Path>) -> anyhow::Result<()> {
     }
 }
 
-/// At most [`LISTED`] of so many, evenly chosen.
-pub(crate) fn evenly(count: usize) -> impl Iterator<Item = usize> {
-    (0..count).step_by(count.div_ceil(LISTED).max(1))
+/// At most `most` of so many, evenly chosen.
+pub(crate) fn evenly(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    (0..count).step_by(count.div_ceil(most).max(1))
 }
 
 /// The page of a report.
@@ -77,7 +77,7 @@ pub(crate) fn html(report: &RunReport) -> anyhow::Result<String> {
     for row in &report.sources.rows {
         page.source_row(row.evaluations, &row.proposed, &row.hits);
     }
-    for index in evenly(report.solutions.len()) {
+    for index in evenly(report.solutions.len(), LISTED) {
         let hit = &report.solutions[index];
         page.hit(&hit.solution, hit.fitness, hit.evaluation, hit.seconds);
     }

@@ -11,7 +11,7 @@ use super::picture::up_of;
 use super::report::Report;
 use super::scene::{Pair, World};
 use super::summary;
-use crate::page::evenly;
+use crate::page::{LISTED, evenly};
 
 pub(super) fn kind(kind: FeatureKind) -> satisfice_page::FeatureKind {
     match kind {
@@ -82,7 +82,7 @@ fn add(page: &mut ScenePage, world: &World, pairs: &Pairs, missed: &[Pair]) -> a
         });
         Ok(Contact::new(features, [near.point_a, near.point_b]))
     };
-    for index in evenly(pairs.len()) {
+    for index in evenly(pairs.len(), LISTED) {
         let mut listed = contact(&pairs.pairs[index])?;
         if let Some(distance) = pairs.distance(index) {
             listed = listed.distance(distance);
@@ -92,7 +92,7 @@ fn add(page: &mut ScenePage, world: &World, pairs: &Pairs, missed: &[Pair]) -> a
         }
         page.contact(listed);
     }
-    for index in evenly(missed.len()) {
+    for index in evenly(missed.len(), LISTED) {
         page.contact(contact(&missed[index])?.missed());
     }
     Ok(())
