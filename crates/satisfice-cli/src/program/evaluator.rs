@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer};
 
 use super::process::{Heard, Process, now};
@@ -56,6 +57,7 @@ pub(super) struct Evaluator {
 
 /// An answer of a worker.
 #[derive(Deserialize)]
+#[serde(expecting = "an object with a ticket and a value")]
 struct Reply {
     ticket: u64,
     /// `null`, which is no number, is not the same as no value.
@@ -197,7 +199,7 @@ fn printed(line: &str) -> Result<f64, String> {
     if let Ok(number) = line.trim().parse::<f64>() {
         return Ok(number);
     }
-    let parsed: Result<serde_json::Value, _> = serde_json::from_str(line);
+    let parsed: Result<serde_json::Value, _> = read(line);
     let value = parsed.ok().and_then(|json| number(json.get("value")?));
     value.ok_or_else(|| {
         format!(
@@ -211,7 +213,7 @@ fn printed(line: &str) -> Result<f64, String> {
 /// answer.
 fn answer(line: &str, ticket: u64) -> Result<Option<Result<f64, String>>, String> {
     let shown = || format!("`{}`", short(line));
-    let answer: Reply = serde_json::from_str(line).map_err(|error| {
+    let answer: Reply = read(line).map_err(|error| {
         format!("the worker wrote a line that is no answer such as {{\"ticket\": {ticket}, \"value\": 0.5}}: {}: {error}", shown())
     })?;
     if answer.ticket < ticket {
@@ -235,6 +237,46 @@ fn answer(line: &str, ticket: u64) -> Result<Option<Result<f64, String>>, String
             shown()
         )),
     }))
+}
+
+/// The words of Python's `json` and others for numbers that JSON has not.
+const NOT_FINITE: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
+
+/// Reads a line of JSON in which values may also be [`NOT_FINITE`], as [`number`] takes them.
+fn read<T: DeserializeOwned>(line: &str) -> serde_json::Result<T> {
+    serde_json::from_str(line).or_else(|error| serde_json::from_str(&with_words(line).ok_or(error)?))
+}
+
+/// A line of JSON with quotes around numbers that JSON has not; nothing if there are none.
+fn with_words(line: &str) -> Option<String> {
+    let (mut quoted, mut rest, mut found) = (String::new(), line, false);
+    let (mut in_text, mut is_value) = (false, false);
+    while let Some(c) = rest.chars().next() {
+        let word = NOT_FINITE
+            .iter()
+            .find(|word| is_value && rest.starts_with(**word));
+        let taken = match word {
+            Some(word) => {
+                found = true;
+                quoted.extend(["\"", word, "\""]);
+                word.len()
+            }
+            // What is escaped ends no text.
+            None if in_text && c == '\\' => {
+                let taken = rest.char_indices().nth(2).map_or(rest.len(), |(next, _)| next);
+                quoted.push_str(&rest[..taken]);
+                taken
+            }
+            None => {
+                in_text ^= c == '"';
+                quoted.push(c);
+                c.len_utf8()
+            }
+        };
+        is_value = !in_text && (matches!(c, ':' | ',' | '[') || (is_value && c.is_whitespace()));
+        rest = &rest[taken..];
+    }
+    found.then_some(quoted)
 }
 
 /// A number of JSON. `null` is NaN, which JSON has not, and so are the words for it.
@@ -268,6 +310,7 @@ mod tests {
         ] {
             assert_eq!(printed(line), Ok(value), "{line}");
         }
+        assert_eq!(printed(r#"{"value": -Infinity}"#), Ok(f64::NEG_INFINITY));
         assert!(printed("nan").unwrap().is_nan() && printed(r#"{"value": null}"#).unwrap().is_nan());
         for line in ["", "done", "{}", "[1]", r#"{"value": "high"}"#] {
             assert!(printed(line).unwrap_err().contains(line), "{line}");
@@ -286,6 +329,29 @@ mod tests {
                 says.contains(line) && says.contains(r#"answer {"ticket": 7, "value": 0.5}"#),
                 "{says}"
             );
+        }
+        // As Python's `json.dumps` writes them.
+        for (word, value) in [("Infinity", f64::INFINITY), ("-Infinity", f64::NEG_INFINITY)] {
+            let line = format!(r#"{{"note": "no \" NaN", "time": NaN, "ticket": 7, "value": {word}}}"#);
+            assert_eq!(answer(&line, 7), Ok(Some(Ok(value))));
+        }
+        let nan = answer(r#"{"ticket":7,"value":NaN}"#, 7);
+        assert!(nan.unwrap().unwrap().unwrap().is_nan());
+        for line in [
+            r#"{"ticket":NaN,"value":1}"#,
+            r#"{"ticket":7,"value":nan}"#,
+            r#"{"ticket":7,"value":1NaN}"#,
+            r#"{"ticket":7,"value":NaNs}"#,
+            r#"{"ticket":7,"value":+Infinity}"#,
+            r#"{NaN:7,"ticket":7,"value":1}"#,
+            r#"{"ticket":7,"value":"NaN}"#,
+        ] {
+            assert!(answer(line, 7).unwrap_err().contains(line), "{line}");
+        }
+        for line in ["0.5", "NaN", "[]"] {
+            let says = answer(line, 7).unwrap_err();
+            let expects = r#"such as {"ticket": 7, "value": 0.5}"#;
+            assert!(says.contains(expects) && !says.contains("Reply"), "{says}");
         }
         let error = answer(r#"{"ticket":7,"error":"diverged"}"#, 7).unwrap().unwrap();
         assert_eq!(error, Err("the worker says: diverged".to_owned()));
