@@ -15,7 +15,7 @@ use crate::reference::Patience;
 /// The default engine.
 pub(crate) const DEFAULT_ENGINE: &str = "portfolio";
 /// The wall time of a search without `--time` and `--evaluations`.
-const DEFAULT_TIME: Duration = Duration::from_secs(1);
+pub(crate) const DEFAULT_TIME: Duration = Duration::from_secs(1);
 
 /// Parses the command line, the name of the program included.
 pub(crate) fn parse(arguments: &[std::ffi::OsString]) -> Result<Subcommands, clap::Error> {
@@ -245,7 +245,7 @@ impl SearchArguments {
         self.check()?;
         let mut spec = RunSpec::new(engine);
         self.enter(&mut spec);
-        if spec.budget.time.is_none() && spec.budget.evaluations.is_none() && spec.budget.patience.is_none() {
+        if !self.is_limited() {
             spec.budget.time = Some(DEFAULT_TIME);
         }
         // A wrong engine or parameter is an error before any file is opened.
@@ -257,6 +257,15 @@ impl SearchArguments {
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         check_once("--engine-set", &self.engine_set)
     }
+    /// Whether a limit is given that ends every slice; if not, there is one of [`DEFAULT_TIME`].
+    pub(crate) fn is_limited(&self) -> bool {
+        let names = ["time", "evaluations", "patience"];
+        self.options
+            .0
+            .iter()
+            .any(|(option, _)| names.contains(&option.name))
+    }
+
 
     /// Enters what is given.
     pub(crate) fn enter(&self, spec: &mut RunSpec) {

@@ -232,6 +232,27 @@ fn an_evaluation_that_failed_is_no_miss() {
     }
 }
 
+/// A program may need more than a second: then whoever gave no limit learns that there is one.
+#[test]
+fn a_limit_that_nobody_gave_is_told() {
+    let place = folder("");
+    for (program, limit, is_told) in [
+        ("sh -c 'sleep 60 # {x}'", "", true),
+        ("echo {a}", "", false),
+        ("sh -c 'sleep 60 # {x}'", " --time 100ms", false),
+    ] {
+        let line = format!("run --space space.toml --threshold 2{limit} --program");
+        let done: Done = common::command(place.path(), &line)
+            .arg(program)
+            .output()
+            .unwrap()
+            .into();
+        let says =
+            "note: the search ended after 1s, the limit where none is given: give --time or --evaluations\n";
+        assert_eq!(done.stderr, if is_told { says } else { "" }, "{program}{limit}");
+    }
+}
+
 #[test]
 fn failures_are_tried_again() {
     let place = folder("");

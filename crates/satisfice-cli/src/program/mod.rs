@@ -17,11 +17,11 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow, bail};
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
-use satisfice::{Cancel, Located, RunReport, Search, Ticket, Tickets};
+use satisfice::{Cancel, Located, RunReport, Search, StopReason, Ticket, Tickets};
 use satisfice_catalogue::{RunSpec, json};
 use serde_json::Value;
 
-use crate::arguments::{DEFAULT_ENGINE, ProgramArguments, RunArguments};
+use crate::arguments::{DEFAULT_ENGINE, DEFAULT_TIME, ProgramArguments, RunArguments};
 use crate::output::{self, Steps};
 use crate::places::Places;
 use crate::{interrupt, message, summary};
@@ -100,6 +100,13 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let (report, failed) = with_workers(&task, workers, |jobs, values| {
         drive(tickets, workers, jobs, values, &cancel, deadline)
     })?;
+    let few = report.counts.evaluations < u64::from(given.workers);
+    if !arguments.search.is_limited() && report.stop_reason == StopReason::Time && few {
+        // The program may need more time for one evaluation than there was for all.
+        message::say(format_args!(
+            "note: the search ended after {DEFAULT_TIME:?}, the limit where none is given: give --time or --evaluations"
+        ));
+    }
     let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value)?;
     report.slices.clear();
     report.set_failed(failed);
