@@ -193,7 +193,7 @@ pub(crate) struct ProgramArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::retries, allow_hyphen_values = true, requires = "evaluator")]
     pub(crate) retries: u32,
 
-    /// Let /bin/sh run the program.
+    /// Let /bin/sh run the program. What stands for coordinates is quoted where the shell would not read it literally.
     #[arg(long, requires = "evaluator")]
     pub(crate) shell: bool,
 

@@ -265,6 +265,25 @@ fn failures_are_tried_again() {
 }
 
 #[test]
+fn a_shell_reads_categories_as_they_are() {
+    let place = tempfile::tempdir().unwrap();
+    let space = "[[axis]]\nname = \"metal\"\ncategories = [\"a b\", \"it's\", \"$x\", \"c\"]\n";
+    fs::write(place.path().join("space.toml"), space).unwrap();
+    for program in [
+        "printf '%s\\n' {metal} >> told; echo 1",
+        "printf '%s\\n' \"{metal}\" >> told; echo 1",
+    ] {
+        let done = run(place.path(), &["--program", program, "--shell"]);
+        assert_eq!((done.stderr.as_str(), &report(&done)["hits"]), ("", &4.into()));
+        let told = fs::read_to_string(place.path().join("told")).unwrap();
+        let mut told: Vec<&str> = told.lines().collect();
+        told.sort_unstable();
+        assert_eq!(told, ["$x", "a b", "c", "it's"]);
+        fs::remove_file(place.path().join("told")).unwrap();
+    }
+}
+
+#[test]
 fn mistakes_are_errors() {
     let place = folder("");
     for (arguments, says) in [

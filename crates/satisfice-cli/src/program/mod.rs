@@ -5,6 +5,7 @@
 
 mod evaluator;
 mod process;
+mod shell;
 mod space;
 mod template;
 

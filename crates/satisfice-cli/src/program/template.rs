@@ -1,7 +1,10 @@
 //! The command line of a program, with places for coordinates: `{x}` for all, `{NAME}` for those of an axis or permutation.
 
+use std::ops::Range;
+
 use anyhow::bail;
 
+use super::shell;
 use super::space::SpaceFile;
 
 /// Words with places for coordinates, or one text for a shell.
@@ -70,24 +73,26 @@ impl Template {
     /// The program and its arguments for one point.
     pub(crate) fn words(&self, point: &[f64], space: &SpaceFile) -> Vec<String> {
         let texts = space.texts(point);
-        let places = || {
-            let named = space.places().map(|(name, range)| (format!("{{{name}}}"), range));
-            named.chain([(ALL.to_owned(), 0..texts.len())])
-        };
-        let fill = |word: &str, between: &str| {
-            places().fold(word.to_owned(), |filled, (place, range)| {
-                filled.replace(&place, &texts[range].join(between))
-            })
-        };
+        let places: Vec<(String, Range<usize>)> = space
+            .places()
+            .map(|(name, range)| (format!("{{{name}}}"), range))
+            .chain([(ALL.to_owned(), 0..texts.len())])
+            .collect();
+        let find = |text: &str| places.iter().find(|(place, _)| text.starts_with(place));
         if self.is_shell {
-            let line = fill(&self.words[0], " ");
+            let line = shell::fill(&self.words[0], |text| {
+                let (place, range) = find(text)?;
+                Some((place.len(), &texts[range.clone()]))
+            });
             return vec!["/bin/sh".to_owned(), "-c".to_owned(), line];
         }
         let mut words = Vec::new();
         for word in &self.words {
-            match places().find(|(place, _)| place == word) {
-                Some((_, range)) => words.extend_from_slice(&texts[range]), // an argument each
-                None => words.push(fill(word, ",")),
+            match places.iter().find(|(place, _)| place == word) {
+                Some((_, range)) => words.extend_from_slice(&texts[range.clone()]), // an argument each
+                None => words.push(places.iter().fold(word.clone(), |filled, (place, range)| {
+                    filled.replace(place, &texts[range.clone()].join(","))
+                })),
             }
         }
         words
@@ -154,6 +159,8 @@ mod tests {
             shell.words(&[1.0, 2.0], &space()),
             ["/bin/sh", "-c", "echo 1 2 | bc"]
         );
+        let shell = Template::new("echo {a} '{b}' ${a}{x}", true, &space()).unwrap();
+        assert_eq!(shell.words(&[1.0, 2.0], &space())[2], "echo 1 '2' $11 2");
     }
 
     #[test]
