@@ -84,7 +84,8 @@ pub static OPTIONS: &[RunOption] = &[
         "Spend this share of the evaluations, 0 to 0.5, on uniform probes, from which the number of hits not seen is estimated \
          [default: the engine's own, which is 0 for most]"),
     option!("slices", "K", false, count => budget.slices,
-        "Run this number of time slices, each with the whole budget and warm from the hits of the previous one [default: 1]"),
+        "Run this number of time slices, each with the whole budget and warm from the hits of the previous one; 1 for programs \
+         [default: 1]"),
     option!("islands", "N", false, islands => islands,
         "Run this number of engines side by side, each with its share of the budget, which share their hits: for a fitness so \
          cheap that one engine cannot keep several threads busy. The number of islands changes the result; the number of \

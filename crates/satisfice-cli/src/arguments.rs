@@ -100,22 +100,26 @@ Examples:
   satisfice run --program './simulate {x}' --space space.toml --threshold 0.1 --evaluations 500 --workers 4
       Start ./simulate with the coordinates as arguments, four at a time; the last line that it writes is the value.
   satisfice run --worker './simulator --serve' --space space.toml --threshold 0.1 --time 8h --workers 4 --timeout 10min --json night.json
-      Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2]} and answers {\"ticket\": 7, \"value\": 0.3},
+      Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2.0]} and answers {\"ticket\": 7, \"value\": 0.3},
       or {\"ticket\": 7, \"error\": \"why not\"}, line by line. space.toml has a table [[axis]] for each coordinate, with
       lower and upper (and integer, logarithmic or periodic = true), or categories = [\"a\", \"b\"], or permutation = 5 for an order
-      of five, and a name; separation = 0.1 makes nearer hits one. There are no checkpoints of programs: the report is written at
-      the end, also after Ctrl-C or SIGTERM, which keep what was found.
+      of five, and a name; separation = 0.1 makes nearer hits one.
+      --program gets a whole number as 15, a category by its name, and an order as its places: {order} by itself is an argument for
+      each of them, --x={order} is --x=1,0,2, and with --shell there are blanks between them. --worker gets numbers: 15.0, the
+      number of a category from 0, and the places of an order one by one.
+      --set, --slices, --threads, --reference, --plot and --page are for problems of the catalogue only. There are no checkpoints
+      of programs: the report is written at the end, also after Ctrl-C or SIGTERM, which keep what was found.
 
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
-    /// Name of the problem; `satisfice list` shows them all.
-    #[arg(value_name = "PROBLEM", required_unless_present_any = ["program", "worker", "resume"], conflicts_with_all = ["program", "worker"])]
+    /// Name of the problem; `satisfice list` shows them all. None with --program, --worker and --resume.
+    #[arg(value_name = "PROBLEM", conflicts_with_all = ["program", "worker"])]
     pub(crate) problem: Option<String>,
 
     #[command(flatten)]
     pub(crate) program: ProgramArguments,
 
-    /// Set a parameter of the problem; may be repeated.
+    /// Set a parameter of the problem; may be repeated. Not for programs.
     #[arg(long, value_name = "NAME=VALUE", value_parser = quantity::setting)]
     pub(crate) set: Vec<(String, String)>,
 
@@ -147,11 +151,11 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) json: Option<PathBuf>,
 
-    /// Draw hits against evaluations and time, as .svg or .png.
+    /// Draw hits against evaluations and time, as .svg or .png. Not for programs.
     #[arg(long, value_name = "FILE.svg|.png", value_hint = ValueHint::FilePath)]
     pub(crate) plot: Option<PathBuf>,
 
-    /// Write a page to look into: hits over any axes, how they came in, a table; one file that works offline.
+    /// Write a page to look into: hits over any axes, how they came in, a table; one file that works offline. Not for programs.
     #[arg(long, value_name = "FILE.html", value_hint = ValueHint::FilePath)]
     pub(crate) page: Option<PathBuf>,
 }
@@ -189,7 +193,7 @@ pub(crate) struct ProgramArguments {
     #[arg(long, value_name = "TIME", value_parser = satisfice_catalogue::quantity::time, requires = "evaluator")]
     pub(crate) timeout: Option<Duration>,
 
-    /// Retry a failed evaluation up to this many times. If it still fails, its value counts as NaN.
+    /// Retry a failed evaluation up to this many times. If it still fails, its value counts as NaN, and the report proves nothing.
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::retries, allow_hyphen_values = true, requires = "evaluator")]
     pub(crate) retries: u32,
 
@@ -253,10 +257,6 @@ impl SearchArguments {
         Ok(spec.complete()?)
     }
 
-    /// Refuses two values for one parameter of the engine.
-    pub(crate) fn check(&self) -> anyhow::Result<()> {
-        check_once("--engine-set", &self.engine_set)
-    }
     /// Whether a limit is given that ends every slice; if not, there is one of [`DEFAULT_TIME`].
     pub(crate) fn is_limited(&self) -> bool {
         let names = ["time", "evaluations", "patience"];
@@ -266,6 +266,10 @@ impl SearchArguments {
             .any(|(option, _)| names.contains(&option.name))
     }
 
+    /// Refuses two values for one parameter of the engine.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        check_once("--engine-set", &self.engine_set)
+    }
 
     /// Enters what is given.
     pub(crate) fn enter(&self, spec: &mut RunSpec) {

@@ -29,7 +29,9 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     let known = match (known, &resumed) {
         (Some(known), _) => known,
         (None, Some((_, saved))) => catalogue.find(&saved.problem)?,
-        (None, None) => anyhow::bail!("a problem is missing: `satisfice list` shows them all"),
+        (None, None) => anyhow::bail!(
+            "no problem is named: `satisfice list` shows them all; or give --program, --worker or --resume"
+        ),
     };
     let set = match &resumed {
         Some((_, saved)) if arguments.set.is_empty() => saved.problem_parameters.texts(),

@@ -312,6 +312,11 @@ fn mistakes_are_errors() {
         );
         assert!(done.stderr.contains(says), "{arguments:?}: {}", done.stderr);
     }
+    let error = common::error_in(place.path(), "run");
+    assert!(
+        error.contains("or give --program, --worker or --resume"),
+        "{error}"
+    );
     let error = common::error_in(place.path(), "run --program ./x --threshold 1");
     assert!(error.contains("--space"), "{error}");
     let error = common::error_in(
