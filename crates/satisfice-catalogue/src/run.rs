@@ -13,6 +13,7 @@ use serde::de::DeserializeOwned;
 use crate::checkpoint::{self, Saved, SavedRun};
 use crate::control::{Progress, RunControl, Save};
 use crate::error::Error;
+use crate::remarks::{idle_threads, small_batches};
 use crate::report::RunReport;
 use crate::spec::RunSpec;
 
@@ -67,7 +68,7 @@ where
     let cancel = control.cancel.clone();
     let budget = spec.slice_budget(&cancel);
     let mut failed = None;
-    let (mut calls, mut shared) = (0, 0);
+    let (mut calls, mut shared, mut full) = (0, 0, 0);
     let mut pace = Pace::new(control.every);
     let mut left_out = None;
     while unfinished || goes_on(&reports, spec) {
@@ -100,6 +101,7 @@ where
         let report = report?;
         calls += report.counts.fitness_calls;
         shared += search.shared_calls();
+        full += search.in_full_batches();
         reports.push(report);
         unfinished = false;
     }
@@ -108,8 +110,12 @@ where
     {
         failed = write(spec, before, &state, save).err().or(failed);
     }
-    if let (Some(remark), Some(text)) = (&mut control.remark, idle_threads(spec, calls, shared)) {
-        remark(&text);
+    if let Some(remark) = &mut control.remark {
+        let evaluations = reports.iter().map(|report| report.counts.evaluations).sum();
+        // Of a resumed run, the larger part may have been before.
+        let batches = small_batches(spec, evaluations, full).filter(|_| control.resume.is_none());
+        let remarks = [idle_threads(spec, calls, shared), batches];
+        remarks.iter().flatten().for_each(|text| remark(text));
     }
     failed.map_or(Ok(reports), |error| Err(error.into()))
 }
@@ -164,18 +170,6 @@ impl Pace {
 )]
 fn now() -> Instant {
     Instant::now()
-}
-
-/// The note for runs in which several threads had little to share.
-fn idle_threads(spec: &RunSpec, calls: u64, shared: u64) -> Option<String> {
-    let idle = spec.threads != 1 && spec.islands == 1 && calls > 0 && shared < calls / 2;
-    idle.then(|| {
-        format!(
-            "threads shared {shared} of {calls} calls of the fitness: the batches of {} are too small for them, or the fitness \
-             is too cheap; islands run several engines side by side",
-            spec.engine
-        )
-    })
 }
 
 /// Whether there is another slice to run.

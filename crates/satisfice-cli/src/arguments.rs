@@ -112,7 +112,7 @@ Examples:
 
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
-    /// Name of the problem; `satisfice list` shows them all. None with --program, --worker and --resume.
+    /// Name of the problem; `satisfice list` shows them all. Left out with --program and --worker; --resume knows it.
     #[arg(value_name = "PROBLEM", conflicts_with_all = ["program", "worker"])]
     pub(crate) problem: Option<String>,
 

@@ -283,6 +283,39 @@ fn a_shell_reads_categories_as_they_are() {
     }
 }
 
+/// An engine that goes point by point leaves workers idle where values are entered in order; whoever asked for more is told.
+#[test]
+fn an_engine_that_proposes_fewer_points_is_told() {
+    let place = folder("");
+    let all = [
+        "--program",
+        "echo {a}",
+        "--ordered",
+        "--parallel",
+        "4",
+        "--workers",
+        "4",
+    ];
+    let run = |engine: &str| run(place.path(), &[&all[..], &["--engine", engine]].concat()).stderr;
+    let says = "note: walk proposed 0 of 150 points at least 4 at a time, as --parallel asks";
+    assert!(run("walk").starts_with(says), "{}", run("walk"));
+    assert_eq!(run("random"), "");
+    let catalogue =
+        |line: &str| common::satisfice(&format!("run himmelblau --evaluations 300 --parallel {line}")).stderr;
+    assert!(catalogue("8 --engine walk").starts_with("note: walk proposed 0 of 300 points"));
+    assert!(catalogue("100 --engine random").starts_with("note: random proposed 0 of 300 points"));
+    // The first swarm of thirty is one batch, then particles move one by one.
+    assert!(catalogue("8 --engine pso").starts_with("note: pso proposed 30 of 300 points"));
+    for line in [
+        "8",
+        "2 --engine walk --islands 2",
+        "1 --engine walk",
+        "64 --engine random",
+    ] {
+        assert_eq!(catalogue(line), "", "{line}");
+    }
+}
+
 #[test]
 fn mistakes_are_errors() {
     let place = folder("");

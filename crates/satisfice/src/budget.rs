@@ -136,6 +136,8 @@ impl Budget {
     /// Says how many evaluations can go on at once: the number of workers or threads, 1 by default.
     ///
     /// An engine that decides by itself how many points to propose at a time proposes at least so many, so that no worker waits. One
+    /// that goes point by point or by a batch of its own, such as a walk, a descent or a swarm, does not follow it:
+    /// [`Search::in_full_batches`](crate::Search::in_full_batches) shows it. One
     /// that proposes fewer learns from each outcome before the next point. The number is part of the search, like a seed: reports
     /// depend on it, and not on how many threads or workers there really are.
     ///

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, anyhow, bail};
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
 use satisfice::{Cancel, Located, RunReport, Search, StopReason, Ticket, Tickets};
-use satisfice_catalogue::{RunSpec, json};
+use satisfice_catalogue::{RunSpec, json, small_batches};
 use serde_json::Value;
 
 use crate::arguments::{DEFAULT_ENGINE, DEFAULT_TIME, ProgramArguments, RunArguments};
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let tickets = order(search, problem, &budget)?;
     let workers = usize::from(given.workers);
     let deadline = spec.budget.time.and_then(|time| process::now().checked_add(time));
-    let (report, failed) = with_workers(&task, workers, |jobs, values| {
+    let (report, full, failed) = with_workers(&task, workers, |jobs, values| {
         drive(tickets, workers, jobs, values, &cancel, deadline)
     })?;
     let few = report.counts.evaluations < u64::from(given.workers);
@@ -107,6 +107,11 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         message::say(format_args!(
             "note: the search ended after {DEFAULT_TIME:?}, the limit where none is given: give --time or --evaluations"
         ));
+    }
+    if given.ordered
+        && let Some(remark) = small_batches(&spec, report.counts.evaluations, full)
+    {
+        message::say(format_args!("note: {remark}"));
     }
     let mut report = RunReport::of_slices(spec, &[report], serde_json::to_value)?;
     report.slices.clear();
@@ -228,7 +233,7 @@ fn with_workers<T>(
     })
 }
 
-/// Runs the search to its end; returns its report and how many evaluations failed.
+/// Runs the search to its end; returns its report, how many points were in full batches and how many evaluations failed.
 fn drive(
     mut tickets: Tickets<Problem>,
     workers: usize,
@@ -236,7 +241,7 @@ fn drive(
     values: &Receiver<(Ticket, Result<f64, Failure>)>,
     cancel: &Cancel,
     deadline: Option<Instant>,
-) -> anyhow::Result<(satisfice::Report<Located<f64>>, u64)> {
+) -> anyhow::Result<(satisfice::Report<Located<f64>>, u64, u64)> {
     let (mut failed, mut succeeded) = (0, 0_u64);
     loop {
         // Asked first: then the tickets know as well that the time is over, and why they end.
@@ -286,5 +291,6 @@ fn drive(
             "{failed} evaluations failed in all; they count as NaN, and nothing is proved"
         ));
     }
-    Ok((tickets.finish(), failed))
+    let (report, search) = tickets.finish_slice();
+    Ok((report, search.in_full_batches(), failed))
 }

@@ -41,6 +41,8 @@ pub(crate) struct Ledger<T> {
     shared: bool,
     /// Calls of the fitness in batches that were.
     shared_calls: u64,
+    /// Proposals in batches of at least [`Budget::parallel`] points, probes aside.
+    pub(crate) in_full_batches: u64,
     alarm: Option<Alarm>,
     /// Time since the start at which an evaluation of a batch returns early, so that it can be saved.
     pub(crate) hold: Option<Duration>,
@@ -110,6 +112,7 @@ impl<T> Ledger<T> {
             price: Price::default(),
             shared: false,
             shared_calls: 0,
+            in_full_batches: 0,
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             hold: None,
             at_once: 1,

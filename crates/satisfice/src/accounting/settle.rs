@@ -39,6 +39,10 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             probing: candidates.probing,
             absent: candidates.absent,
         };
+        let batch = candidates.outcomes.len();
+        if !candidates.probing && batch >= self.budget.parallel.unwrap_or(1) {
+            self.in_full_batches += batch as u64;
+        }
         let mut next = 0; // of the live ones
         for i in 0..candidates.outcomes.len() {
             let before = candidates.outcomes[i];

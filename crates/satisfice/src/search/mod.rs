@@ -92,6 +92,8 @@ pub struct Search<P: SatisficingProblem + ?Sized> {
     pool: Option<Threads>,
     /// Calls of the fitness that several threads shared, in the slice that ended last.
     shared_calls: u64,
+    /// Points in batches as large as the budget asked for, in that slice.
+    in_full_batches: u64,
     /// The slice that had begun when the search was saved.
     unfinished: Option<Running<P::Scalar, P::Solution>>,
     /// The problem of the slice that began last.
@@ -145,6 +147,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
             lanes: Vec::new(),
             pool: None,
             shared_calls: 0,
+            in_full_batches: 0,
             unfinished: None,
             problem: None,
             resumed: false,
@@ -208,6 +211,14 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     #[must_use]
     pub fn shared_calls(&self) -> u64 {
         self.shared_calls
+    }
+
+    /// How many points of the slice that ended last were proposed at least as many at a time as [`Budget::with_parallel`] says, with
+    /// one lane. Few of them mean that the engine does not follow it. Like the calls above, it is no part of a report; of eager tickets it is
+    /// not known.
+    #[must_use]
+    pub fn in_full_batches(&self) -> u64 {
+        self.in_full_batches
     }
 
     /// The number of lanes, from 1 (the default) to 65,536: engines side by side, each with an equal share of the

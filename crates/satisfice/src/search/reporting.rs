@@ -36,6 +36,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self.lanes = lanes;
         let times = slice.ledger.close();
         self.shared_calls = slice.ledger.shared_calls();
+        self.in_full_batches = slice.ledger.in_full_batches;
         let mut report = self.describe(problem, &slice, times);
         slice.ledger.archive.rest();
         self.previous = Arc::new(slice.ledger.archive);
