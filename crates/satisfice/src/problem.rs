@@ -300,6 +300,9 @@ impl<S: Real, F> FnProblem<S, F> {
     /// The same problem with the [components](Components) of F: `write` gets values and writes `count` numbers, each divided by its
     /// limit, so that at every hit all magnitudes are at most 1.
     ///
+    /// A problem of your own that passes its calls on to this one calls the method of the trait by its full name,
+    /// `SatisficingProblem::components(&inner)`: this one has the same.
+    ///
     /// ```
     /// use satisfice::{Budget, Search, Space, engine::Surrogate, from_fn};
     /// let (space, delta) = (Space::cube(3, -2.0, 2.0)?, 1e-3);

@@ -264,7 +264,16 @@ impl<S: Real> Axis<S> {
         value.max(lower).min(upper)
     }
 
-    /// The position at `share` in `[0, 1)` of the axis: how uniform draws become positions.
+    /// The position at `share` in `[0, 1)` of the axis: how uniform draws become positions. It is no value of the axis: on a
+    /// logarithmic axis it is a logarithm, on an integer axis it has a fraction. [`Axis::value`] gives the value there.
+    ///
+    /// ```
+    /// use satisfice::Axis;
+    /// let rate = Axis::continuous(1e-4_f64, 1.0).logarithmic();
+    /// assert!(rate.at(0.5) < 0.0 && (rate.value(rate.at(0.5)) - 0.01).abs() < 1e-12);
+    /// let teeth = Axis::<f64>::integer(10, 19);
+    /// assert_eq!((teeth.at(0.25), teeth.value(teeth.at(0.25))), (12.5, 12.0));
+    /// ```
     #[inline]
     #[must_use]
     pub fn at(&self, share: f64) -> S {
