@@ -45,6 +45,8 @@ const AMONG: usize = 64;
 /// A point that is proposed and not told yet keeps others out of its separation radius if a hit is at least as probable there. With a miss
 /// there, it would keep them from the way to a hit.
 const LIKELY: f64 = 0.5;
+/// Points that are told before there is a model, at most.
+const LARGEST_DESIGN: usize = 12;
 /// Candidates that are examined for one proposal.
 const EXAMINED: usize = 4096;
 
@@ -405,9 +407,10 @@ fn spread<S>(score: Score, bar: Option<Score>, x: &[f64], slope: &[f64], given: 
     spread
 }
 
-/// How many points are told before there is a model: the values of fewer say too little about its scales.
+/// How many points are told before there is a model: the values of fewer say too little about its scales. On many axes it does not know these for
+/// long, but where F is low.
 pub(super) fn design_size(axes: usize) -> usize {
-    axes + 2
+    (axes + 2).min(LARGEST_DESIGN)
 }
 
 /// What the model learns of points: the values of each output.
