@@ -45,8 +45,10 @@ const AMONG: usize = 64;
 /// A point that is proposed and not told yet keeps others out of its separation radius if a hit is at least as probable there. With a miss
 /// there, it would keep them from the way to a hit.
 const LIKELY: f64 = 0.5;
-/// Points that are told before there is a model, at most.
+/// Points that are told before there is a model, at most; on more than `MANY` axes, whose candidates would take too much memory and time,
+/// there is none for long.
 const LARGEST_DESIGN: usize = 12;
+const MANY: usize = 1_000;
 /// Candidates that are examined for one proposal.
 const EXAMINED: usize = 4096;
 
@@ -410,6 +412,9 @@ fn spread<S>(score: Score, bar: Option<Score>, x: &[f64], slope: &[f64], given: 
 /// How many points are told before there is a model: the values of fewer say too little about its scales. On many axes it does not know these for
 /// long, but where F is low.
 pub(super) fn design_size(axes: usize) -> usize {
+    if axes > MANY {
+        return axes + 2;
+    }
     (axes + 2).min(LARGEST_DESIGN)
 }
 

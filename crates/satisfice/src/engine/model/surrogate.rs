@@ -18,7 +18,7 @@ use crate::seed::SearchRng;
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
-    /// After a low-discrepancy design of `d + 2` points, 12 at most, each proposal is the candidate with the highest probability of
+    /// After a low-discrepancy design of `d + 2` points, at most 12 on up to 1,000 axes, each proposal is the candidate with the highest probability of
     /// `F < delta` under a Gaussian process with a Matérn 5/2 kernel and a length scale for each axis:
     ///
     /// - Candidates are half uniform, half near hits and points of least F at several scales, then around the best candidate, closer and
