@@ -1,5 +1,7 @@
 //! What users of a model of F meet: evaluations that fail, several at once, many axes.
 
+#![allow(clippy::unwrap_used, reason = "a test")]
+
 use satisfice::{Budget, Search, Space, engine, from_fn};
 
 /// A number in [0, 1) that says nothing of the point.

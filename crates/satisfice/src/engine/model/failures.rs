@@ -8,8 +8,9 @@ const NEXT: usize = 8;
 
 /// Whether a model learns from a point: not from duplicates, whose F is not F of something new, nor where F is missing by chance.
 pub(super) fn tells(record: &Record, units: &Units, i: usize) -> bool {
-    let is_duplicate = |i: usize| record.duplicates.binary_search(&i).is_ok();
-    !is_duplicate(i) && !(record.values[i].is_nan() && failed_by_chance(record, units, i))
+    let is_duplicate = record.duplicates.binary_search(&i).is_ok();
+    let is_missing = record.values[i].is_nan() && failed_by_chance(record, units, i);
+    !is_duplicate && !is_missing
 }
 
 /// Whether no more than half of the points next to one that failed have failed, too. Cost: O(D) for each point of the record.
