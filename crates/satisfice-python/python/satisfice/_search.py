@@ -156,7 +156,7 @@ class Search:
     def fail(self, tickets: ArrayLike) -> None:
         """Tell that the evaluations of tickets gave no value. They count as NaN, use up budget, and are counted in ``report.failed``:
         each may have been a hit, so that nothing is proved. A value of NaN says that a point is no hit."""
-        for ticket in _tickets(tickets).tolist():
+        for ticket in ticket_numbers(tickets).tolist():
             self._search.fail(ticket)
 
     def forget(self, tickets: ArrayLike) -> None:
