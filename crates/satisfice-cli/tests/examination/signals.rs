@@ -224,7 +224,7 @@ fn a_killed_or_interrupted_collision_leaves_no_half_file() {
         let name = ["KILL", "INT"][case as usize % 2];
         let csv = place.path().join(format!("{case}.csv"));
         let file = csv.to_string_lossy();
-        let call = ["collide", "a.obj", "b.obj", "--threshold", "9", "--out", &file];
+        let call = ["collide", "a.obj", "b.obj", "--threshold", "6", "--out", &file];
         let mut child = command(place.path(), &call)
             .stdout(Stdio::null())
             .stderr(Stdio::null())
