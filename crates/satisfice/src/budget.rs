@@ -201,6 +201,11 @@ impl Budget {
         Ok(())
     }
 
+    /// Whether time is limited and evaluations are not: only then may a search depend on the clock.
+    pub(crate) fn is_timed(&self) -> bool {
+        self.time.is_some() && self.horizon.or(self.evaluations).is_none()
+    }
+
     /// Share used, in `[0, 1]`.
     #[expect(clippy::cast_precision_loss, reason = "a share needs no more than 53 bits")]
     pub(crate) fn share(&self, evaluations: u64, elapsed: Duration) -> f64 {

@@ -161,11 +161,9 @@ impl<S: Real> Space<S> {
         })
     }
 
-    /// Whether every point has a number: all axes are integer, or places of permutations whose number of orders is below 2^63.
-    pub(crate) fn is_lattice(&self) -> bool {
-        let discrete = self.axes.iter().all(|axis| axis.kind != AxisKind::Continuous);
-        let countable = || self.cardinality().is_some_and(|count| count < 9.2e18);
-        discrete && (self.permutations.is_empty() || countable())
+    /// Whether no axis is continuous, so that points can be told apart.
+    pub(crate) fn is_discrete(&self) -> bool {
+        self.axes.iter().all(|axis| axis.kind != AxisKind::Continuous)
     }
 
     /// Whether every coordinate of a position is inside. Cost: O(D).

@@ -321,11 +321,11 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
         self.ledger.in_any_order
     }
     fn seconds_an_evaluation(&self) -> Option<f64> {
-        let timed = self.evaluations_planned().is_none();
-        timed.then(|| self.ledger.seconds_an_evaluation()).flatten()
+        let seconds = || self.ledger.seconds_an_evaluation();
+        self.is_timed().then(seconds).flatten()
     }
     fn is_timed(&self) -> bool {
-        self.evaluations_planned().is_none() && self.ledger.budget.time.is_some()
+        self.ledger.budget.is_timed()
     }
     fn seconds_planned(&self) -> Option<f64> {
         self.ledger.budget.time.map(|time| time.as_secs_f64())

@@ -61,7 +61,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
             let from = candidates.ready;
             let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
             let to = candidates.live.min(from.saturating_add(chunk));
-            let is_due = !self.is_planned() && self.price.is_due(self.counts.evaluations);
+            let is_due = self.budget.is_timed() && self.price.is_due(self.counts.evaluations);
             let stopwatch = is_due.then(Stopwatch::start);
             problem.fitness_all(&candidates.solutions[from..to], &mut candidates.fitness[from..to]);
             candidates.ready = to;

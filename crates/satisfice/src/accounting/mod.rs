@@ -177,11 +177,6 @@ impl<T> Ledger<T> {
         }
     }
 
-    /// Whether evaluations are limited, so that nothing may depend on the clock.
-    fn is_planned(&self) -> bool {
-        self.budget.horizon.or(self.budget.evaluations).is_some()
-    }
-
     /// Share of the budget used, as of the last look at the clock.
     #[inline]
     pub(crate) fn share(&self) -> f64 {

@@ -468,11 +468,10 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Ok(running)
     }
 
-    /// Where only the clock limits a slice, its report depends on the machine anyway: then as many evaluations go on at once as there
+    /// Where time is limited and evaluations are not, a report depends on the machine anyway: then as many evaluations go on at once as there
     /// are threads, unless the budget says how many.
     pub(super) fn threads_at_once(&self, budget: &Budget) -> usize {
-        let free = budget.evaluations.or(budget.horizon).is_none() && budget.parallel.is_none();
-        if free && self.islands == 1 {
+        if budget.is_timed() && budget.parallel.is_none() && self.islands == 1 {
             Threads::most(self.threads)
         } else {
             1

@@ -284,6 +284,47 @@ fn niching_searches_once_no_source_finds_anything() {
     assert!(later > 1_000, "{later}");
 }
 
+/// No time is limited, so that nothing depends on what an evaluation takes.
+#[test]
+fn a_search_for_some_hits_does_not_look_at_the_clock() {
+    let bowl = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    let found = |wait: u64, named: bool| {
+        let slow = move |x: &[f64]| {
+            if wait > 0 {
+                std::thread::sleep(core::time::Duration::from_micros(wait));
+            }
+            bowl(x)
+        };
+        let budget = Budget::hits(25).and_patience(400);
+        let space = if named {
+            Space::new([satisfice::Axis::integer(-50, 50); 3]).unwrap()
+        } else {
+            Space::cube(3, -50.0, 50.0).unwrap()
+        };
+        let problem = from_fn(space, 12.0, slow).boxed().separation(0.1);
+        let mut search = Search::new().seed(6);
+        let report = if named {
+            let next = |x: &mut [f64], i: usize| {
+                x[i / 2] += [1.0, -1.0][i % 2];
+                x[i / 2].abs() <= 50.0
+            };
+            search.run(&problem.neighbours(6, next), &budget)
+        } else {
+            search.run(&problem, &budget)
+        };
+        let report = report.unwrap();
+        assert_eq!(report.hit_count(), 25);
+        let hits: Vec<_> = report.hits().map(|hit| hit.evaluation).collect();
+        (report.counts.evaluations, hits)
+    };
+    for named in [false, true] {
+        let quick = found(0, named);
+        for wait in [20, 3_000] {
+            assert_eq!(found(wait, named), quick, "{wait} microseconds, named {named}");
+        }
+    }
+}
+
 /// No time is limited, so that no source is charged with time.
 #[test]
 fn a_search_for_some_hits_finds_the_same_again() {
@@ -300,4 +341,24 @@ fn a_search_for_some_hits_finds_the_same_again() {
     };
     let first = search();
     assert_eq!([first; 3], [search(), search(), search()]);
+}
+
+/// From 21 places on, the orders of a permutation cannot be numbered in 64 bits. A search for a first hit goes by descents all the same, also
+/// where F has few values.
+#[test]
+fn permutations_are_searched_in_one_way_however_many_places_there_are() {
+    for places in [20_u32, 21, 60] {
+        let space = Space::new(satisfice::Axis::permutation(places)).unwrap();
+        let jumps = from_fn(space, -0.5, |x: &[f64]| {
+            let far = x.windows(2).filter(|pair| (pair[0] - pair[1]).abs() > 6.0);
+            (far.count() / 20).min(3) as f64
+        });
+        let report = Search::new()
+            .seed(3)
+            .run(&jumps, &Budget::evaluations(400))
+            .unwrap();
+        let of = |name: &str| report.sources.names.iter().position(|known| known == name);
+        let proposed = report.sources.rows.last().unwrap().proposed[of("descents").unwrap()];
+        assert!(proposed > 300, "{places} places: {proposed}");
+    }
 }

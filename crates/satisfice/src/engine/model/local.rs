@@ -257,7 +257,7 @@ impl Model {
         let mut best = self.first_allowed(given, ranking.into_iter().rev(), pending, None)?;
         let lengths = self.lengths();
         let mut longest = 0.5;
-        let jumps = given.context.space().is_lattice() && self.pool.limits.is_empty();
+        let jumps = given.context.space().is_discrete() && self.pool.limits.is_empty();
         let (rounds, closer) = if jumps && !best.0.is_probable(!pending.is_empty()) {
             COARSE
         } else {

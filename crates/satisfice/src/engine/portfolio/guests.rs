@@ -4,9 +4,9 @@ mod first_hit;
 mod flood_alone;
 mod lessons;
 mod member;
-mod opening;
 mod share;
 mod sizes;
+mod waking;
 mod weights;
 
 use core::ops::Range;
@@ -31,11 +31,11 @@ use crate::engine::{Ask, EngineConfig};
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::AxisKind;
+use crate::space::{Axis, AxisKind};
 use crate::state::{Part, Reader, State};
 
-/// A model of F is at work on spaces of at most `MODEL_AXES` axes where evaluations are limited and time leaves room for it, or where it is
-/// opened [later](opening). It leads while fewer than `MODELLED` evaluations have been made; from then on it competes by its yield.
+/// A model of F is at work on spaces of at most `MODEL_AXES` axes where time leaves room for it: under a limit of time alone it [wakes](waking)
+/// if F is expensive. It leads while fewer than `MODELLED` evaluations have been made; from then on it competes by its yield.
 const MODELLED: u64 = MOST_PROPOSALS;
 const MODEL_AXES: usize = 200;
 /// With fewer evaluations left none are spent on bounds: a split asks for several before there is anything to evaluate.
@@ -76,13 +76,23 @@ impl GuestKind {
     }
 }
 
+/// Whether an engine takes part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+enum Readiness {
+    /// It is told what comes before it is known whether F is expensive enough for it.
+    Asleep,
+    /// It may propose something.
+    Open,
+    /// It has nothing more to propose.
+    Closed,
+}
+
 /// An engine and its credit.
 struct Guest<S> {
     kind: GuestKind,
     engine: Member<S>,
     arm: Credit,
-    /// Whether it may still propose something.
-    open: bool,
+    readiness: Readiness,
     /// Its share of the batch under evaluation; where answers come in any order, of the batch in which it has proposed.
     own: Range<usize>,
     share: Share<S>,
@@ -159,7 +169,7 @@ impl<S: Real> Guest<S> {
             kind,
             engine,
             arm: Credit::default(),
-            open: true,
+            readiness: Readiness::Open,
             own: 0..0,
             share: Share::new(dimension),
         }
@@ -168,7 +178,7 @@ impl<S: Real> Guest<S> {
 
 impl<S> Guest<S> {
     fn is_ready(&self) -> bool {
-        self.open && self.own.is_empty()
+        self.readiness == Readiness::Open && self.own.is_empty()
     }
 
     /// Its index among the names of all sources.
@@ -196,12 +206,10 @@ impl<S: Real> Guests<S> {
     /// Begins a slice.
     pub(super) fn begin(&mut self, context: &dyn Context<S>) {
         let space = context.space();
-        let continuous = space.axes().iter().any(|axis| !axis.is_integer());
-        let all = space
-            .axes()
-            .iter()
-            .all(|axis| axis.kind() == AxisKind::Continuous);
-        self.continuous = all && is_smooth(context);
+        // Continuous coordinates, or keys of permutations.
+        let has_keys = space.axes().iter().any(|axis| !axis.is_integer());
+        let continuous = |axis: &Axis<S>| axis.kind() == AxisKind::Continuous;
+        self.continuous = space.axes().iter().all(continuous) && is_smooth(context);
         self.components = context.component_count() > 0;
         let is_permutation = space.axes().iter().all(|axis| axis.kind() == AxisKind::Place);
         self.ground = if self.continuous {
@@ -224,28 +232,27 @@ impl<S: Real> Guests<S> {
             GuestKind::Niching,
         ] {
             let is_of_use = match kind {
-                GuestKind::Cma => continuous && space.dimension() <= CMA_AXES,
+                GuestKind::Cma => has_keys && space.dimension() <= CMA_AXES,
                 GuestKind::Niching => self.continuous && space.dimension() <= CMA_AXES,
-                GuestKind::Flood => continuous,
-                GuestKind::Quadratic => {
-                    is_smooth(context) && (self.components || context.evaluations_planned().is_some())
-                }
+                GuestKind::Flood => has_keys,
+                GuestKind::Quadratic => is_smooth(context),
                 GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
-                GuestKind::Model => {
-                    context.evaluations_planned().is_some()
-                        && self.sizes.proposals > 0
-                        && space.dimension() <= MODEL_AXES
-                }
+                GuestKind::Model => self.sizes.proposals > 0 && space.dimension() <= MODEL_AXES,
+            };
+            let readiness = match kind {
+                GuestKind::Model if context.is_timed() => Readiness::Asleep,
+                GuestKind::Quadratic if context.is_timed() && !self.components => Readiness::Asleep,
+                _ => Readiness::Open,
             };
             if is_of_use {
-                self.open(kind, context);
+                self.add(kind, readiness, context);
             }
         }
     }
 
-    /// Opens the engine of a kind, unless it is left out; several side by side, where it works on several points one after another and answers
+    /// Adds the engine of a kind, unless it is left out; several side by side, where it works on several points one after another and answers
     /// come one by one.
-    fn open(&mut self, kind: GuestKind, context: &dyn Context<S>) {
+    fn add(&mut self, kind: GuestKind, readiness: Readiness, context: &dyn Context<S>) {
         if kind.is_left_out(self.without) {
             return;
         }
@@ -256,15 +263,17 @@ impl<S: Real> Guests<S> {
         for _ in 0..engines {
             let mut guest = Guest::new(kind, self.sizes, context.space().dimension());
             guest.arm = Credit::new(context.is_timed());
+            guest.readiness = readiness;
             guest.engine.begin(context);
             self.guests.push(guest);
         }
     }
 
-    /// One engine of each kind: those of a kind are next to each other, with the same credit.
+    /// One engine of each kind that takes part: those of a kind are next to each other, with the same credit.
     fn kinds(&self) -> impl Iterator<Item = &Guest<S>> {
         let kinds = self.guests.chunk_by(|a, b| a.kind == b.kind);
-        kinds.filter_map(|same| same.first())
+        let first = kinds.filter_map(|same| same.first());
+        first.filter(|guest| guest.readiness != Readiness::Asleep)
     }
 
     /// Begins a batch, in which no engine has a part yet.
@@ -304,7 +313,9 @@ impl<S: Real> Guests<S> {
     /// Whether a model of F is open and may be of use.
     pub(super) fn has_model(&self) -> bool {
         self.guests.iter().any(|guest| match &guest.engine {
-            Member::Model(model) => guest.open && model.is_useful(self.yardstick()) != Some(false),
+            Member::Model(model) => {
+                guest.readiness == Readiness::Open && model.is_useful(self.yardstick()) != Some(false)
+            }
             Member::Other(_) => false,
         })
     }
@@ -316,7 +327,7 @@ impl<S: Real> Guests<S> {
 
     /// Whether a model of F is or was at work.
     pub(super) fn modelled(&self) -> bool {
-        self.guests.iter().any(|guest| guest.kind == GuestKind::Model)
+        self.kinds().any(|guest| guest.kind == GuestKind::Model)
     }
 
     /// The engine for optima that are hard to reach, which searches when the others find nothing; if it has no part of the batch yet.
@@ -405,11 +416,11 @@ impl<S: Real> Guests<S> {
         }
         match answer {
             Ask::Covered => return GuestAnswer::Covered,
-            Ask::Exhausted => guest.open = false,
+            Ask::Exhausted => guest.readiness = Readiness::Closed,
             Ask::More => {}
         }
         if guest.kind == GuestKind::Model && guest.arm.evaluations() >= self.sizes.proposals {
-            guest.open = false;
+            guest.readiness = Readiness::Closed;
         }
         if proposed == 0 && calls == 0 {
             guest.arm.count(false, idle_cost);
@@ -422,7 +433,7 @@ impl<S: Real> Guests<S> {
         (self.sizes, self.continuous, self.components, self.guests.len()).save(state);
         (self.in_any_order, self.ground).save(state);
         for guest in &self.guests {
-            (guest.kind, guest.arm, guest.open).save(state);
+            (guest.kind, guest.arm, guest.readiness).save(state);
             (guest.own.start, guest.own.end).save(state);
             guest.share.save(state);
             guest.engine.save(state);
@@ -442,14 +453,14 @@ impl<S: Real> Guests<S> {
         (self.in_any_order, self.ground) = from.read()?;
         self.guests.clear();
         for _ in 0..count {
-            let (kind, arm, open) = from.read()?;
+            let (kind, arm, readiness) = from.read()?;
             let (start, end) = from.read()?;
             let share = Share::restored(dimension, from)?;
             let mut guest = Guest::new(kind, sizes, dimension);
             guest.engine.restore(from)?;
             self.guests.push(Guest {
                 arm,
-                open,
+                readiness,
                 own: start..end,
                 share,
                 ..guest

@@ -19,7 +19,7 @@ use crate::state::{Reader, Saved, State};
 /// Neighbours come late where an evaluation takes less than so many seconds: to predict each of dozens takes about as long.
 const CHEAP: f64 = 1e-5;
 
-/// The graph that the problem's neighbours span, explored from the hits.
+/// The graph that the problem's neighbours span, explored from the hits: at once, and late as soon as that is known to be better.
 #[derive(Debug)]
 pub(super) struct Neighbourhoods<S> {
     timing: NeighbourTiming,
@@ -28,8 +28,6 @@ pub(super) struct Neighbourhoods<S> {
 
 #[derive(Debug)]
 enum ByTiming<S> {
-    /// Before the first hit.
-    Undecided,
     AtOnce(Box<NeighboursAtOnce<S>>),
     Late(LateNeighbours<S>),
 }
@@ -38,19 +36,18 @@ impl<S: Real> Neighbourhoods<S> {
     pub(super) fn new(timing: NeighbourTiming) -> Self {
         Self {
             timing,
-            neighbours: ByTiming::Undecided,
+            neighbours: ByTiming::AtOnce(Box::default()),
         }
     }
 
     /// Forgets everything.
     pub(super) fn begin(&mut self) {
-        self.neighbours = ByTiming::Undecided;
+        self.neighbours = ByTiming::AtOnce(Box::default());
     }
 
     /// Whether there is a candidate to try.
     pub(super) fn has_more(&self) -> bool {
         match &self.neighbours {
-            ByTiming::Undecided => false,
             ByTiming::AtOnce(neighbours) => neighbours.has_more(),
             ByTiming::Late(neighbours) => neighbours.has_more(),
         }
@@ -71,8 +68,7 @@ impl<S: Real> Neighbourhoods<S> {
                 _ => continue,
             };
             self.hand_over(context);
-            match self.decided(context) {
-                ByTiming::Undecided => {}
+            match &mut self.neighbours {
                 ByTiming::AtOnce(neighbours) => {
                     neighbours.expand(context, visited, position, (fitness.f64(), is_hit));
                 }
@@ -81,31 +77,24 @@ impl<S: Real> Neighbourhoods<S> {
         }
     }
 
-    /// When neighbours come, by now decided.
-    fn decided(&mut self, context: &dyn Context<S>) -> &mut ByTiming<S> {
-        if matches!(self.neighbours, ByTiming::Undecided) {
-            let is_late = match self.timing {
-                NeighbourTiming::Auto => {
-                    let is_cheap = || context.seconds_an_evaluation().is_none_or(|price| price < CHEAP);
-                    context.evaluations_planned().is_none() && is_cheap()
-                }
-                timing => timing == NeighbourTiming::Late,
-            };
-            self.neighbours = if is_late {
-                ByTiming::Late(LateNeighbours::default())
-            } else {
-                ByTiming::AtOnce(Box::default())
-            };
+    /// Whether neighbours that have come at once so far are to come late from here on.
+    fn are_late(&self, context: &dyn Context<S>, at_once: &NeighboursAtOnce<S>) -> bool {
+        if self.timing == NeighbourTiming::Late {
+            return true;
         }
-        &mut self.neighbours
+        // As many predictions were made as there is time for. Outside lattices nobody knows which points were visited, and late neighbours
+        // repeat them.
+        if at_once.is_full() && context.space().is_discrete() {
+            return true;
+        }
+        let is_cheap = || context.seconds_an_evaluation().is_some_and(|price| price < CHEAP);
+        self.timing == NeighbourTiming::Auto && is_cheap()
     }
 
-    /// Lets neighbours come late from here on once as many predictions were made as there is time for. Only of a lattice, where it is known
-    /// which points were visited: elsewhere late neighbours repeat them.
+    /// Lets neighbours come late from here on, if that is better by now.
     fn hand_over(&mut self, context: &dyn Context<S>) {
         if let ByTiming::AtOnce(at_once) = &self.neighbours
-            && at_once.is_full()
-            && context.space().is_lattice()
+            && self.are_late(context, at_once)
         {
             let mut late = LateNeighbours::default();
             for (position, fitness) in at_once.hits(context.space().dimension()) {
@@ -123,7 +112,6 @@ impl<S: Real> Neighbourhoods<S> {
         position: &mut [S],
     ) -> bool {
         match &mut self.neighbours {
-            ByTiming::Undecided => false,
             ByTiming::AtOnce(neighbours) => neighbours.propose(context, visited, position),
             ByTiming::Late(neighbours) => neighbours.propose(context, position),
         }
@@ -138,13 +126,12 @@ impl<S: Real> Neighbourhoods<S> {
 
     pub(super) fn save(&self, state: &mut State, dimension: usize) {
         match &self.neighbours {
-            ByTiming::Undecided => Saved::save(&0_u8, state),
             ByTiming::AtOnce(neighbours) => {
-                Saved::save(&1_u8, state);
+                Saved::save(&0_u8, state);
                 neighbours.save(state, dimension);
             }
             ByTiming::Late(neighbours) => {
-                Saved::save(&2_u8, state);
+                Saved::save(&1_u8, state);
                 neighbours.save(state, dimension);
             }
         }
@@ -152,9 +139,8 @@ impl<S: Real> Neighbourhoods<S> {
 
     pub(super) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         self.neighbours = match from.read::<u8>()? {
-            0 => ByTiming::Undecided,
-            1 => ByTiming::AtOnce(Box::new(NeighboursAtOnce::restore(from)?)),
-            2 => ByTiming::Late(LateNeighbours::restore(from)?),
+            0 => ByTiming::AtOnce(Box::new(NeighboursAtOnce::restore(from)?)),
+            1 => ByTiming::Late(LateNeighbours::restore(from)?),
             _ => {
                 return Err(Error::State(
                     "its neighbourhoods are of an unknown kind".to_owned(),
@@ -167,7 +153,6 @@ impl<S: Real> Neighbourhoods<S> {
     /// Whether restored parts fit each other and the space.
     pub(super) fn fit(&self, dimension: usize) -> bool {
         match &self.neighbours {
-            ByTiming::Undecided => true,
             ByTiming::AtOnce(neighbours) => neighbours.fit(dimension),
             ByTiming::Late(neighbours) => neighbours.fit(dimension),
         }
@@ -179,32 +164,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_come_late_where_evaluations_are_cheap_and_not_limited() {
-        let is_late = |timing, planned, seconds_an_evaluation| {
-            let context = rooks::Rooks {
-                planned,
-                seconds_an_evaluation,
-                ..rooks::rooks()
-            };
-            let mut batch = Batch::new(2);
-            batch.push(&[3.0, 5.0]);
+    fn neighbours_come_late_once_evaluations_are_known_to_be_cheap() {
+        let are_late = |timing, prices: &[Option<f64>]| {
             let mut all = Neighbourhoods::new(timing);
-            all.expand_all(&context, None, (&batch, &[Outcome::Miss(2.0)]), |_| false);
-            assert!(matches!(all.neighbours, ByTiming::Undecided));
-            all.expand_all(&context, None, (&batch, &[Outcome::Hit(0.5)]), |_| false);
+            for (x, &seconds_an_evaluation) in (1..).zip(prices) {
+                let context = rooks::Rooks {
+                    seconds_an_evaluation,
+                    ..rooks::rooks()
+                };
+                let mut batch = Batch::new(2);
+                batch.push(&[f64::from(x), 5.0]);
+                all.expand_all(&context, None, (&batch, &[Outcome::Miss(2.0)]), |_| false);
+                all.expand_all(&context, None, (&batch, &[Outcome::Hit(0.5)]), |_| false);
+            }
             assert!(all.has_more() && all.fit(2));
             let mut state = State::default();
             all.save(&mut state, 2);
             all.begin();
             assert!(!all.has_more());
             all.restore(&mut Reader::new(&state)).unwrap();
+            // The first hit has four hundred neighbours but itself, and none is lost.
+            let (mut column, mut position) = (0, [0.0; 2]);
+            while all.propose(&rooks::rooks(), None, &mut position) {
+                column += usize::from(position[0] == 1.0);
+            }
+            assert!(column >= rooks::SIDE - 1, "{timing:?} {prices:?}: {column}");
             matches!(all.neighbours, ByTiming::Late(_))
         };
-        let auto = |planned, price| is_late(NeighbourTiming::Auto, planned, price);
-        assert!(auto(None, None) && auto(None, Some(1e-6)));
-        assert!(!auto(None, Some(2e-5)) && !auto(Some(100), None));
-        assert!(is_late(NeighbourTiming::Late, Some(100), Some(1.0)));
-        assert!(!is_late(NeighbourTiming::AtOnce, None, Some(1e-6)));
+        let auto = |prices: &[_]| are_late(NeighbourTiming::Auto, prices);
+        assert!(auto(&[Some(1e-6)]) && auto(&[None, Some(1e-6)]) && auto(&[Some(2e-5), Some(1e-6)]));
+        assert!(!auto(&[None]) && !auto(&[Some(2e-5)]));
+        assert!(are_late(NeighbourTiming::Late, &[None]));
+        assert!(!are_late(NeighbourTiming::AtOnce, &[Some(1e-6)]));
     }
 
     #[test]

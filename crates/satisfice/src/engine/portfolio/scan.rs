@@ -46,7 +46,7 @@ pub(super) struct Scan {
 impl Scan {
     pub(super) fn new<S: Real>(space: &Space<S>, unprobed: bool) -> Self {
         let count = space.cardinality();
-        let count = count.filter(|&count| space.is_lattice() && count < 9e15);
+        let count = count.filter(|&count| space.is_discrete() && count < 9e15);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,

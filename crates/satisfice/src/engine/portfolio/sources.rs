@@ -172,7 +172,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.position = vec![S::zero(); dimension];
         self.hits.clear();
         self.tally = Tally::default();
-        self.visited = space.is_lattice().then(|| Visited::new(space));
+        self.visited = space.is_discrete().then(|| Visited::new(space));
         let unprobed = Probes::leave_no_room(space, PROBES, context.evaluations_planned());
         self.scan = Scan::new(space, unprobed);
         self.swarms.begin(dimension);
@@ -197,8 +197,8 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.guests.begin(context);
         // Steps that were good in the slice before are likely to be good in this one.
         match &mut self.steps {
-            Some(steps) => steps.begin(),
-            None => self.steps = Some(Translations::new(space)),
+            Some(steps) if follows && steps.fit(space) => steps.begin(),
+            _ => self.steps = Some(Translations::new(space)),
         }
         self.neighbourhoods.begin();
     }

@@ -43,6 +43,12 @@ fn rate(trials: f64, hits: f64) -> f64 {
     (hits + UNTRIED) / (trials + 1.0)
 }
 
+fn integer_axes<S: Real>(space: &Space<S>) -> Vec<usize> {
+    let axes = space.axes().iter().enumerate();
+    axes.filter_map(|(j, axis)| axis.is_integer().then_some(j))
+        .collect()
+}
+
 /// The steps, each with a cursor into the list of hits: every step meets every hit once, best steps first. Memory: O(steps),
 /// not O(hits x steps).
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -57,9 +63,7 @@ pub(super) struct Translations<S> {
 impl<S: Real> Translations<S> {
     /// The unit steps along the integer axes, each with a prior of one hit in two trials.
     pub(super) fn new(space: &Space<S>) -> Self {
-        let units: Vec<usize> = (0..space.dimension())
-            .filter(|&j| space.axes()[j].is_integer())
-            .collect();
+        let units = integer_axes(space);
         let hopeful = Step::new(2.0, 1.0);
         Self {
             steps: vec![hopeful; 2 * units.len()],
@@ -80,6 +84,11 @@ impl<S: Real> Translations<S> {
                 S::one()
             },
         ))
+    }
+
+    /// Whether they are steps of a space with the same integer axes as this one.
+    pub(super) fn fit(&self, space: &Space<S>) -> bool {
+        self.units == integer_axes(space)
     }
 
     /// Begins a new list of hits.

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::{GuestKind, Guests};
+use super::{GuestKind, Guests, Readiness};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::Origin;
@@ -21,6 +21,7 @@ impl<S: Real> Guests<S> {
         (origin, tag): (Origin, Option<Tag>),
         pace: &mut Pace<PLACES>,
     ) {
+        self.look_at_price(context);
         let hits = outcomes.iter().any(|outcome| outcome.is_hit());
         // An engine takes start points for what they are, and hits of others as if exhaustion had found them.
         let elsewhere = match origin {
@@ -41,7 +42,12 @@ impl<S: Real> Guests<S> {
             }
             let guest = &mut self.guests[index];
             let learns_from_all = guest.kind == GuestKind::Model || elsewhere == Origin::Start;
-            if guest.open && (learns_from_all || hits) {
+            let listens = match guest.readiness {
+                Readiness::Asleep => context.seconds_an_evaluation().is_none(),
+                Readiness::Open => true,
+                Readiness::Closed => false,
+            };
+            if listens && (learns_from_all || hits) {
                 self.part.clear();
                 self.outcomes.clear();
                 for (i, outcome) in outcomes.iter().enumerate() {
@@ -87,7 +93,7 @@ impl<S: Real> Guests<S> {
             return;
         }
         guest.own = 0..0;
-        if guest.open {
+        if guest.readiness == Readiness::Open {
             let watch = pace.learns(at);
             let (points, outcomes) = guest.share.told();
             guest.engine.tell(context, points, outcomes, Origin::Engine);

@@ -55,7 +55,7 @@ impl<S: Real> LateNeighbours<S> {
 
     /// Enters an evaluated point.
     pub(super) fn expand(&mut self, context: &dyn Context<S>, position: &[S], fitness: f64, is_hit: bool) {
-        if !context.space().is_lattice() {
+        if !context.space().is_discrete() {
             let room = is_hit || self.known.len() < MOST_KNOWN;
             if !room || !self.known.insert(key(position)) {
                 return;
