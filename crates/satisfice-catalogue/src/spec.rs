@@ -12,8 +12,8 @@ use crate::settings::Settings;
 
 /// A run: a problem, an engine, a seed and a budget.
 ///
-/// Under a budget of evaluations the same specification gives the same report, apart from times, on any machine and any
-/// number of threads. As JSON it is the first part of a [`RunReport`](crate::RunReport).
+/// Under a budget of evaluations the same specification gives the same report, apart from times, on any number of threads; on
+/// another platform the last bit of `exp` or `sin` may change it. As JSON it is the first part of a [`RunReport`](crate::RunReport).
 ///
 /// ```
 /// use satisfice_catalogue::RunSpec;

@@ -89,7 +89,7 @@ def find(
         Wall time in seconds. `time`, `evaluations` or `patience` is required.
     evaluations : int, optional
         Evaluations. Candidates that are known already count, so that the search ends. With it and without `time`, the
-        same seed gives the same report, apart from times, on every machine.
+        same seed gives the same report, apart from times, on the same platform.
     hits : int, optional
         Also end at this number of distinct hits.
     patience : int, optional
