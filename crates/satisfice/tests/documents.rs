@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use satisfice::catalogue::Parameter;
 use satisfice::engine;
 
 const README: &str = include_str!("../../../README.md");
@@ -48,24 +49,34 @@ fn page_of_engines() -> String {
             cell(spec.citation)
         );
     }
+    page += &format!("\nEvery engine also takes:\n{}", table(engine::COMMON_PARAMETERS));
     for spec in engine::all() {
-        if spec.parameters().is_empty() {
-            continue;
-        }
-        page += &format!(
-            "\n## {}\n\n| parameter | default | meaning |\n|---|---|---|\n",
-            spec.name
-        );
-        for parameter in spec.parameters() {
-            page += &format!(
-                "| `{}` | {} | {} |\n",
-                parameter.name,
-                parameter.default_text(),
-                cell(parameter.summary)
-            );
+        if !spec.parameters().is_empty() {
+            page += &format!("\n## {}\n{}", spec.name, table(spec.parameters()));
         }
     }
     page
+}
+
+/// A table of parameters.
+fn table(parameters: &[Parameter]) -> String {
+    let mut table = "\n| parameter | default | allowed | meaning |\n|---|---|---|---|\n".to_owned();
+    for parameter in parameters {
+        table += &format!(
+            "| `{}` | {} | {} | {} |\n",
+            parameter.name,
+            parameter.default_text(),
+            cell(&parameter.allowed()),
+            cell(parameter.summary)
+        );
+    }
+    table
+}
+
+/// Links of the API's docs lead nowhere on the page.
+#[test]
+fn the_page_of_engines_has_no_links_into_the_api() {
+    assert!(!page_of_engines().contains("](crate::") && !page_of_engines().contains("](super::"));
 }
 
 #[test]

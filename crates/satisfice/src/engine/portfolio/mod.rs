@@ -127,9 +127,9 @@ engine_settings! {
     /// # Ok::<(), satisfice::Error>(())
     /// ```
     pub struct Portfolio {
-        /// Candidates proposed at once. By default as many as [the budget](crate::Budget::with_parallel) says can go on at once, 4 in the
-        /// first batch (one where a model of F is at work), and one more each 2,048 evaluations, up to 32: few learn sooner, many cost less time.
-        /// Under a limit of time alone, one more each 256 evaluations of an F below 2 microseconds.
+        /// Candidates proposed at once. By default as many as evaluations go on at once, or more: one for every 2,048 evaluations made, up
+        /// to 32, and 4 in the first batch, unless a model of F is at work. Under a limit of time alone it is one for every 256 evaluations if
+        /// F takes less than 2 microseconds. Small batches learn sooner, large ones take less time.
         pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.
         pub swarms: usize = 2, 1..=1000;
@@ -139,11 +139,11 @@ engine_settings! {
         pub alpha: f64 = 0.75, 0.0..=10.0;
         /// Evaluations without a hit after which a swarm starts anew.
         pub restart: usize = 1000, 1..=1_000_000_000;
-        /// When the neighbours that the problem names become candidates: at once for most hits an evaluation, late to save time.
-        /// By default late where time alone is limited and F takes less than 10 microseconds. On a lattice all are late
-        /// once two million were predicted.
+        /// When the neighbours that the problem names become candidates: `at-once` finds more per evaluation, `late` takes less time. By default
+        /// `late` if only time is limited and F takes less than 10 microseconds, otherwise `at-once`. On a lattice always `late` after two
+        /// million predicted neighbours.
         pub neighbours: NeighbourTiming = NeighbourTiming::Auto;
-        /// A source to leave out: to see what it earns, or where it does not pay, such as the model of a cheap F.
+        /// A source to leave out: to measure what it contributes, or because it does not pay, as the model if F is cheap.
         pub without: Omitted = Omitted::Nothing;
     }
 }
@@ -151,7 +151,7 @@ engine_settings! {
 impl EngineConfig for Portfolio {
     const NAME: &'static str = "portfolio";
     const SUMMARY: &'static str = "descents, CMA-ES, quadratic models, niching, a model of expensive F, regions, flood fill, recombined hits and swarms that compete for evaluations by their yield";
-    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Powell 2004, Beyer, Sendhoff 2017, Ursem 1999, Luby et al. 1993, Agrawal, Goyal 2012";
+    const CITATION: &'static str = "this project; parts after Chen et al. 2012, Igel et al. 2006, Powell 2004, Beyer, Sendhoff 2008, Ursem 1999, Luby et al. 1993, Agrawal, Goyal 2012";
 
     /// Whether a space is enumerated depends on how much the budget has left.
     fn is_scheduled(&self) -> bool {
