@@ -328,15 +328,21 @@ fn check_names(
     }
 }
 
+/// Refuses a name that is none of an engine or an exact method.
+pub(super) fn check_engine(name: &str) -> Result<(), Error> {
+    if exact::find(name).is_some() || engine::find(name).is_ok() {
+        return Ok(());
+    }
+    let engines = engine::all().iter().map(|entry| entry.name);
+    let known = engines.chain(exact::METHODS.iter().map(|method| method.name));
+    Err(satisfice::Error::unknown("engine", name, known).into())
+}
+
 /// The engines with all their parameters, and their labels.
 fn engines(choices: &[Choice]) -> Result<Vec<(RunSpec, String)>, Error> {
     let mut found: Vec<(RunSpec, String)> = Vec::new();
     for choice in choices {
-        if exact::find(&choice.name).is_none() && engine::find(&choice.name).is_err() {
-            let engines = engine::all().iter().map(|entry| entry.name);
-            let known = engines.chain(exact::METHODS.iter().map(|method| method.name));
-            return Err(satisfice::Error::unknown("engine", &choice.name, known).into());
-        }
+        check_engine(&choice.name)?;
         for settings in grid::combinations(&choice.settings) {
             let label = grid::label(&choice.name, &settings);
             let mut spec = RunSpec::new(&choice.name);

@@ -6,6 +6,7 @@ use std::time::Duration;
 use satisfice_catalogue::quantity;
 use serde::{Deserialize, Serialize};
 
+use super::plan::check_engine;
 use super::suite::{Choice, Part, Suite};
 use crate::error::Error;
 
@@ -26,8 +27,8 @@ impl Selection {
     /// The part of a suite that is selected.
     ///
     /// # Errors
-    /// [`Error::Run`] for a problem that is not in the suite, with the nearest; [`Error::Suite`] for a budget that is not, and for engines
-    /// without the one that the suite compares with the others.
+    /// [`Error::Run`] for an engine that is unknown and a problem that is not in the suite, with the nearest; [`Error::Suite`] for a budget
+    /// that is not, and for engines without the one that the suite compares with the others.
     pub fn apply(&self, mut suite: Suite) -> Result<Suite, Error> {
         self.check(&suite)?;
         for part in &mut suite.parts {
@@ -48,6 +49,7 @@ impl Selection {
     }
 
     fn check(&self, suite: &Suite) -> Result<(), Error> {
+        self.engines.iter().try_for_each(|name| check_engine(name))?;
         if let Some(regret) = &suite.regret {
             let name = regret.engine.split(' ').next().unwrap_or(&regret.engine);
             if !self.engines.is_empty() && !self.engines.iter().any(|engine| engine == name) {
@@ -212,6 +214,30 @@ mod tests {
             (suite.parts.len(), suite.parts[0].options[0].1.clone()),
             (1, vec!["1s".to_owned()])
         );
+    }
+
+    #[test]
+    fn an_engine_that_is_misspelt_is_told_before_one_that_is_missing() {
+        let suite = Suite::parse("mine", &format!("{SUITE}[regret]\nengine = \"walk\"")).unwrap();
+        let refuse = |name: &str| {
+            let engines = vec![name.to_owned()];
+            let selection = Selection {
+                engines,
+                ..Selection::default()
+            };
+            selection.apply(suite.clone()).unwrap_err().to_string()
+        };
+        assert!(
+            refuse("walc").contains("unknown engine `walc`, did you mean `walk`?"),
+            "{}",
+            refuse("walc")
+        );
+        for known in ["random", "grid"] {
+            assert!(
+                refuse(known).contains("choose it too, `--engines walk,"),
+                "{known}"
+            );
+        }
     }
 
     #[test]
