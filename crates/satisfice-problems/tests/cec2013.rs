@@ -335,8 +335,15 @@ fn scoring_closes_the_hole() {
 #[test]
 fn missing_and_malformed_data() {
     let error = |problem: usize, data: &str| Cec2013::new(problem, 1e-4, data).unwrap_err().to_string();
-    assert!(error(11, "").contains("https://github.com/mikeagn/CEC2013"));
-    assert!(error(11, "no/such/folder").contains("optima.dat is not allowed: a readable file"));
+    assert_eq!(
+        error(12, ""),
+        "data is missing: problem 12 needs the folder `data` of https://github.com/mikeagn/CEC2013; set data=DIR"
+    );
+    let unread = error(11, "no/such/folder");
+    assert!(
+        unread.starts_with("cannot read no/such/folder/optima.dat: ") && unread.contains("https://"),
+        "{unread}"
+    );
     assert!(error(0, "").contains("from 1 to 20") && error(21, "").contains("from 1 to 20"));
     assert!(Cec2013::new(1, 0.0, "").is_err() && Cec2013::new(1, f64::NAN, "").is_err());
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));

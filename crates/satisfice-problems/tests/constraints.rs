@@ -253,8 +253,5 @@ fn dimacs_files() {
 
     let missing = Params::with(Sat::PARAMETERS, "sat", [("file", "no/such/file.cnf")]).unwrap();
     let error = Sat::from_params(&missing).unwrap_err().to_string();
-    assert!(
-        error.starts_with("file = no/such/file.cnf is not allowed: a readable file"),
-        "{error}"
-    );
+    assert!(error.starts_with("cannot read no/such/file.cnf: "), "{error}");
 }

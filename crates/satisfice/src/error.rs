@@ -39,10 +39,26 @@ pub enum Error {
         what: String,
         /// The name given.
         name: String,
-        /// The known name that is nearest to it, if any is near.
+        /// The known name that is nearest to it, if any is near and no other one as near.
         nearest: Option<String>,
         /// Every known name.
         known: Vec<String>,
+    },
+    /// A parameter that the others ask for.
+    #[error("{parameter} is missing: {reason}")]
+    Missing {
+        /// Name of the parameter.
+        parameter: String,
+        /// What asks for it, and how to give it.
+        reason: String,
+    },
+    /// A file that a parameter names cannot be read.
+    #[error("cannot read {path}: {reason}")]
+    File {
+        /// The file.
+        path: String,
+        /// The system's message.
+        reason: String,
     },
     /// A budget that would never end, or end before it began.
     #[error("the budget is not usable: {0}")]
@@ -103,7 +119,8 @@ fn suggestion(nearest: Option<&str>) -> String {
 }
 
 impl Error {
-    /// An [`Error::Unknown`] with the nearest of the known names, by Damerau-Levenshtein distance; capitals and hyphens do not count.
+    /// An [`Error::Unknown`] with the nearest of the known names, if one is near and no other as near, by Damerau-Levenshtein distance;
+    /// capitals and hyphens do not count.
     #[must_use]
     pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         let mut listed = std::collections::BTreeSet::new();
@@ -111,18 +128,21 @@ impl Error {
         let known: Vec<String> = known.map(str::to_owned).collect();
         let plain = |name: &str| name.to_lowercase().replace(['-', '_', ' '], "");
         let asked = plain(name);
-        let nearest = known
-            .iter()
-            .map(|k| {
-                let plain = plain(k);
-                let distance = strsim::damerau_levenshtein(&asked, &plain);
-                // A part of a name is near to it, and nearer to a shorter one.
-                let is_part = asked.len() > 2 && plain.contains(&asked);
-                (if is_part { distance.min(1) } else { distance }, distance, k)
-            })
-            .min()
-            .filter(|(distance, _, _)| *distance <= 2.max(name.chars().count() / 3))
-            .map(|(_, _, k)| k.clone());
+        let far = |k: &String| {
+            let plain = plain(k);
+            let distance = strsim::damerau_levenshtein(&asked, &plain);
+            // A part of a name is near to it, and nearer to a shorter one.
+            let is_part = asked.len() > 2 && plain.contains(&asked);
+            (if is_part { distance.min(1) } else { distance }, distance)
+        };
+        let far: Vec<(usize, usize)> = known.iter().map(far).collect();
+        let least = far.iter().min();
+        let least = least.filter(|least| least.0 <= 2.max(name.chars().count() / 3));
+        let mut nearest = known.iter().zip(&far).filter(|(_, far)| Some(*far) == least);
+        let nearest = match (nearest.next(), nearest.next()) {
+            (Some((only, _)), None) => Some(only.clone()),
+            _ => None,
+        };
         Self::Unknown {
             what: what.to_owned(),
             name: name.to_owned(),
@@ -170,6 +190,15 @@ mod tests {
             };
             assert_eq!(nearest.as_deref(), wanted, "{name}");
         }
+    }
+
+    #[test]
+    fn of_several_names_that_are_equally_near_none_is_suggested() {
+        let error = Error::unknown("value of `problem`", "g7", ["g01", "g02", "g04"]);
+        assert_eq!(
+            error.to_string(),
+            "unknown value of `problem` `g7`; known: g01, g02, g04"
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use satisfice::Error;
 
-const WHERE: &str = "the folder `data` of the suite, https://github.com/mikeagn/CEC2013";
+pub(super) const WHERE: &str = "the folder `data` of https://github.com/mikeagn/CEC2013";
 
 /// Shifts and rotations of one composition function.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,13 +24,6 @@ impl SuiteData {
         dimension: usize,
         rotated: bool,
     ) -> Result<Self, Error> {
-        if folder.is_empty() {
-            return Err(Error::parameter(
-                "data",
-                "",
-                format!("problems 11 to 20 read their data from {WHERE}"),
-            ));
-        }
         let mut shifts = table(folder, "optima.dat", parts, dimension)?;
         shifts.truncate(parts);
         for shift in &mut shifts {
@@ -71,7 +64,10 @@ impl SuiteData {
 fn table(folder: &str, name: &str, rows: usize, columns: usize) -> Result<Vec<Vec<f64>>, Error> {
     let path = Path::new(folder).join(name);
     let bad = |reason: String| Error::parameter("data", path.display(), format!("{reason}; it is {WHERE}"));
-    let text = std::fs::read_to_string(&path).map_err(|error| bad(format!("a readable file ({error})")))?;
+    let text = std::fs::read_to_string(&path).map_err(|error| Error::File {
+        path: path.display().to_string(),
+        reason: format!("{error}; it is of {WHERE}"),
+    })?;
     let parse = |line: &str| -> Result<Vec<f64>, Error> {
         let words = line.split_whitespace();
         let number = |word: &str| word.parse::<f64>().ok().filter(|x| x.is_finite());

@@ -6,7 +6,7 @@ use satisfice::{Axis, Error, Located, SatisficingProblem, Space};
 
 use super::basic;
 use super::composition::{Composition, recipe};
-use super::data::SuiteData;
+use super::data::{SuiteData, WHERE};
 use super::optima;
 use crate::lattice::description;
 
@@ -110,9 +110,16 @@ impl Cec2013 {
     /// data; problems 1 to 10 need none.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a number or accuracy out of range, and for data that is missing or malformed.
+    /// [`Error::Parameter`] for a number or accuracy out of range and for malformed data, [`Error::Missing`] for a problem that needs data,
+    /// and [`Error::File`] for data that cannot be read.
     pub fn new(problem: usize, accuracy: f64, data: &str) -> Result<Self, Error> {
         Self::build(problem, accuracy, data, |function, parts, dimension, rotated| {
+            if data.is_empty() {
+                return Err(Error::Missing {
+                    parameter: "data".to_owned(),
+                    reason: format!("problem {problem} needs {WHERE}; set data=DIR"),
+                });
+            }
             SuiteData::read(data, function, parts, dimension, rotated)
         })
     }

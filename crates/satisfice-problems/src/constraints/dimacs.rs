@@ -9,9 +9,12 @@ use satisfice::Error;
 /// Larger formulas and graphs are refused: a point of them would not fit in memory.
 const LARGEST: usize = 100_000;
 
-/// Reads `path`; errors name the parameter `file`.
+/// Reads `path`.
 pub(super) fn read(path: &str) -> Result<String, Error> {
-    let bad = |reason: String| Error::parameter("file", path, format!("a readable file ({reason})"));
+    let bad = |reason: String| Error::File {
+        path: path.to_owned(),
+        reason,
+    };
     let mut text = String::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_string(&mut text));
     match read.map_err(|error| bad(error.to_string()))? as u64 {
