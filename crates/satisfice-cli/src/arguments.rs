@@ -9,6 +9,7 @@ use satisfice_catalogue::options::OPTIONS;
 use satisfice_catalogue::{RunOption, RunSpec};
 
 pub(crate) use crate::collide::arguments::CollideArguments;
+pub(crate) use crate::program::arguments::ProgramArguments;
 use crate::quantity;
 use crate::reference::Patience;
 
@@ -87,7 +88,7 @@ Examples:
       Run the default engine for a second on two colliding teapots.
   satisfice run queens --set n=6 --engine random --evaluations 200000 --json -
       Write a report as JSON to stdout. Under a budget of evaluations the same command gives the same report, apart from times,
-      on any machine and any number of threads.
+      on any number of threads; on another platform the last bit of `exp` or `sin` may change it.
   satisfice run rastrigin --set dimension=2 --engine latest-hit-qpso --engine-set particles=60 --time 2s --plot hits.svg
       Set parameters of the problem and of the engine, and draw hits against evaluations and time.
   satisfice run shell --time 50ms --slices 10 --threads 0
@@ -158,59 +159,6 @@ pub(crate) struct RunArguments {
     /// Write a page to look into: hits over any axes, how they came in, a table; one file that works offline. Not for programs.
     #[arg(long, value_name = "FILE.html", value_hint = ValueHint::FilePath)]
     pub(crate) page: Option<PathBuf>,
-}
-
-/// A fitness that other processes compute.
-#[derive(Debug, Args)]
-pub(crate) struct ProgramArguments {
-    /// Start this program for each point: {x} stands for all coordinates, {NAME} for one. It writes the value as its last line. No
-    /// shell is involved.
-    #[arg(long, value_name = "COMMAND", group = "evaluator")]
-    pub(crate) program: Option<String>,
-
-    /// Start this program once for each worker: it reads and writes lines of JSON.
-    #[arg(long, value_name = "COMMAND", group = "evaluator")]
-    pub(crate) worker: Option<String>,
-
-    /// The space of a program, as a TOML file.
-    #[arg(long, value_name = "FILE.toml", value_hint = ValueHint::FilePath, requires = "evaluator")]
-    pub(crate) space: Option<PathBuf>,
-
-    /// delta of a program: a hit is a point whose value is below it.
-    #[arg(
-        long,
-        value_name = "DELTA",
-        allow_hyphen_values = true,
-        requires = "evaluator"
-    )]
-    pub(crate) threshold: Option<f64>,
-
-    /// Processes at a time.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::workers, allow_hyphen_values = true, requires = "evaluator")]
-    pub(crate) workers: u16,
-
-    /// Give up an evaluation after this time, and end its process.
-    #[arg(long, value_name = "TIME", value_parser = satisfice_catalogue::quantity::time, requires = "evaluator")]
-    pub(crate) timeout: Option<Duration>,
-
-    /// Retry a failed evaluation up to this many times. If it still fails, its value counts as NaN, and the report proves nothing.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::retries, allow_hyphen_values = true, requires = "evaluator")]
-    pub(crate) retries: u32,
-
-    /// Let /bin/sh run the program. What stands for coordinates is quoted where the shell would not read it literally.
-    #[arg(long, requires = "evaluator")]
-    pub(crate) shell: bool,
-
-    /// Enter values in the order of the points: the same report for any number of workers. Workers may have to wait; --parallel gives them more.
-    #[arg(long, requires = "evaluator")]
-    pub(crate) ordered: bool,
-}
-
-impl ProgramArguments {
-    /// Whether the fitness is that of a program.
-    pub(crate) fn is_given(&self) -> bool {
-        self.program.is_some() || self.worker.is_some()
-    }
 }
 
 /// Refuses two values for one parameter: which of them is meant cannot be known.
@@ -376,21 +324,22 @@ impl<const EVERY_SEARCH: bool> Args for Options<EVERY_SEARCH> {
 #[command(after_help = "\
 Examples:
   satisfice bench experiment-one-smoke --out results
-      Run the suite of this name. The folder results gets report.html and its figures, results.jsonl (one line per run),
-      summary.json, and ioh, which IOHanalyzer reads.
+      Run the suite of this name. The folder results gets report.html and its figures, compare.html to look into, results.jsonl
+      (one line per run), summary.json, suite.toml (what was run), and ioh, which IOHanalyzer reads.
   satisfice bench mine.toml --seeds 0..16 --engines portfolio,random
       Run two engines and 16 seeds instead of those of the file.
   satisfice bench regret --seeds 0..2 --budgets 50,200 --out regret
       Compare the default engine with the best of all others at two of the suite's budgets; regret/regret.md has the tables.
 
 A suite is a file such as this; all values of a list are run:
-  seeds = \"0..8\"
+  seeds = \"0..8\"                   # a part may have its own, and a name
   [[part]]
   engines = [\"random\", { name = \"latest-hit-qpso\", particles = [10, 30] }]
   problems = [{ name = \"rastrigin\", dimension = [2, 3] }, \"queens\"]
-  evaluations = 100_000            # and / or time = \"100ms\", hits, slices, probes, islands, parallel
+  evaluations = 100_000            # and / or time = \"100ms\", hits, patience, slices, probes, islands, parallel
   at-evaluations = [1000, 10_000]  # and / or at-times = [\"10ms\"]: where hits are counted
-  against = \"random\"             # the engine that the others are compared with, seed by seed
+  against = \"random\"               # the engine that the others are compared with, seed by seed
+  beside = { queens = \"backtracking: all 92\" }   # printed beside the figures of a problem
 
 Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command continues an
 interrupted sweep: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.

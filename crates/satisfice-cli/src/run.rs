@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use satisfice_catalogue::{Catalogue, Instance, Progress, RunControl, RunSpec, json};
+use anyhow::anyhow;
+use satisfice::engine;
+use satisfice_catalogue::{Catalogue, Instance, ProblemSpec, Progress, RunControl, RunSpec, json};
 use satisfice_draw::plot::{self, Format};
 
 use crate::arguments::{DEFAULT_ENGINE, RunArguments, check_once};
@@ -23,7 +25,7 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     check_once("--set", &arguments.set)?;
     arguments.search.check()?;
     let named = arguments.problem.as_deref();
-    let known = named.map(|name| catalogue.find(name)).transpose()?;
+    let known = named.map(|name| problem(catalogue, name)).transpose()?;
     let resume = arguments.resume.as_deref();
     let resumed = resume.map(|path| checkpoint::read(path, named)).transpose()?;
     let known = match (known, &resumed) {
@@ -33,6 +35,7 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
             "no problem is named: `satisfice list` shows them all; or give --program, --worker or --resume"
         ),
     };
+    arguments.program.check_unused(known.parameters)?;
     let set = match &resumed {
         Some((_, saved)) if arguments.set.is_empty() => saved.problem_parameters.texts(),
         _ => arguments.set.clone(),
@@ -108,6 +111,14 @@ pub(crate) fn run(arguments: &RunArguments, catalogue: &Catalogue) -> anyhow::Re
     steps.step(keeper.map_or(Ok(()), Keeper::finish));
     steps.outcome()?;
     Ok(summary::exit_code(&report))
+}
+
+/// The problem of this name.
+fn problem<'a>(catalogue: &'a Catalogue, name: &str) -> anyhow::Result<&'a ProblemSpec> {
+    catalogue.find(name).map_err(|error| match engine::find(name) {
+        Ok(_) => anyhow!("`{name}` is an engine: run PROBLEM --engine {name}"),
+        Err(_) => error.into(),
+    })
 }
 
 /// The files that the arguments name.

@@ -373,10 +373,35 @@ fn options_of_programs_are_refused_without_one() {
         "--ordered",
     ] {
         let error = common::error_in(place.path(), &format!("run queens --evaluations 20 {option}"));
-        assert!(
-            error.contains("--program <COMMAND>|--worker <COMMAND>"),
-            "{option}: {error}"
+        let name = option.split(' ').next().unwrap();
+        let says = format!("error: {name} is for --program and --worker: leave it out");
+        assert_eq!(error, says, "{option}");
+    }
+    for (problem, own) in [
+        ("teapots", "delta=0.5"),
+        ("rastrigin --set dimension=3", "threshold=0.5"),
+    ] {
+        let error = common::error_in(place.path(), &format!("run {problem} --threshold 0.5"));
+        let says = format!(", or set that of the problem: --set {own}");
+        assert!(error.ends_with(&says), "{problem}: {error}");
+    }
+    let error = common::error_in(place.path(), "run --space space.toml --threshold 3");
+    assert!(error.contains("or give --program"), "{error}");
+}
+
+#[test]
+fn hits_without_a_separation_are_remarked() {
+    let place = folder("");
+    let says = "note: wide.toml gives no separation: answers that differ in the last digit count as different hits\n";
+    let wide = SPACE.replace("integer = true\n", "");
+    for (separation, says) in [("", says), ("separation = 0.1\n", ""), ("separation = 0\n", "")] {
+        fs::write(place.path().join("wide.toml"), format!("{separation}{wide}")).unwrap();
+        let mut command = common::command(
+            place.path(),
+            "run --space wide.toml --threshold 20 --evaluations 8 --program",
         );
+        let done: Done = command.arg(NEAR).output().unwrap().into();
+        assert_eq!((done.code, done.stderr.as_str()), (0, says), "{separation}");
     }
 }
 

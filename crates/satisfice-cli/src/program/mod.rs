@@ -3,6 +3,7 @@
 //! Each of them has a thread that gives it one point at a time. The search gives out points under tickets and takes the values
 //! in any order.
 
+pub(crate) mod arguments;
 mod evaluator;
 mod process;
 mod shell;
@@ -59,12 +60,9 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         .may_read(commands.flat_map(|text| split(text).unwrap_or_default()))
         .writes("--json", arguments.json.as_ref())
         .check()?;
-    let space = SpaceFile::read(
-        given
-            .space
-            .as_deref()
-            .context("--space is missing: name a TOML file")?,
-    )?;
+    let path = given.space.as_deref();
+    let path = path.context("--space is missing: name a TOML file")?;
+    let space = SpaceFile::read(path)?;
     let threshold = given
         .threshold
         .context("--threshold is missing: a hit is a point whose value is below it")?;
@@ -72,9 +70,9 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     let engine = arguments.engine.as_deref().unwrap_or(DEFAULT_ENGINE);
     let mut spec = arguments.search.spec(engine)?;
     arguments.slices.enter(&mut spec);
-    if given.workers > 1 && !given.ordered {
+    let workers = usize::from(given.workers());
+    if workers > 1 && !given.ordered {
         // The engine has to know how many answers it does not wait for.
-        let workers = usize::from(given.workers);
         spec.budget.parallel = spec.budget.parallel.or(Some(workers));
     }
     let search = search(&spec)?;
@@ -83,7 +81,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         way,
         space,
         timeout: given.timeout,
-        retries: given.retries,
+        retries: given.retries(),
         unwanted: false.into(),
     });
     let cancel = interrupt::listen()?;
@@ -96,16 +94,21 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         Tickets::eager
     };
     let tickets = order(search, problem, &budget)?;
-    let workers = usize::from(given.workers);
     let deadline = spec.budget.time.and_then(|time| process::now().checked_add(time));
     let (report, full, failed) = with_workers(&task, workers, |jobs, values| {
         drive(tickets, workers, jobs, values, &cancel, deadline)
     })?;
-    let few = report.counts.evaluations < u64::from(given.workers);
+    let few = report.counts.evaluations < u64::from(given.workers());
     if !arguments.search.is_limited() && report.stop_reason == StopReason::Time && few {
         // The program may need more time for one evaluation than there was for all.
         message::say(format_args!(
             "note: the search ended after {DEFAULT_TIME:?}, the limit where none is given: give --time or --evaluations"
+        ));
+    }
+    if report.hit_count() > 1 && task.space.tells_all_apart() {
+        message::say(format_args!(
+            "note: {} gives no separation: answers that differ in the last digit count as different hits",
+            path.display()
         ));
     }
     if given.ordered

@@ -97,6 +97,12 @@ impl SpaceFile {
         ))
     }
 
+    /// Whether hits on continuous axes are different ones, however near they are, because nothing else was said.
+    pub(crate) fn tells_all_apart(&self) -> bool {
+        let is_continuous = |space: Space<f64>| space.axes().iter().any(|axis| !axis.is_integer());
+        self.separation.is_none() && self.space().is_ok_and(is_continuous)
+    }
+
     /// A solution of a report by the names of the axes, for a person: `r = 33.5, metal = brass`.
     pub(crate) fn described(&self, solution: &Value) -> String {
         let coordinates = solution.get("coordinates").and_then(Value::as_array);
