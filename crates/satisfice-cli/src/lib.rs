@@ -135,7 +135,7 @@ impl Command {
         let arguments: Vec<OsString> = arguments.into_iter().collect();
         let subcommand = match arguments::parse(&arguments) {
             Ok(subcommand) => subcommand,
-            Err(error) => return failure::usage(&error),
+            Err(error) => return failure::usage(&error, &arguments),
         };
         let catalogue = &self.catalogue;
         let outcome = match subcommand {

@@ -21,7 +21,9 @@ pub(crate) fn verify(arguments: &VerifyArguments, catalogue: &Catalogue) -> anyh
     } else {
         input::read(&arguments.report)
     }
-    .with_context(|| format!("cannot read {path}: name a report that `run --json` wrote"))?;
+    .with_context(|| {
+        format!("cannot read {path}: name a report that `run --json` or `collide --json` wrote")
+    })?;
     let wrong = || format!("{path} is not a report that `run --json` or `collide --json` wrote");
     let Kind { problem } = serde_json::from_slice(&text).with_context(wrong)?;
 

@@ -186,7 +186,7 @@ fn bodies_can_be_placed() {
         "collide triangle.obj above.obj --threshold 1 --at lid:0,0,0",
     );
     assert!(
-        line.contains("--at lid: there is no such body; name one of 0 to 1"),
+        line.contains("--at lid: there is no such body: give a number from 0 to 1"),
         "{line}"
     );
 

@@ -104,6 +104,104 @@ fn files_of_another_kind_are_called_so() {
     );
 }
 
+/// An engine in the wrong place gets the option that chooses it.
+#[test]
+fn an_engine_has_its_option() {
+    let folder = tempfile::tempdir().unwrap();
+    let collide = "error: collide chooses an engine by --method: --method ";
+    for (call, says) in [
+        (
+            "run portfolio",
+            "error: `portfolio` is an engine: run PROBLEM --engine portfolio",
+        ),
+        (
+            "run queens portfolio",
+            "error: `portfolio` is an engine: --engine portfolio",
+        ),
+        (
+            "collide a.obj b.obj --threshold 1 --engine portfolio",
+            &format!("{collide}portfolio"),
+        ),
+        (
+            "collide a.obj b.obj --threshold 1 --engine=qpso --time 1s",
+            &format!("{collide}qpso"),
+        ),
+        (
+            "collide a.obj b.obj --threshold 1 --engine",
+            &format!("{collide}NAME"),
+        ),
+    ] {
+        assert_eq!(error_in(folder.path(), call), says, "{call}");
+    }
+}
+
+#[test]
+fn words_that_an_option_does_not_take_are_told_like_other_names() {
+    let folder = tempfile::tempdir().unwrap();
+    say(
+        folder.path(),
+        &[
+            (
+                "collide a.obj b.obj --threshold 1 --pairs edge-trinagle",
+                "unknown value of `--pairs` `edge-trinagle`, did you mean `edge-triangle`?; known: vertex-vertex, ",
+            ),
+            (
+                "collide a.obj b.obj --threshold 1 --up w",
+                "unknown value of `--up` `w`; known: x, y, z",
+            ),
+            (
+                "completions zhs",
+                "unknown shell `zhs`, did you mean `zsh`?; known: bash, ",
+            ),
+            (
+                "run cec2006 --set problem=g7",
+                "unknown value of `problem` `g7`; known: ",
+            ),
+            (
+                "bench regret --engines portfolo",
+                "unknown engine `portfolo`, did you mean `portfolio`?; known: ",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn files_of_problems_that_are_missing_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    say(
+        folder.path(),
+        &[
+            (
+                "run cec2013 --set problem=12",
+                "data is missing: problem 12 needs the folder `data` of https://github.com/mikeagn/CEC2013; set data=DIR",
+            ),
+            (
+                "run sat --set file=nosuch.cnf",
+                "error: cannot read nosuch.cnf: No such file or directory",
+            ),
+            (
+                "verify nosuch.json",
+                "cannot read nosuch.json: name a report that `run --json` or `collide --json` wrote: No such file",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn a_body_that_is_not_there_gets_a_number_and_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.obj", "b.obj"] {
+        fs::write(folder.path().join(name), TRIANGLE).unwrap();
+    }
+    say(
+        folder.path(),
+        &[(
+            "collide a.obj b.obj --threshold 1 --at X:0,0,5",
+            "--at X: there is no such body: give a number from 0 to 1, or a name such as a",
+        )],
+    );
+}
+
 #[test]
 fn times_of_animations_begin_at_zero() {
     let folder = tempfile::tempdir().unwrap();

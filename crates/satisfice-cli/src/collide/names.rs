@@ -62,12 +62,26 @@ impl Names {
             [] => match name.parse() {
                 Ok(number) if number < self.names.len() => Ok(number),
                 _ => bail!(
-                    "--at {name}: there is no such body; name one of 0 to {} or by its name, e.g. {}",
+                    "--at {name}: there is no such body: give a number from 0 to {}, or a name such as {}",
                     self.names.len().saturating_sub(1),
-                    self.names.first().map_or("", String::as_str)
+                    self.example()
                 ),
             },
         }
+    }
+
+    /// A name of the first body that is of no other one, the shortest such.
+    fn example(&self) -> &str {
+        let short = self.also.first().map(|[_, _, short]| short.as_str());
+        let is_own = |short: &&str| {
+            self.also
+                .iter()
+                .filter(|also| also.iter().any(|name| name == short))
+                .count()
+                == 1
+        };
+        let long = || self.names.first().map_or("", String::as_str);
+        short.filter(is_own).unwrap_or_else(long)
     }
 
     /// All names, in the order of the bodies.
