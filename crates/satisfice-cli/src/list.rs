@@ -111,8 +111,7 @@ fn columns(row: &Row) -> [String; 4] {
         Range::Choice { default, of } => {
             let mut choices = of.join(" | ");
             if choices.len() > WIDEST_CHOICES {
-                // Writing to a string cannot fail.
-                let _ = write!(summary, " One of: {choices}.");
+                summary = format!("{}; one of: {choices}", summary.trim_end_matches('.'));
                 choices = format!("one of {}", of.len());
             }
             (default.to_owned(), choices)

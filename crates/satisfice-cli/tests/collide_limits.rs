@@ -467,3 +467,26 @@ fn a_mesh_beyond_memory_is_one_line() {
         assert_eq!(csv, "of an earlier run", "{call}");
     }
 }
+
+#[test]
+fn one_pair_is_one_and_counts_follow_what_they_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let triangle = |corners: &str| format!("{corners}f 1 2 3\n");
+    fs::write(
+        folder.path().join("a.obj"),
+        triangle("v 0 0 0\nv 1 0 0\nv 0 1 0\n"),
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("b.obj"),
+        triangle("v 0 0 .5\nv 5 0 3\nv 0 5 3\n"),
+    )
+    .unwrap();
+    let call = "collide a.obj b.obj --threshold 1 --method random --evaluations 1";
+    let said = satisfice_in(folder.path(), call).stdout;
+    assert!(
+        said.contains("completeness  1 pair not seen\n")
+            && said.contains("skipped       self-pairs of rigid bodies: 2\n"),
+        "{said}"
+    );
+}

@@ -93,7 +93,7 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "KIND")]
     pub(crate) pairs: Option<PairKind>,
 
-    /// Look for pairs within each mesh as well, except features that share a vertex.
+    /// Look for pairs within each mesh as well, except features that share a vertex, and vertices that an edge joins (--ring-width).
     #[arg(long = "self")]
     pub(crate) within: bool,
 
@@ -135,9 +135,9 @@ pub(crate) struct CollideArguments {
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) json: Option<PathBuf>,
 
-    /// Write the pairs as CSV: body and feature of a, body and feature of b, distance; then what --witnesses adds, and names
-    /// of bodies if a file holds several.
-    #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]
+    /// Write the pairs as CSV, whatever the file is called; `-` is stdout and replaces the summary. Columns are body and feature of a,
+    /// body and feature of b, distance; then what --witnesses adds, and names of bodies if a file holds several.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
 
     /// Draw the bodies with the pairs marked where they are closest, and their triangles highlighted. Not with --from: --page shows

@@ -99,7 +99,7 @@ pub(super) fn summary(report: &Report<'_>) -> String {
         );
     }
     for (reason, count) in &report.skipped {
-        lines.line("skipped", &format!("{} {reason}", shown::count(*count)));
+        lines.line("skipped", &format!("{reason}: {}", shown::count(*count)));
     }
     lines.text()
 }
@@ -136,6 +136,7 @@ fn completeness(report: &Report<'_>) -> String {
     }
     match head.reference_hits.and_then(|all| all.checked_sub(head.hits)) {
         Some(0) => return "these are all: there are no other pairs".to_owned(),
+        Some(1) => return "1 pair not seen".to_owned(),
         Some(more) => return format!("{} pairs not seen", shown::count(more)),
         None => {}
     }
