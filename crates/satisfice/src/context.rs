@@ -81,7 +81,7 @@ pub trait Context<S: Real> {
     }
 
     /// Seconds that a call of the fitness has taken lately; where it is computed elsewhere, the mean time of an evaluation, thinking
-    /// included, as of the last look at the clock. `None` where evaluations are limited, so that such a search does not depend on the clock,
+    /// included, as of the last look at the clock. `None` unless [only time is limited](Self::is_timed), so that no other search depends on the clock,
     /// and before the first ones.
     fn seconds_an_evaluation(&self) -> Option<f64> {
         None

@@ -7,17 +7,16 @@ use crate::seed::SearchRng;
 
 /// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
 const MEMORY: f64 = 12.0;
-/// Where time alone is limited, so many evaluations are remembered at least, eight of the longest turns: where many points hit, the memory above
-/// is a single turn, and sources change at random. More of a quick F, whose turns are longer.
-const MEMORY_WHERE_TIMED: f64 = 64.0;
-const MEMORY_WHERE_QUICK: f64 = 256.0;
+/// So many evaluations are remembered at least, eight of the longest turns: where many points hit, the memory above is a single turn, and
+/// sources change at random. More of a quick F, whose turns are longer.
+const LEAST_MEMORY: f64 = 64.0;
+const LEAST_MEMORY_WHERE_QUICK: f64 = 256.0;
 
 /// Prior of an arm, in hits. Its prior evaluations are what the whole search has lately needed for as many hits: an untried arm
 /// is expected to be as good as the others.
 const PRIOR_HITS: f64 = 0.15;
-/// Largest share of all evaluations for one source without a hit, and for all such sources together.
+/// Largest share of all evaluations for one source without a hit.
 const BARREN_SHARE: f64 = 0.04;
-const BARREN_SHARES: f64 = 0.18;
 /// The share of all evaluations that swarms have on continuous axes until their first hit: they hit when they have converged, which takes
 /// a thousand evaluations or more.
 const SHARE_OF_SWARMS: f64 = 0.2;
@@ -29,8 +28,6 @@ const SHARE_BESIDE_COMPONENTS: f64 = 0.2;
 const FIRST_OF_COMPONENTS: f64 = 100.0;
 /// A source without a hit may begin with so many evaluations.
 const BARREN_START: f64 = 8.0;
-/// Share of what a hit of the whole search costs: a source that has cost less is not known to be worse.
-const UNKNOWN: f64 = 0.25;
 /// Share of the hits found from a place that is credited to the source which found the place.
 const PLACE_SHARE: f64 = 0.2;
 
@@ -42,8 +39,8 @@ pub(super) struct Credit {
     total_hits: u64,
     total_evaluations: u64,
     total_cost: f64,
-    /// Evaluations that are remembered at least.
-    remembered: f64,
+    /// Whether F takes less time than a choice of source.
+    quick: bool,
 }
 
 /// How many evaluations a source without a hit may take.
@@ -53,26 +50,15 @@ pub(super) struct Trial {
     share: f64,
     /// Whether the bound holds even before any source has found a hit.
     always: bool,
-    /// So much a source may cost in any case.
-    until_known: f64,
 }
 
 impl Trial {
-    /// For a search with `barren` sources without a hit.
-    pub(super) fn new(barren: usize) -> Self {
+    /// For a search without a model of F.
+    pub(super) fn alone() -> Self {
         Self {
             start: BARREN_START,
-            share: (BARREN_SHARES / barren.max(1) as f64).min(BARREN_SHARE),
+            share: BARREN_SHARE,
             always: false,
-            until_known: 0.0,
-        }
-    }
-
-    /// The same where a source may in any case cost what it takes to know that it is worse than `all` are together.
-    pub(super) fn until_known(self, all: &Credit) -> Self {
-        Self {
-            until_known: UNKNOWN * all.price(),
-            ..self
         }
     }
 
@@ -84,7 +70,6 @@ impl Trial {
             start: -share * FIRST_OF_COMPONENTS,
             share,
             always: true,
-            until_known: 0.0,
         }
     }
 
@@ -95,27 +80,14 @@ impl Trial {
             start: -1.0,
             share: missed * SHARE_BESIDE_MODEL / barren.max(1) as f64,
             always: true,
-            until_known: 0.0,
         }
     }
 }
 
 impl Credit {
-    /// Without any yield yet. `timed`: whether time alone is limited.
-    pub(super) fn new(timed: bool) -> Self {
-        Self {
-            remembered: if timed { MEMORY_WHERE_TIMED } else { 0.0 },
-            ..Self::default()
-        }
-    }
-
-    /// Changes how much is remembered where time alone is limited. `quick`: whether F is.
+    /// Changes how much is remembered. `quick`: whether F takes less time than a choice of source.
     pub(super) fn remember(&mut self, quick: bool) {
-        self.remembered = if quick {
-            MEMORY_WHERE_QUICK
-        } else {
-            MEMORY_WHERE_TIMED
-        };
+        self.quick = quick;
     }
 
     /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to
@@ -123,7 +95,12 @@ impl Credit {
     #[inline]
     pub(super) fn count(&mut self, hit: bool, cost: f64) {
         if self.hits > 0.0 {
-            let fade = (cost * self.hits / self.evaluations / MEMORY).min(cost / self.remembered);
+            let least = if self.quick {
+                LEAST_MEMORY_WHERE_QUICK
+            } else {
+                LEAST_MEMORY
+            };
+            let fade = (cost * self.hits / self.evaluations / MEMORY).min(cost / least);
             let keep = 1.0 - fade.min(0.5);
             self.hits *= keep;
             self.evaluations *= keep;
@@ -135,12 +112,9 @@ impl Credit {
         self.total_hits += u64::from(hit);
     }
 
-    /// Whether to try the source: it has a hit, or is within its share, or is not known to be worse, or no source has a hit yet and the bound
-    /// allows for that.
+    /// Whether to try the source: it has a hit, or is within its share, or no source has a hit yet and the bound allows for that.
     pub(super) fn is_worth_trying(&self, all: &Self, trial: Trial) -> bool {
-        (all.total_hits == 0 && !trial.always)
-            || self.is_within(all, trial)
-            || self.total_cost < trial.until_known
+        (all.total_hits == 0 && !trial.always) || self.is_within(all, trial)
     }
 
     /// Whether the source has a hit, or has cost no more than its share of the whole search.
@@ -293,18 +267,17 @@ mod tests {
         assert!(arm.hits / arm.evaluations < 0.02, "{arm:?}");
     }
 
-    /// Where every third point hits, twelve hits are 36 evaluations: where time alone is limited, 64 are remembered, of a quick F 256.
+    /// Where every third point hits, twelve hits are 36 evaluations: 64 are remembered, of a quick F 256.
     #[test]
     fn many_hits_are_not_forgotten_within_a_turn() {
         let remembered = |mut arm: Credit| {
             (0..5000).for_each(|i| arm.count(i % 3 == 0, 1.0));
             arm.evaluations
         };
-        let mut timed = Credit::new(true);
-        assert!((30.0..42.0).contains(&remembered(Credit::new(false))));
-        assert!((60.0..70.0).contains(&remembered(timed)));
-        timed.remember(true);
-        assert!((250.0..262.0).contains(&remembered(timed)));
+        let mut arm = Credit::default();
+        assert!((60.0..70.0).contains(&remembered(arm)));
+        arm.remember(true);
+        assert!((250.0..262.0).contains(&remembered(arm)));
     }
 
     /// Ten hits and a hundred evaluations follow each hit in a new place.
@@ -327,7 +300,7 @@ mod tests {
     #[test]
     fn what_finds_nothing_takes_a_bounded_share() {
         let (mut barren, mut all) = (Credit::default(), Credit::default());
-        let alone = Trial::new(1);
+        let alone = Trial::alone();
         assert!(barren.is_worth_trying(&all, alone));
         for i in 0..10_000 {
             all.count(i == 0, 1.0);
@@ -336,21 +309,14 @@ mod tests {
             }
         }
         let share = barren.evaluations() as f64;
-        // Not where hits are so rare that it cannot be known to be worse.
-        assert!(
-            !barren.is_worth_trying(&all, alone) && barren.is_worth_trying(&all, alone.until_known(&all))
-        );
+        assert!(!barren.is_worth_trying(&all, alone));
         assert!((400.0..412.0).contains(&share), "{share}");
-        assert!(!barren.is_within(&all, Trial::new(10)));
-        // One of ten, of 10,000: 8 and 1.8 %.
         let evaluations = |most: u64| Credit {
             total_cost: most as f64,
             ..Credit::default()
         };
-        assert!(evaluations(188).is_within(&evaluations(10_000), Trial::new(10)));
-        assert!(!evaluations(189).is_within(&evaluations(10_000), Trial::new(10)));
-        assert!(evaluations(8).is_within(&evaluations(10), Trial::new(10)));
-        assert!(!evaluations(9).is_within(&evaluations(10), Trial::new(10)));
+        assert!(evaluations(8).is_within(&evaluations(10), alone));
+        assert!(!evaluations(9).is_within(&evaluations(10), alone));
         // One of six beside a model: the first evaluation after a hundred, even where nothing hits.
         let beside = Trial::beside_model(6, 1.0);
         assert!(!evaluations(0).is_worth_trying(&evaluations(99), beside));

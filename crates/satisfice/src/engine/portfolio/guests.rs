@@ -262,7 +262,6 @@ impl<S: Real> Guests<S> {
         };
         for _ in 0..engines {
             let mut guest = Guest::new(kind, self.sizes, context.space().dimension());
-            guest.arm = Credit::new(context.is_timed());
             guest.readiness = readiness;
             guest.engine.begin(context);
             self.guests.push(guest);

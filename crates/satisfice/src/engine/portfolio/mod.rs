@@ -25,7 +25,7 @@ use crate::{engine_choice, engine_settings};
 engine_choice! {
     /// When the neighbours that a problem names become candidates of [`Portfolio`].
     pub enum NeighbourTiming {
-        /// Late where evaluations are not limited and F takes less than 10 microseconds when the first hit is found, at once elsewhere.
+        /// Late from when it is known that F takes less than 10 microseconds, where time is limited and evaluations are not; at once elsewhere.
         Auto = "auto",
         /// At once, best first by the mean of F at all evaluated points next to them: most hits for each evaluation. On a lattice late
         /// once two million were predicted.
@@ -77,9 +77,8 @@ engine_settings! {
     /// - on continuous axes, descents by [quadratic models](super::QuadraticDescent), where the problem tells the
     ///   [components](crate::Components) of F, evaluations are limited or F takes more than 20 microseconds;
     /// - on continuous axes, [niching](super::Niching) once no source has found a hit for long: optima that are hard to reach;
-    /// - a Gaussian process on at most 200 axes, where evaluations are limited, or where F takes more than 2 ms and only time is limited: up to
-    ///   1,000 proposals, of half a millisecond to a few. Unless the problem tells the components of F, there is none where more than 10,000
-    ///   evaluations are planned. Where F takes less than a proposal, and the time matters more than the number of evaluations, limit the
+    /// - a Gaussian process on at most 200 axes; where only time is limited, if F takes more than 2 ms: up to 1,000 proposals, of half a
+    ///   millisecond to a few. Unless the problem tells the components of F, there is none where more than 10,000 evaluations are planned. Where F takes less than a proposal, and the time matters more than the number of evaluations, limit the
     ///   time, too: if the proposals would take longer than the limit, the model is not used. Of a batch it may propose all;
     /// - regions, best first, where the problem declares bounds; when none is left, the result is proved complete;
     /// - the points of a lattice, or the orders of a permutation, one by one, where the budget has room for all: then the result is proved
@@ -103,9 +102,9 @@ engine_settings! {
     ///   descents by quadratic models and other descents share the rest. On continuous axes the model leads, and has the first 50 evaluations, or a
     ///   quarter of up to 1,000 planned ones, alone. Where the problem names neighbours, or all axes are places of a permutation, descents along
     ///   neighbours and exchanges lead. The model comes first whenever it takes a hit to be more probable than not.
-    /// - **After it** a source without a hit takes at most 4 % of the evaluations, and all of these together 18 %. Excepted are descents on a
-    ///   lattice, any source that has taken less than a quarter of what the search needs for a hit, and on continuous axes swarms, which may
-    ///   take a fifth: they have to converge first. Beside a model, the sources without a hit together take at most 6 % of the evaluations that miss.
+    /// - **After it** a source without a hit takes at most 4 % of the evaluations. Excepted are descents on a lattice, and on continuous axes
+    ///   swarms, which may take a fifth: they have to converge first. Beside a model, the sources without a hit together take at most 6 % of the
+    ///   evaluations that miss.
     /// - **The model** leads for 1,000 evaluations and then competes as the others do. On continuous axes, and where nothing else leads down, it
     ///   competes by the probability of a hit that it gives its next proposal, as far as its word was true so far. Once it is known to predict
     ///   less than a quarter of the variance of F, it has the bound of a source without a hit.
@@ -128,8 +127,8 @@ engine_settings! {
     /// ```
     pub struct Portfolio {
         /// Candidates proposed at once. By default as many as evaluations go on at once, or more: one for every 2,048 evaluations made, up
-        /// to 32, and 4 in the first batch, unless a model of F is at work. Under a limit of time alone it is one for every 256 evaluations if
-        /// F takes less than 2 microseconds. Small batches learn sooner, large ones take less time.
+        /// to 32, and 4 in the first batch, unless a model of F is at work. Under a limit of time alone it is 32 if F takes less than 2
+        /// microseconds. Small batches learn sooner, large ones take less time.
         pub batch: Option<usize> = None, 1..=65_536;
         /// Number of swarms K.
         pub swarms: usize = 2, 1..=1000;

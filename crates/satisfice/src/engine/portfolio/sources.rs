@@ -179,7 +179,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.descents.clear();
         self.waiting.clear();
         self.next_descent = 0;
-        self.whole = Credit::new(context.is_timed());
+        self.whole = Credit::default();
         self.arms = [self.whole; ARMS];
         self.pace = Pace::new(context.is_timed());
         self.patches = Patches::default();

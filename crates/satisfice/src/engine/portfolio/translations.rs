@@ -186,9 +186,8 @@ impl<S: Real> Translations<S> {
                 self.steps.push(step);
                 continue;
             }
-            let rate = |step: &Step| (step.hits + 0.1) / (step.trials + 1.0);
             let learned = units..self.steps.len();
-            let worst = learned.min_by(|&a, &b| rate(&self.steps[a]).total_cmp(&rate(&self.steps[b])));
+            let worst = learned.min_by(|&a, &b| self.steps[a].rate.total_cmp(&self.steps[b].rate));
             if let Some(worst) = worst {
                 self.steps[worst] = step;
                 for (old, new) in self.vectors[(worst - units) * dimension..].iter_mut().zip(signed) {

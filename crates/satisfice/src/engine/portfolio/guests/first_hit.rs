@@ -51,7 +51,7 @@ pub(in crate::engine::portfolio) struct Seekers {
     /// Evaluations that are the model's, if it leads: none where the problem tells the components of F.
     alone: u64,
     pub(in crate::engine::portfolio) model: usize,
-    /// Descents by quadratic models; the model, where there are none.
+    /// Descents by quadratic models; the model, where there are none, or all of them await answers.
     pub(in crate::engine::portfolio) quadratic: usize,
 }
 
@@ -86,16 +86,11 @@ impl<S: Real> Guests<S> {
             guests.position(|guest| guest.kind == kind && guest.is_ready())
         };
         let model = find(GuestKind::Model)?;
-        let quadratic = find(GuestKind::Quadratic);
-        // Without descents by quadratic models, or while all of them await answers, the model proposes.
-        let takes_over = self.in_any_order
-            || ground == Ground::Neighbours
-            || GuestKind::Quadratic.is_left_out(self.without);
         Some(Seekers {
             leader,
             alone: if self.components { 0 } else { alone(most) },
             model,
-            quadratic: quadratic.or(takes_over.then_some(model))?,
+            quadratic: find(GuestKind::Quadratic).unwrap_or(model),
         })
     }
 

@@ -8,8 +8,7 @@ use crate::scalar::Real;
 /// Weight of the model until it turns out to predict too little. From then on it has the bound of a source without a hit, even before any
 /// source has found one: its proposals take a hundred times as long as those of others.
 const MODEL_WEIGHT: f64 = 40.0;
-/// Weight of the model after the search for a first hit, in which descents take part. Where hits are many, the model is as good as
-/// descents; of isolated hits it knows only what descents tell it.
+/// Weight of the model after the search for a first hit, in which descents take part: of isolated hits it knows only what descents tell it.
 const MODEL_WEIGHT_AFTER_DESCENT: f64 = 1.0;
 /// Weight of descents by quadratic models, and of those by components.
 const QUADRATIC_WEIGHT: f64 = 4.0;
@@ -82,7 +81,7 @@ mod tests {
                 steps: false,
                 yardstick: Yardstick::Latest,
             };
-            let weight = guest.weight(all, Trial::new(1), situation);
+            let weight = guest.weight(all, Trial::alone(), situation);
             weight.unwrap() / all.price()
         };
         let (rare, mut frequent) = (Credit::default(), Credit::default());

@@ -93,7 +93,7 @@ impl<S: Real> Sources<S> {
         let trial = if modelled || steps {
             Trial::beside_model(self.barren(), self.whole.missed())
         } else {
-            Trial::new(self.barren()).until_known(&self.whole)
+            Trial::alone()
         };
         let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
         if steps || is_worth(0) {

@@ -21,9 +21,8 @@ const FIRST: usize = 4;
 /// Batches grow by one point every `SLOW` evaluations, up to `LARGEST`: small ones learn sooner, large ones cost less time.
 const SLOW: usize = 2048;
 const LARGEST: usize = 32;
-/// F is quick below so many seconds: then batches grow sooner, and choices last longer. Known only where time alone is limited.
+/// F is quick below so many seconds: then batches are of that size at once, and choices last longer. Known only where time alone is limited.
 const QUICK: f64 = 2e-6;
-const SLOW_WHERE_QUICK: usize = 256;
 
 impl<S: Real> Sources<S> {
     /// Where time alone is limited, notes whether F is quick.
@@ -57,10 +56,12 @@ impl<S: Real> Sources<S> {
         let wanted = self.asked_for.unwrap_or(if in_any_order { 1 } else { at_once });
         self.has_neighbours = context.offers_neighbours();
         self.look_at_price(context);
-        let slow = if self.is_quick { SLOW_WHERE_QUICK } else { SLOW };
-        self.batch = self
-            .asked_for
-            .unwrap_or_else(|| (made / slow).clamp(1, LARGEST).max(wanted));
+        let usual = if self.is_quick {
+            LARGEST
+        } else {
+            (made / SLOW).clamp(1, LARGEST)
+        };
+        self.batch = self.asked_for.unwrap_or(usual.max(wanted));
         let at_work = if in_any_order { at_once } else { self.batch };
         self.block = at_work.div_ceil(4);
         self.grow_descents(self.block);
