@@ -16,6 +16,7 @@ mod problem_suite_rare;
 mod rounds;
 mod start_points;
 mod tickets;
+mod tickets_at_once;
 mod tickets_unused;
 mod told;
 mod unsized_problem;

@@ -5,6 +5,7 @@ mod flood_alone;
 mod lessons;
 mod member;
 mod share;
+mod side_by_side;
 mod sizes;
 mod waking;
 mod weights;
@@ -16,6 +17,7 @@ pub(super) use first_hit::{Expectation, Seeker, Seekers};
 use flood_alone::FloodAlone;
 use member::Member;
 use share::Share;
+use side_by_side::Seen;
 use sizes::{MOST_PROPOSALS, Sizes};
 use weights::Situation;
 
@@ -244,35 +246,25 @@ impl<S: Real> Guests<S> {
                 GuestKind::Quadratic if context.is_timed() && !self.components => Readiness::Asleep,
                 _ => Readiness::Open,
             };
-            if is_of_use {
+            if is_of_use && !kind.is_left_out(self.without) {
                 self.add(kind, readiness, context);
             }
         }
     }
 
-    /// Adds the engine of a kind, unless it is left out; several side by side, where it works on several points one after another and answers
-    /// come one by one.
+    /// Adds an engine of a kind.
     fn add(&mut self, kind: GuestKind, readiness: Readiness, context: &dyn Context<S>) {
-        if kind.is_left_out(self.without) {
-            return;
-        }
-        let engines = match kind {
-            GuestKind::Cma | GuestKind::Quadratic => self.sizes.engines,
-            GuestKind::Flood | GuestKind::Regions | GuestKind::Model | GuestKind::Niching => 1,
-        };
-        for _ in 0..engines {
-            let mut guest = Guest::new(kind, self.sizes, context.space().dimension());
-            guest.readiness = readiness;
-            guest.engine.begin(context);
-            self.guests.push(guest);
-        }
+        let mut guest = Guest::new(kind, self.sizes, context.space().dimension());
+        guest.readiness = readiness;
+        guest.engine.begin(context);
+        self.guests.push(guest);
     }
 
-    /// One engine of each kind that takes part: those of a kind are next to each other, with the same credit.
+    /// One engine of each kind that takes part: those of a kind have the same credit.
     fn kinds(&self) -> impl Iterator<Item = &Guest<S>> {
-        let kinds = self.guests.chunk_by(|a, b| a.kind == b.kind);
-        let first = kinds.filter_map(|same| same.first());
-        first.filter(|guest| guest.readiness != Readiness::Asleep)
+        let mut seen = Seen::default();
+        let guests = self.guests.iter();
+        guests.filter(move |guest| guest.readiness != Readiness::Asleep && seen.is_first(guest.kind))
     }
 
     /// Begins a batch, in which no engine has a part yet.
@@ -363,12 +355,11 @@ impl<S: Real> Guests<S> {
             yardstick: self.yardstick(),
         };
         let ready = self.guests.iter().enumerate();
-        let mut offered = None;
+        let mut offered = Seen::default();
         ready.filter_map(move |(index, guest)| {
-            if !guest.is_ready() || offered == Some(guest.kind) {
+            if !guest.is_ready() || !offered.is_first(guest.kind) {
                 return None;
             }
-            offered = Some(guest.kind);
             let trial = match guest.kind {
                 GuestKind::Quadratic if modelled && self.components => Trial::beside_components(all.missed()),
                 _ => trial,

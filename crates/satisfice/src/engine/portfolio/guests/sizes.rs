@@ -31,8 +31,6 @@ pub(super) struct Sizes {
     pub(super) proposals_at_once: usize,
     /// Regions that are split at once.
     pub(super) regions: usize,
-    /// Engines of a kind side by side.
-    pub(super) engines: usize,
 }
 
 impl Default for Sizes {
@@ -49,11 +47,9 @@ impl Sizes {
             proposals(planned, components, context.seconds_planned())
         });
         if context.is_in_any_order() {
-            // Each search is an engine of its own.
-            let engines = sizes.searches;
+            // Each search is an [engine of its own](super::side_by_side).
             return Self {
                 proposals,
-                engines,
                 searches: 1,
                 proposals_at_once: 1,
                 ..sizes
@@ -75,7 +71,7 @@ impl Sizes {
             ((least as f64 * more) as usize).clamp(least, most)
         });
         Self {
-            searches: parallel.div_ceil(4).clamp(1, MOST_SEARCHES),
+            searches: searches(parallel),
             candidates,
             proposals: MOST_PROPOSALS,
             proposals_at_once: parallel.clamp(1, MOST_PROPOSALS_AT_ONCE),
@@ -84,7 +80,6 @@ impl Sizes {
                     .unwrap_or(MOST_REGIONS)
                     .clamp(1, MOST_REGIONS)
             }),
-            engines: 1,
         }
     }
 
@@ -94,8 +89,12 @@ impl Sizes {
             && self.proposals <= MOST_PROPOSALS
             && (1..=MOST_PROPOSALS_AT_ONCE).contains(&self.proposals_at_once)
             && (1..=MOST_REGIONS).contains(&self.regions)
-            && (1..=MOST_SEARCHES).contains(&self.engines)
     }
+}
+
+/// Searches side by side where so many evaluations go on at once.
+pub(super) fn searches(parallel: usize) -> usize {
+    parallel.div_ceil(4).clamp(1, MOST_SEARCHES)
 }
 
 /// How many proposals the model may make where so many evaluations are planned, in so many seconds, if time is limited, too: none if they

@@ -66,6 +66,7 @@ impl<S: Real> Sources<S> {
         self.block = at_work.div_ceil(4);
         self.grow_descents(self.block);
         self.guests.look_at_price(context);
+        self.guests.grow(context);
         if let Some(visited) = &self.visited
             && self.scan.goes_on(context, visited, PROBES, SCANNED, &self.whole)
         {
