@@ -30,15 +30,37 @@ fn links_between_the_documents_lead_somewhere() {
         let text = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(!text.is_empty(), "{document} is missing or empty");
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            if link.contains("://") || link.contains("::") || link.starts_with('#') {
+            if link.contains("://") || link.contains("::") {
                 continue;
             }
-            let target = path.with_file_name("").join(link);
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            let target = match file {
+                "" => path.clone(),
+                file => path.with_file_name("").join(file),
+            };
             assert!(target.exists(), "{document} links to {link}, which is not there");
+            assert!(
+                heading.is_empty() || has_heading(&target, heading),
+                "{document} links to {link}, where there is no such heading"
+            );
             links += 1;
         }
     }
     assert!(links >= 10, "only {links} links were looked at");
+}
+
+/// Whether a document has a heading whose anchor is this: its words in lower case, joined by hyphens.
+fn has_heading(document: &Path, anchor: &str) -> bool {
+    let text = std::fs::read_to_string(document).unwrap_or_default();
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let anchor_of = |heading: &str| {
+        let words = heading.trim_start_matches('#').trim().to_lowercase();
+        let kept = words
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect::<String>()
+    };
+    headings.map(anchor_of).any(|of| of == anchor)
 }
 
 #[test]
