@@ -26,12 +26,12 @@ impl<S: Real> Guests<S> {
             return;
         }
         for kind in [GuestKind::Cma, GuestKind::Quadratic] {
-            let same = |guests: &Self| guests.guests.iter().filter(|guest| guest.kind == kind).count();
-            let first = self.guests.iter().find(|guest| guest.kind == kind);
-            let Some((arm, readiness)) = first.map(|guest| (guest.arm, guest.readiness)) else {
+            let same = || self.guests.iter().filter(|guest| guest.kind == kind);
+            let first = same().next().map(|guest| (guest.arm, guest.readiness));
+            let Some((arm, readiness)) = first else {
                 continue;
             };
-            for _ in same(self)..sizes::searches(context.parallel()) {
+            for _ in same().count()..sizes::searches(context.parallel()) {
                 self.add(kind, readiness, context);
                 if let Some(guest) = self.guests.last_mut() {
                     guest.arm = arm;
