@@ -165,7 +165,7 @@ fn memory_that_ends_is_one_line() {
 
 #[test]
 fn a_time_limit_covers_measuring() {
-    let folder = balls(5);
+    let folder = balls(4);
     let scene = "collide a.obj b.obj --threshold 0.3 --pairs triangle-triangle";
     for limit in ["1ms", "30ms", "100ms", "300ms"] {
         let report = json_of(folder.path(), &format!("{scene} --time {limit}"));

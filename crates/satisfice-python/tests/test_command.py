@@ -16,7 +16,7 @@ from conftest import command, without_times
     [
         ("queens", {"n": 6}, {"evaluations": 20_000}),
         ("rastrigin", {"dimension": 2}, {"evaluations": 5000, "engine": "latest-hit-qpso", "options": {"particles": 30}}),
-        ("himmelblau", {}, {"evaluations": 5000, "probes": 0.1, "islands": 3}),
+        ("himmelblau", {}, {"evaluations": 1500, "probes": 0.1, "islands": 3}),
         ("shell", {}, {"evaluations": 3000, "slices": 2, "hits": 2000, "threads": 2}),
     ],
 )

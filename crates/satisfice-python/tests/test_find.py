@@ -36,7 +36,7 @@ def test_a_vectorized_function_gives_the_same_report(engine):
         shapes.append(x.shape)
         return x[:, 0] * x[:, 0] + x[:, 1]
 
-    options = {"delta": -1.5, "separation": 0.05, "evaluations": 3000, "engine": engine, "seed": 3}
+    options = {"delta": -1.5, "separation": 0.05, "evaluations": 1000, "engine": engine, "seed": 3}
     one = satisfice.find(lambda x: x[0] * x[0] + x[1], SQUARE, **options)
     all_ = satisfice.find(all_at_once, SQUARE, vectorized=True, **options)
     ours, theirs = without_times(one.to_json()), without_times(all_.to_json())

@@ -38,7 +38,7 @@ def test_any_executor_gives_the_report_of_islands_here(executor, here):
 
 
 def test_vectorized_probes_and_starts_are_as_here():
-    options = {**RING, "evaluations": 5000, "probes": 0.2, "vectorized": True, "x0": [[1.0, 0.0], [0.0, -1.0], [0.5, 0.5]]}
+    options = {**RING, "evaluations": 1500, "probes": 0.2, "vectorized": True, "x0": [[1.0, 0.0], [0.0, -1.0], [0.5, 0.5]]}
     report = satisfice.find(evaluations.ring_of_all, SQUARE, **options, executor=2)
     assert same(report, satisfice.find(evaluations.ring_of_all, SQUARE, **options))
     assert report.unseen_interval is not None
@@ -61,8 +61,8 @@ def test_exceptions_and_caught_ones():
     with pytest.raises(ArithmeticError, match="diverged") as raised:
         satisfice.find(evaluations.fails, SQUARE, **RING, executor=2)
     assert raised.value.report.stop_reason == "Cancelled"
-    report = satisfice.find(evaluations.fails, SQUARE, **{**RING, "evaluations": 3000}, executor=2, catch=ArithmeticError)
-    assert same(report, satisfice.find(evaluations.fails, SQUARE, **{**RING, "evaluations": 3000}, catch=ArithmeticError))
+    report = satisfice.find(evaluations.fails, SQUARE, **{**RING, "evaluations": 1200}, executor=2, catch=ArithmeticError)
+    assert same(report, satisfice.find(evaluations.fails, SQUARE, **{**RING, "evaluations": 1200}, catch=ArithmeticError))
     assert report.failed == report.non_finite > 50
     with pytest.raises(TypeError, match="top level of a module"):
         satisfice.find(lambda x: 1.0, SQUARE, **RING, executor=2)

@@ -62,8 +62,8 @@ const RUN: RunLength = RunLength {
 };
 /// Those of a run by an engine whose proposals are expensive.
 const EXPENSIVE_RUN: RunLength = RunLength {
-    evaluations: 150,
-    planned: 150,
+    evaluations: 70,
+    planned: 70,
 };
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;

@@ -376,20 +376,20 @@ fn lanes_are_saved_and_resumed() {
         let entry = engine::find(name).unwrap();
         let never = (AtomicU64::new(0), Cancel::new());
         let plain = problem("mixed", &never.0, 0, &never.1);
-        let budget = Budget::evaluations(2_000);
+        let budget = Budget::evaluations(600);
         let mut straight = lanes(entry);
         let expected = [0, 1].map(|_| timeless(&straight.run(&plain, &budget).unwrap()));
         let ends = never.0.load(Ordering::Relaxed);
         for fatal in [
             1,
-            50,
-            300,
-            800,
-            1_500,
-            1_790,
+            20,
+            90,
+            240,
+            450,
+            535,
             ends / 2 - 3,
-            ends / 2 + 40,
-            ends / 2 + 900,
+            ends / 2 + 12,
+            ends / 2 + 270,
         ] {
             let (calls, cancel) = (AtomicU64::new(0), Cancel::new());
             let mortal = problem("mixed", &calls, fatal, &cancel);

@@ -66,7 +66,7 @@ fn neighbours_of_a_closure_are_used() {
             .map(|seed| one(seed).unwrap().hit_count())
             .sum::<usize>()
     };
-    for (evaluations, seeds) in [(1000, 24), (10_000, 8)] {
+    for (evaluations, seeds) in [(1000, 24), (10_000, 3)] {
         let (without, with) = (hits(&plain, evaluations, seeds), hits(&named, evaluations, seeds));
         println!(
             "{evaluations} evaluations, {seeds} seeds: {without} hits without named neighbours, {with} with them"

@@ -29,8 +29,10 @@ fn threads_change_nothing() {
         let run = |threads| {
             let mut islands = Search::named(name).unwrap().islands(5).seed(3).threads(threads);
             let mut seen = Vec::new();
+            // Of a long search: a model of F, whose proposals take milliseconds, stays out of it.
+            let budget = Budget::evaluations(10_007).with_horizon(100_000);
             for _ in 0..2 {
-                let report = islands.run(&problem, &Budget::evaluations(10_007)).unwrap();
+                let report = islands.run(&problem, &budget).unwrap();
                 assert_eq!(report.counts.evaluations, 10_007, "{name}");
                 assert_eq!(report.stop_reason, StopReason::Evaluations);
                 let hits: Vec<_> = report
@@ -84,7 +86,7 @@ fn every_hit_is_a_hit_and_listed_once() {
 #[test]
 fn by_hand_they_are_the_same() {
     let problem = disc(40.0);
-    let budget = Budget::evaluations(5_003);
+    let budget = Budget::evaluations(1_003);
     let report = islands(4).run(&problem, &budget).unwrap();
     let mut search = islands(4);
     let mut slice = search.start(&problem, &budget).unwrap();

@@ -125,12 +125,14 @@ fn what_is_proved_is_true() {
 /// Also where an engine evaluates next to its own hits again.
 #[test]
 fn every_hit_that_was_evaluated_is_near_a_listed_one() {
+    // Of a long search: a model of F, whose proposals take milliseconds, stays out of it.
+    let budget = Budget::evaluations(4_000).with_horizon(100_000);
     for name in ["portfolio", "random", "descent-flood", "pso", "walk"] {
         for islands in [1, 2, 5] {
             for seed in 0..2 {
                 let problem = Wave::new();
                 let mut search = Search::named(name).unwrap().seed(seed).islands(islands);
-                let report = search.run(&problem, &Budget::evaluations(4_000)).unwrap();
+                let report = search.run(&problem, &budget).unwrap();
                 for &x in problem.hits.lock().unwrap().iter() {
                     let away = to_next(&report, &[x]);
                     let near = away <= RADIUS * (1.0 + 1e-12);
@@ -191,7 +193,7 @@ fn a_limit_of_hits_is_one_of_listed_hits() {
 /// By rounds in other processes, by tickets, and by hand with a file in between: the report of one search.
 #[test]
 fn wherever_lanes_run_the_report_is_the_same() {
-    let budget = Budget::evaluations(6_000);
+    let budget = Budget::evaluations(6_000).with_horizon(100_000);
     for (name, islands) in [("portfolio", 3), ("random", 4)] {
         let search = || Search::<Wave>::named(name).unwrap().seed(20).islands(islands);
         let engine = || engine::ConfiguredEngine::named(name).unwrap();

@@ -34,10 +34,15 @@ impl<S: Real> EngineSuite<'_, S> {
     }
 
     pub(super) fn budgets(&mut self) -> Result<(), Error> {
-        for evaluations in [1, 2, 7, 29, 30, 31, 64, 65, 1009] {
+        for evaluations in [1, 2, 7, 29, 30, 31, 64, 65] {
             for case in spaces()? {
                 self.run(&case, &Budget::evaluations(evaluations))?;
             }
+        }
+        // An ordinary run less a prime: no multiple of a batch.
+        for case in spaces()? {
+            let budget = Budget::evaluations(self.run - 11).with_horizon(self.planned);
+            self.run(&case, &budget)?;
         }
         Ok(())
     }
