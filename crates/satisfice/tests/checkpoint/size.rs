@@ -58,7 +58,10 @@ fn most_hits<P>(problem: &P, evaluations: u64) -> usize
 where
     P: SatisficingProblem<Scalar = f64, Solution: Serialize + DeserializeOwned>,
 {
-    quick().map(|entry| hits_of(entry, problem, evaluations)).max().unwrap()
+    quick()
+        .map(|entry| hits_of(entry, problem, evaluations))
+        .max()
+        .unwrap()
 }
 
 /// Runs an engine and looks at the size of its checkpoint; its hits.
