@@ -2,7 +2,7 @@
 
 use rand_distr::{Distribution, Gamma};
 
-use super::source::Role;
+use super::source::{PLACES, Role};
 use crate::seed::SearchRng;
 
 /// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
@@ -85,11 +85,6 @@ impl Trial {
 }
 
 impl Credit {
-    /// Changes how much is remembered. `quick`: whether F takes less time than a choice of source.
-    pub(super) fn remember(&mut self, quick: bool) {
-        self.quick = quick;
-    }
-
     /// Counts one candidate at its cost: an evaluation, or more where time is scarce and thinking takes some. The past fades in proportion to
     /// the hits expected of it. Where hits are rare, little else tells the sources apart, so misses are not forgotten.
     #[inline]
@@ -166,6 +161,41 @@ impl Credit {
             self.hits + PRIOR_HITS * weight,
             self.evaluations + PRIOR_HITS * price,
         )
+    }
+}
+
+/// The credit of every source by its place among the names of all, and of all together. Engines of a kind share theirs.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Credits {
+    pub(super) whole: Credit,
+    of: [Credit; PLACES],
+}
+
+impl Credits {
+    /// Changes how much is remembered. `quick`: whether F takes less time than a choice of source.
+    pub(super) fn remember(&mut self, quick: bool) {
+        self.whole.quick = quick;
+        self.of.iter_mut().for_each(|credit| credit.quick = quick);
+    }
+
+    /// Counts one candidate of the source at `place` that was evaluated.
+    pub(super) fn count(&mut self, place: usize, hit: bool, cost: f64) {
+        self.whole.count(hit, cost);
+        self.of[place].count(hit, cost);
+    }
+}
+
+impl core::ops::Index<usize> for Credits {
+    type Output = Credit;
+
+    fn index(&self, place: usize) -> &Credit {
+        &self.of[place]
+    }
+}
+
+impl core::ops::IndexMut<usize> for Credits {
+    fn index_mut(&mut self, place: usize) -> &mut Credit {
+        &mut self.of[place]
     }
 }
 
@@ -276,7 +306,7 @@ mod tests {
         };
         let mut arm = Credit::default();
         assert!((60.0..70.0).contains(&remembered(arm)));
-        arm.remember(true);
+        arm.quick = true;
         assert!((250.0..262.0).contains(&remembered(arm)));
     }
 

@@ -22,7 +22,7 @@ use sizes::{MOST_PROPOSALS, Sizes};
 use weights::Situation;
 
 use super::Omitted;
-use super::credit::{Credit, Trial};
+use super::credit::{Credit, Credits, Trial};
 use super::source::{Role, Source, Tag};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
@@ -89,11 +89,10 @@ enum Readiness {
     Closed,
 }
 
-/// An engine and its credit.
+/// An engine.
 struct Guest<S> {
     kind: GuestKind,
     engine: Member<S>,
-    arm: Credit,
     readiness: Readiness,
     /// Its share of the batch under evaluation; where answers come in any order, of the batch in which it has proposed.
     own: Range<usize>,
@@ -170,7 +169,6 @@ impl<S: Real> Guest<S> {
         Self {
             kind,
             engine,
-            arm: Credit::default(),
             readiness: Readiness::Open,
             own: 0..0,
             share: Share::new(dimension),
@@ -260,7 +258,7 @@ impl<S: Real> Guests<S> {
         self.guests.push(guest);
     }
 
-    /// One engine of each kind that takes part: those of a kind have the same credit.
+    /// One engine of each kind that takes part.
     fn kinds(&self) -> impl Iterator<Item = &Guest<S>> {
         let mut seen = Seen::default();
         let guests = self.guests.iter();
@@ -327,26 +325,21 @@ impl<S: Real> Guests<S> {
         guests.position(|guest| guest.kind == GuestKind::Niching && guest.is_ready())
     }
 
-    /// The credits of the engines that are drawn by their yield.
-    pub(super) fn credits(&self) -> impl Iterator<Item = &Credit> {
+    /// The engines that are drawn by their yield, by their indices among the names of all sources.
+    pub(super) fn drawn(&self) -> impl Iterator<Item = usize> {
         let drawn = self.kinds().filter(|guest| guest.kind != GuestKind::Niching);
-        drawn.map(|guest| &guest.arm)
+        drawn.map(Guest::place)
     }
 
-    /// The credits of all engines.
-    pub(super) fn all_credits(&mut self) -> impl Iterator<Item = &mut Credit> {
-        self.guests.iter_mut().map(|guest| &mut guest.arm)
-    }
-
-    /// The credits and weights of the engines that are worth trying and have no part of the batch yet. `modelled`: whether a model of F is
+    /// The indices and weights of the engines that are worth trying and have no part of the batch yet. `modelled`: whether a model of F is
     /// at work. `steps`: whether F is a step function.
-    pub(super) fn arms<'a>(
+    pub(super) fn weights<'a>(
         &'a self,
-        all: &'a Credit,
+        credits: &'a Credits,
         trial: Trial,
         modelled: bool,
         steps: bool,
-    ) -> impl Iterator<Item = (usize, &'a Credit, f64)> {
+    ) -> impl Iterator<Item = (usize, f64)> {
         let leads = self.components && !self.promises_little();
         let situation = Situation {
             descends_first: modelled && self.continuous && !leads && !steps,
@@ -361,15 +354,17 @@ impl<S: Real> Guests<S> {
                 return None;
             }
             let trial = match guest.kind {
-                GuestKind::Quadratic if modelled && self.components => Trial::beside_components(all.missed()),
+                GuestKind::Quadratic if modelled && self.components => {
+                    Trial::beside_components(credits.whole.missed())
+                }
                 _ => trial,
             };
-            let weight = guest.weight(all, trial, situation);
-            weight.map(|weight| (index, &guest.arm, weight))
+            let weight = guest.weight(credits, trial, situation);
+            weight.map(|weight| (index, weight))
         })
     }
 
-    /// Asks an engine for its share of a batch of which so many points are wanted.
+    /// Asks an engine for its share of a batch of which so many points are wanted. What it works out but does not propose counts as misses.
     pub(super) fn ask(
         &mut self,
         index: usize,
@@ -377,6 +372,7 @@ impl<S: Real> Guests<S> {
         rng: &mut SearchRng,
         out: &mut Batch<S>,
         (wanted, idle_cost): (usize, f64),
+        credit: &mut Credit,
     ) -> GuestAnswer {
         let guest = &mut self.guests[index];
         if let Member::Model(model) = &mut guest.engine {
@@ -392,7 +388,7 @@ impl<S: Real> Guests<S> {
         let answer = guest.engine.ask(context, rng, &mut self.part);
         let calls = before - context.evaluations_left();
         for _ in 0..calls {
-            guest.arm.count(false, idle_cost);
+            credit.count(false, idle_cost);
         }
         guest.own = out.len()..out.len() + self.part.len();
         for position in self.part.points() {
@@ -409,11 +405,11 @@ impl<S: Real> Guests<S> {
             Ask::Exhausted => guest.readiness = Readiness::Closed,
             Ask::More => {}
         }
-        if guest.kind == GuestKind::Model && guest.arm.evaluations() >= self.sizes.proposals {
+        if guest.kind == GuestKind::Model && credit.evaluations() >= self.sizes.proposals {
             guest.readiness = Readiness::Closed;
         }
         if proposed == 0 && calls == 0 {
-            guest.arm.count(false, idle_cost);
+            credit.count(false, idle_cost);
             return GuestAnswer::Nothing;
         }
         GuestAnswer::Worked(calls + proposed as u64)
@@ -423,7 +419,7 @@ impl<S: Real> Guests<S> {
         (self.sizes, self.continuous, self.components, self.guests.len()).save(state);
         (self.in_any_order, self.ground).save(state);
         for guest in &self.guests {
-            (guest.kind, guest.arm, guest.readiness).save(state);
+            (guest.kind, guest.readiness).save(state);
             (guest.own.start, guest.own.end).save(state);
             guest.share.save(state);
             guest.engine.save(state);
@@ -443,13 +439,12 @@ impl<S: Real> Guests<S> {
         (self.in_any_order, self.ground) = from.read()?;
         self.guests.clear();
         for _ in 0..count {
-            let (kind, arm, readiness) = from.read()?;
+            let (kind, readiness) = from.read()?;
             let (start, end) = from.read()?;
             let share = Share::restored(dimension, from)?;
             let mut guest = Guest::new(kind, sizes, dimension);
             guest.engine.restore(from)?;
             self.guests.push(Guest {
-                arm,
                 readiness,
                 own: start..end,
                 share,

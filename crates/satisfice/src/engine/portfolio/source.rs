@@ -1,4 +1,4 @@
-//! The sources of candidates, and which of them are arms of the bandit.
+//! The sources of candidates.
 
 use crate::batch::Outcome;
 use crate::report::SourceCount;
@@ -90,25 +90,3 @@ impl Tally {
 
 /// A candidate's source, and the index of the swarm, descent, step, trial or engine within it.
 pub(super) type Tag = (Source, usize);
-
-/// Number of sources that are arms of the bandit, and the indices of some.
-pub(super) const ARMS: usize = 7;
-pub(super) const TRIAL: usize = 2;
-pub(super) const CROSS: usize = 3;
-pub(super) const DESCENT: usize = 4;
-pub(super) const STEP: usize = 5;
-pub(super) const NEIGHBOUR: usize = 6;
-
-/// The arm of a source. Near misses and whole engines count for themselves.
-pub(super) fn arm_of(source: Source) -> Option<usize> {
-    match source {
-        Source::Uniform => Some(0),
-        Source::Swarm => Some(1),
-        Source::Trial => Some(TRIAL),
-        Source::Cross => Some(CROSS),
-        Source::Descent => Some(DESCENT),
-        Source::Step => Some(STEP),
-        Source::Neighbour => Some(NEIGHBOUR),
-        Source::NearMiss | Source::Guest => None,
-    }
-}

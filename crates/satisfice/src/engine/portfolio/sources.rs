@@ -7,7 +7,7 @@ mod proposals;
 
 use awaited::PointsAwaited;
 
-use super::credit::{Credit, Patches};
+use super::credit::{Credits, Patches};
 use super::drought::Drought;
 use super::guests::Guests;
 use super::inner_grid::InnerGrid;
@@ -16,7 +16,7 @@ use super::near_misses::NearMisses;
 use super::neighbourhoods::Neighbourhoods;
 use super::pace::Pace;
 use super::scan::Scan;
-use super::source::{ARMS, PLACES, Source, Tag, Tally, arm_of};
+use super::source::{PLACES, Source, Tag, Tally};
 use super::swarms::Swarms;
 use super::translations::Translations;
 use super::visited::Visited;
@@ -54,9 +54,7 @@ pub(super) struct Sources<S> {
     /// The source chosen last, and how many more candidates are to come from it.
     chosen: Option<(Tag, u64)>,
     without: Omitted,
-    arms: [Credit; ARMS],
-    /// All arms and guests together.
-    whole: Credit,
+    credits: Credits,
     /// What each costs in time, and how many points were worked out since the turn began that are known already.
     pace: Pace<PLACES>,
     rejections: u64,
@@ -102,8 +100,7 @@ impl<S: Real> Sources<S> {
             has_neighbours: false,
             chosen: None,
             without: settings.without,
-            arms: [Credit::default(); ARMS],
-            whole: Credit::default(),
+            credits: Credits::default(),
             pace: Pace::new(false),
             rejections: 0,
             descents: Vec::new(),
@@ -179,8 +176,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.descents.clear();
         self.waiting.clear();
         self.next_descent = 0;
-        self.whole = Credit::default();
-        self.arms = [self.whole; ARMS];
+        self.credits = Credits::default();
         self.pace = Pace::new(context.is_timed());
         self.patches = Patches::default();
         self.drought = Drought::default();
@@ -304,12 +300,9 @@ impl<S: Real> Engine<S> for Sources<S> {
             let place = self.place((source, index));
             let cost = self.pace.cost(place);
             self.tally.count(place, *outcome);
-            self.whole.count(hit, cost);
+            self.credits.count(place, hit, cost);
             self.drought.count(hit);
             self.patches.count(self.role((source, index)), hit, cost);
-            if let Some(arm) = arm_of(source) {
-                self.arms[arm].count(hit, cost);
-            }
             // Last, because a learned step may replace another.
             if let (Source::Trial, true, Some(steps)) = (source, hit, &mut self.steps) {
                 let dimension = space.dimension();
@@ -319,7 +312,7 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn save(&self, state: &mut State) {
-        (self.tally, self.arms).save(state);
+        (self.tally, self.credits).save(state);
         self.hits.save(state);
         if self.pace.is_timed() {
             self.visited.as_ref().map(Visited::shortened).save(state);
@@ -334,7 +327,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.tags.clone(), self.trials.clone()).save(state);
         self.awaited.save(state);
         self.position.save(state);
-        (self.whole, self.patches, self.levels.clone()).save(state);
+        (self.patches, self.levels.clone()).save(state);
         self.drought.save(state);
         (self.even.clone(), self.grid.clone()).save(state);
         (self.chosen, self.planned, self.pace.is_timed()).save(state);
@@ -348,7 +341,7 @@ impl<S: Real> Engine<S> for Sources<S> {
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
-        (self.tally, self.arms) = from.read()?;
+        (self.tally, self.credits) = from.read()?;
         self.hits.restore(from)?;
         self.visited = from.read()?;
         self.scan = from.read()?;
@@ -359,7 +352,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         (self.tags, self.trials) = from.read()?;
         self.awaited = from.read()?;
         self.position = from.read()?;
-        (self.whole, self.patches, self.levels) = from.read()?;
+        (self.patches, self.levels) = from.read()?;
         self.drought = from.read()?;
         (self.even, self.grid) = from.read()?;
         let timed;

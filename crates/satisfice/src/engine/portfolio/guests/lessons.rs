@@ -72,16 +72,9 @@ impl<S: Real> Guests<S> {
         (own, place): (Range<usize>, usize),
         pace: &mut Pace<PLACES>,
     ) {
-        let (kind, at) = (self.guests[index].kind, self.guests[index].place());
-        for outcome in &outcomes[own.clone()] {
-            if *outcome != Outcome::NotEvaluated {
-                // Engines of a kind have the same credit.
-                let same = self.guests.iter_mut().filter(|guest| guest.kind == kind);
-                same.for_each(|guest| guest.arm.count(outcome.is_hit(), pace.cost(at)));
-            }
-        }
         let guest = &mut self.guests[index];
-        let takes_each = self.in_any_order && kind == GuestKind::Model;
+        let at = guest.place();
+        let takes_each = self.in_any_order && guest.kind == GuestKind::Model;
         let place = if takes_each { 0 } else { place };
         if takes_each {
             guest.share.begin(batch.points());

@@ -27,15 +27,11 @@ impl<S: Real> Guests<S> {
         }
         for kind in [GuestKind::Cma, GuestKind::Quadratic] {
             let same = || self.guests.iter().filter(|guest| guest.kind == kind);
-            let first = same().next().map(|guest| (guest.arm, guest.readiness));
-            let Some((arm, readiness)) = first else {
+            let Some(readiness) = same().next().map(|guest| guest.readiness) else {
                 continue;
             };
             for _ in same().count()..sizes::searches(context.parallel()) {
                 self.add(kind, readiness, context);
-                if let Some(guest) = self.guests.last_mut() {
-                    guest.arm = arm;
-                }
             }
         }
     }

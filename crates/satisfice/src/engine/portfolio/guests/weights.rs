@@ -2,7 +2,7 @@
 
 use super::{Guest, GuestKind, MODELLED, Member};
 use crate::engine::model::Yardstick;
-use crate::engine::portfolio::credit::{Credit, Trial};
+use crate::engine::portfolio::credit::{Credits, Trial};
 use crate::scalar::Real;
 
 /// Weight of the model until it turns out to predict too little. From then on it has the bound of a source without a hit, even before any
@@ -32,14 +32,15 @@ pub(super) struct Situation {
 
 impl<S: Real> Guest<S> {
     /// Its weight, unless it is not worth trying.
-    pub(super) fn weight(&self, all: &Credit, trial: Trial, situation: Situation) -> Option<f64> {
+    pub(super) fn weight(&self, credits: &Credits, trial: Trial, situation: Situation) -> Option<f64> {
         let Situation {
             descends_first,
             components,
             steps,
             yardstick,
         } = situation;
-        let is_worth_trying = self.arm.is_worth_trying(all, trial);
+        let (all, own) = (&credits.whole, &credits[self.place()]);
+        let is_worth_trying = own.is_worth_trying(all, trial);
         match (self.kind, &self.engine) {
             (GuestKind::Cma, _) => is_worth_trying.then_some(2.0),
             (GuestKind::Quadratic, _) => {
@@ -58,7 +59,7 @@ impl<S: Real> Guest<S> {
                 None | Some(true) if descends_first => Some(MODEL_WEIGHT_AFTER_DESCENT),
                 Some(true) => Some(MODEL_WEIGHT),
                 None => Some(if steps { 1.0 } else { MODEL_WEIGHT }),
-                Some(false) => self.arm.is_within(all, trial).then_some(1.0),
+                Some(false) => own.is_within(all, trial).then_some(1.0),
             },
             // Niching is not drawn by its yield.
             (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,
@@ -74,20 +75,20 @@ mod tests {
     #[test]
     fn descents_without_a_hit_are_not_expected_to_hit_more_often_than_they_can() {
         let guest = Guest::<f64>::new(GuestKind::Quadratic, Sizes::default(), 3);
-        let expected = |all: &Credit, components| {
+        let expected = |credits: &Credits, components| {
             let situation = Situation {
                 descends_first: true,
                 components,
                 steps: false,
                 yardstick: Yardstick::Latest,
             };
-            let weight = guest.weight(all, Trial::alone(), situation);
-            weight.unwrap() / all.price()
+            let weight = guest.weight(credits, Trial::alone(), situation);
+            weight.unwrap() / credits.whole.price()
         };
-        let (rare, mut frequent) = (Credit::default(), Credit::default());
-        assert_eq!(expected(&rare, false), QUADRATIC_WEIGHT / rare.price());
+        let (rare, mut frequent) = (Credits::default(), Credits::default());
+        assert_eq!(expected(&rare, false), QUADRATIC_WEIGHT / rare.whole.price());
         for _ in 0..50 {
-            frequent.count(true, 1.0);
+            frequent.whole.count(true, 1.0);
         }
         // Two evaluations for each of the four corners of a simplex.
         for components in [false, true] {

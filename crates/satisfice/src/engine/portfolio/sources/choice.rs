@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::{Trial, draw};
 use crate::engine::portfolio::guests::{Expectation, Seeker, Seekers};
-use crate::engine::portfolio::source::{CROSS, DESCENT, NEIGHBOUR, Role, STEP, Source, TRIAL, Tag};
+use crate::engine::portfolio::source::{Role, Source, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
@@ -34,9 +34,10 @@ impl<S: Real> Sources<S> {
         } else {
             LONGEST_TURN
         };
-        let turn = (self.whole.evaluations() / TURN).min(longest);
+        let all = &self.credits.whole;
+        let turn = (all.evaluations() / TURN).min(longest);
         let seekers = self.seekers();
-        let expectation = if seekers.is_some() || self.has_slopes() && self.guests.model_leads(&self.whole) {
+        let expectation = if seekers.is_some() || self.has_slopes() && self.guests.model_leads(all) {
             self.guests.expectation(seekers, context, rng)
         } else {
             None
@@ -54,7 +55,7 @@ impl<S: Real> Sources<S> {
         if !self.has_slopes() {
             return None;
         }
-        self.guests.seekers(&self.whole, self.planned)
+        self.guests.seekers(&self.credits.whole, self.planned)
     }
 
     /// Whether F may have slopes: it is not known to be a step function.
@@ -65,13 +66,14 @@ impl<S: Real> Sources<S> {
     /// Draws a source, with the index of the step for [`Source::Step`].
     fn choose(&self, seekers: Option<Seekers>, expectation: Option<Expectation>, rng: &mut SearchRng) -> Tag {
         let uses = |source: Omitted| self.without != source;
-        let price = self.whole.price();
-        let modelled = self.guests.model_leads(&self.whole);
+        let all = &self.credits.whole;
+        let price = all.price();
+        let modelled = self.guests.model_leads(all);
         let steps = !self.has_slopes();
         let is_lattice = self.visited.is_some();
         let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
         if let Some(seekers) = seekers {
-            return match seekers.draw(self.whole.evaluations(), expectation, rng) {
+            return match seekers.draw(all.evaluations(), expectation, rng) {
                 Seeker::Direct if uses(Omitted::Descents) => (Source::Descent, 0),
                 Seeker::Model | Seeker::Direct => (Source::Guest, seekers.model),
                 Seeker::Quadratic => (Source::Guest, seekers.quadratic),
@@ -91,57 +93,70 @@ impl<S: Real> Sources<S> {
             }
         };
         let trial = if modelled || steps {
-            Trial::beside_model(self.barren(), self.whole.missed())
+            Trial::beside_model(self.barren(), all.missed())
         } else {
             Trial::alone()
         };
-        let is_worth = |arm: usize| self.arms[arm].is_worth_trying(&self.whole, trial);
-        if steps || is_worth(0) {
-            offer(self.arms[0].draw(price, uniform, rng), (Source::Uniform, 0));
+        let credit = |source: Source| &self.credits[source as usize];
+        let is_worth = |source: Source| credit(source).is_worth_trying(&self.credits.whole, trial);
+        let yields =
+            |source: Source, weight: f64, rng: &mut SearchRng| credit(source).draw(price, weight, rng);
+        if steps || is_worth(Source::Uniform) {
+            offer(yields(Source::Uniform, uniform, rng), (Source::Uniform, 0));
         }
-        if uses(Omitted::Descents) && ((is_lattice && !modelled) || is_worth(DESCENT)) {
-            offer(self.arms[DESCENT].draw(price, 4.0, rng), (Source::Descent, 0));
+        if uses(Omitted::Descents) && ((is_lattice && !modelled) || is_worth(Source::Descent)) {
+            offer(yields(Source::Descent, 4.0, rng), (Source::Descent, 0));
         }
-        let converges = !modelled && !steps && !is_lattice && self.arms[1].is_converging(&self.whole);
-        if uses(Omitted::Swarms) && (steps || converges || is_worth(1)) {
+        let converges = !modelled && !steps && !is_lattice && credit(Source::Swarm).is_converging(all);
+        if uses(Omitted::Swarms) && (steps || converges || is_worth(Source::Swarm)) {
             let swarm = if converges { UNCONVERGED } else { swarm };
-            offer(self.arms[1].draw(price, swarm, rng), (Source::Swarm, 0));
+            offer(yields(Source::Swarm, swarm, rng), (Source::Swarm, 0));
         }
         let hits = self.hit_count();
-        if uses(Omitted::Learning) && hits >= 3 && is_worth(TRIAL) {
-            offer(self.arms[TRIAL].draw(price, 1.0, rng), (Source::Trial, 0));
+        if uses(Omitted::Learning) && hits >= 3 && is_worth(Source::Trial) {
+            offer(yields(Source::Trial, 1.0, rng), (Source::Trial, 0));
         }
-        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && is_worth(CROSS) {
-            offer(self.arms[CROSS].draw(price, 1.0, rng), (Source::Cross, 0));
+        if uses(Omitted::Recombination) && hits >= 2 && self.position.len() > 1 && is_worth(Source::Cross) {
+            offer(yields(Source::Cross, 1.0, rng), (Source::Cross, 0));
         }
         if uses(Omitted::Steps)
-            && (!modelled || is_worth(STEP))
+            && (!modelled || is_worth(Source::Step))
             && let Some(index) = self.steps.as_ref().and_then(|steps| steps.best(hits))
         {
-            offer(self.arms[STEP].draw(price, 2.0, rng), (Source::Step, index));
+            offer(yields(Source::Step, 2.0, rng), (Source::Step, index));
         }
-        if self.neighbourhoods.has_more() && (!modelled || is_worth(NEIGHBOUR)) {
-            offer(self.arms[NEIGHBOUR].draw(price, 2.0, rng), (Source::Neighbour, 0));
+        if self.neighbourhoods.has_more() && (!modelled || is_worth(Source::Neighbour)) {
+            offer(yields(Source::Neighbour, 2.0, rng), (Source::Neighbour, 0));
         }
         if uses(Omitted::NearMisses)
             && let Some((good, all)) = self.near_misses.posterior()
         {
             offer(draw(rng, good, all), (Source::NearMiss, 0));
         }
-        for (index, arm, weight) in self.guests.arms(&self.whole, trial, modelled, steps) {
+        for (index, weight) in self.guests.weights(&self.credits, trial, modelled, steps) {
             let yields = match expectation {
                 Some(expectation) if expectation.index == index => expectation.hit,
-                _ => arm.draw(price, weight, rng),
+                _ => self.credits[self.guests.place(index)].draw(price, weight, rng),
             };
             offer(yields, (Source::Guest, index));
         }
         best.1
     }
 
-    /// Number of sources without a hit.
+    /// Number of sources without a hit, of those that are drawn by their yield.
     fn barren(&self) -> usize {
-        let arms = self.arms.iter().chain(self.guests.credits());
-        arms.filter(|arm| arm.is_barren()).count()
+        const DRAWN: [Source; 7] = [
+            Source::Uniform,
+            Source::Swarm,
+            Source::Step,
+            Source::Trial,
+            Source::Cross,
+            Source::Neighbour,
+            Source::Descent,
+        ];
+        let drawn = DRAWN.iter().map(|&source| source as usize);
+        let places = drawn.chain(self.guests.drawn());
+        places.filter(|&place| self.credits[place].is_barren()).count()
     }
 
     /// The index of a source among the names of all.

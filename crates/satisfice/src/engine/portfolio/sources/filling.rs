@@ -30,10 +30,7 @@ impl<S: Real> Sources<S> {
         self.is_quick = false;
         if context.is_timed() {
             self.is_quick = context.seconds_an_evaluation().is_some_and(|price| price < QUICK);
-            let arms = core::iter::once(&mut self.whole).chain(&mut self.arms);
-            for credit in arms.chain(self.guests.all_credits()) {
-                credit.remember(self.is_quick);
-            }
+            self.credits.remember(self.is_quick);
         }
     }
 
@@ -46,7 +43,7 @@ impl<S: Real> Sources<S> {
             self.guests.begin_batch();
         }
         // With fewer than `wanted` candidates, workers would wait.
-        let made = usize::try_from(self.whole.evaluations()).unwrap_or(usize::MAX);
+        let made = usize::try_from(self.credits.whole.evaluations()).unwrap_or(usize::MAX);
         let first = if made == 0 && !self.guests.has_model() {
             FIRST
         } else {
@@ -68,7 +65,9 @@ impl<S: Real> Sources<S> {
         self.guests.look_at_price(context);
         self.guests.grow(context);
         if let Some(visited) = &self.visited
-            && self.scan.goes_on(context, visited, PROBES, SCANNED, &self.whole)
+            && self
+                .scan
+                .goes_on(context, visited, PROBES, SCANNED, &self.credits.whole)
         {
             return self.enumerate(context, rng, out);
         }
@@ -80,9 +79,10 @@ impl<S: Real> Sources<S> {
             let place = self.place(tag);
             let watch = self.pace.proposes(place);
             if tag.0 == Source::Guest {
+                let (credit, idle_cost) = (&mut self.credits[place], self.pace.idle_cost(place));
                 let answer = self
                     .guests
-                    .ask(tag.1, context, rng, out, (wanted, self.pace.idle_cost(place)));
+                    .ask(tag.1, context, rng, out, (wanted, idle_cost), credit);
                 self.tags.resize(out.len(), tag);
                 let cost = match answer {
                     GuestAnswer::Worked(cost) => cost,

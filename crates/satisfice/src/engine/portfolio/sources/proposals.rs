@@ -5,7 +5,7 @@ use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::Ask;
 use crate::engine::local::recombination::recombine;
-use crate::engine::portfolio::source::{CROSS, Source, TRIAL, Tag, arm_of};
+use crate::engine::portfolio::source::{Source, Tag};
 use crate::engine::portfolio::visited::Visited;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -115,7 +115,7 @@ impl<S: Real> Sources<S> {
             Source::Trial => {
                 if !self.draw_trial(rng) || !self.is_fresh(context) {
                     // Counts as a miss; otherwise an exhausted source would be asked forever.
-                    self.rejected(TRIAL);
+                    self.rejected(Source::Trial);
                     return true;
                 }
                 out.push(&self.position);
@@ -127,7 +127,7 @@ impl<S: Real> Sources<S> {
                 let is_new = (0..CROSS_TRIES)
                     .any(|_| recombine(&self.hits, rng, &mut self.position) && self.is_fresh(context));
                 if !is_new {
-                    self.rejected(CROSS);
+                    self.rejected(Source::Cross);
                     return true;
                 }
                 out.push(&self.position);
@@ -197,17 +197,15 @@ impl<S: Real> Sources<S> {
             Source::Swarm => self.swarms.tell(index, out.point(last), Outcome::NonFinite),
             _ => self.descents[index].learn(out.point(last), Outcome::NonFinite),
         }
-        if let Some(arm) = arm_of(source) {
-            self.rejected(arm);
-        }
+        self.rejected(source);
         out.truncate(last);
         true
     }
 
     /// Counts a miss of a point that is not evaluated.
-    fn rejected(&mut self, arm: usize) {
+    fn rejected(&mut self, source: Source) {
         self.rejections += 1;
-        self.arms[arm].count(false, 1.0);
+        self.credits[source as usize].count(false, 1.0);
     }
 
     /// Writes the next point of the lattice that is not visited; `false` at its end.
