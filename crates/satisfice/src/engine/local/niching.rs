@@ -20,7 +20,7 @@ use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::Space;
+use crate::space::{Axis, Space};
 use crate::state::{Part, Reader, State};
 
 engine_settings! {
@@ -163,6 +163,15 @@ fn to_place<S: Real>(space: &Space<S>, position: &[S], place: &mut [f64]) {
 fn to_position<S: Real>(space: &Space<S>, place: impl Iterator<Item = f64>, position: &mut [S]) {
     for ((x, axis), p) in position.iter_mut().zip(space.axes()).zip(place) {
         *x = S::of(axis.start().f64() + p * axis.width().f64());
+    }
+}
+
+/// The share of an axis, no farther than its ends; a periodic one has none.
+fn confined<S: Real>(axis: &Axis<S>, share: f64) -> f64 {
+    if axis.is_periodic() {
+        share
+    } else {
+        share.clamp(0.0, 1.0)
     }
 }
 
@@ -357,13 +366,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
         let left = self.run.size - self.distribution.sampled();
         let run = &self.run;
         let axes = space.axes();
-        let confine = |j: usize, x: f64| {
-            if axes[j].is_periodic() {
-                x
-            } else {
-                x.clamp(0.0, 1.0)
-            }
-        };
+        let confine = |j: usize, x| confined(&axes[j], x);
         self.repelled.find(&self.ends, &self.distribution, |fitness| {
             run.from.keeps_away() && fitness < run.fitness
         });
@@ -464,7 +467,7 @@ impl<S: Real> Part for NichingSearch<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, Budget, Search, from_fn};
+    use crate::{Budget, Search, from_fn};
 
     /// A wide basin that catches nearly all searches, and narrow ones.
     #[test]

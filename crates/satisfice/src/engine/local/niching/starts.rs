@@ -1,6 +1,6 @@
 //! Where the searches of [`Niching`](super::Niching) start.
 
-use super::{NichingSearch, StrategyRun, to_place, usual_size};
+use super::{NichingSearch, StrategyRun, confined, to_place, usual_size};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
@@ -70,7 +70,7 @@ impl<S: Real> NichingSearch<S> {
                 self.run.from = Start::NearMiss;
                 REFINING_STEP
             } else {
-                let step = self.hop(rng).unwrap_or_else(|| self.start_anywhere(space, rng));
+                let step = self.hop(space, rng).unwrap_or_else(|| self.start_anywhere(space, rng));
                 self.started[usize::from(self.run.from != Start::Hop)] += 1;
                 while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
                     self.run.size *= 2;
@@ -119,7 +119,7 @@ impl<S: Real> NichingSearch<S> {
     }
 
     /// Writes a start beside a known end, if it is the turn of one, and returns the first step.
-    fn hop(&mut self, rng: &mut SearchRng) -> Option<f64> {
+    fn hop(&mut self, space: &Space<S>, rng: &mut SearchRng) -> Option<f64> {
         let (share, [hops, others]) = (self.settings.hops, self.started.map(|count| count as f64));
         if hops * (1.0 - share) >= others * share {
             return None;
@@ -128,11 +128,38 @@ impl<S: Real> NichingSearch<S> {
         let length = log_uniform(rng, HOPS);
         let end = self.ends.promising(length * (dimension as f64).sqrt())?;
         self.start.copy_from_slice(self.ends.place(end, dimension));
-        for x in &mut self.start {
-            *x = (*x + length * rng.normal()).clamp(0.0, 1.0);
+        for (x, axis) in self.start.iter_mut().zip(space.axes()) {
+            *x = confined(axis, *x + length * rng.normal());
         }
         self.run.from = Start::Hop;
         self.run.origin = self.ends.fitness(end);
         Some(log_uniform(rng, (SETTLING * length, length)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Niching;
+    use super::*;
+    use crate::space::Axis;
+
+    /// Beside an end next to the end of an axis.
+    #[test]
+    fn a_search_beside_a_known_end_may_start_across_the_end_of_a_periodic_axis_only() {
+        let bounded = Axis::continuous(0.0, 1.0);
+        let space = Space::new([bounded.periodic(), bounded]).unwrap();
+        let mut search = NichingSearch::<f64>::new(Niching::default());
+        search.start = vec![0.5; 2];
+        search.ends.add(&[0.995, 0.995], 1.0, false);
+        let mut rng = SearchRng::new(1);
+        let mut beyond = [0; 2];
+        for _ in 0..200 {
+            search.started = [0, 1];
+            assert!(search.hop(&space, &mut rng).is_some());
+            for (count, x) in beyond.iter_mut().zip(&search.start) {
+                *count += u32::from(*x > 1.0);
+            }
+        }
+        assert!(beyond[0] > 50 && beyond[1] == 0, "{beyond:?}");
     }
 }
