@@ -70,7 +70,9 @@ impl<S: Real> NichingSearch<S> {
                 self.run.from = Start::NearMiss;
                 REFINING_STEP
             } else {
-                let step = self.hop(space, rng).unwrap_or_else(|| self.start_anywhere(space, rng));
+                let step = self
+                    .hop(space, rng)
+                    .unwrap_or_else(|| self.start_anywhere(space, rng));
                 self.started[usize::from(self.run.from != Start::Hop)] += 1;
                 while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
                     self.run.size *= 2;
