@@ -68,8 +68,8 @@ const EXPENSIVE_RUN: RunLength = RunLength {
 /// Evaluations in which an easy problem is solved.
 const LONG_RUN: u64 = 20_000;
 
-/// Runs the suite on an engine of the registry with these parameters, in `f32` and in `f64`, on a thread each. Takes seconds
-/// without optimisation.
+/// Runs the suite on an engine of the registry with these parameters, in `f32` and in `f64`, on a thread each. Takes
+/// seconds; minutes where proposals are expensive, as those of `surrogate` at its defaults.
 ///
 /// # Errors
 /// As [`EngineSpec::configure`].
