@@ -3,7 +3,7 @@
 use crate::archive::{Archive, Mark};
 use crate::batch::{Batch, Outcome};
 use crate::error::Error;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 use crate::space::Space;
 
@@ -56,9 +56,9 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     /// Brings the points inside, decodes the first `limit` of them and looks them up in the archive. Interrupted, it leaves the
     /// others as if they were beyond the limit.
     #[inline]
-    pub(crate) fn prepare<P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized>(
+    pub(crate) fn prepare(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         archive: &Archive<T>,
         batch: &mut Batch<S>,
         limit: usize,
@@ -86,9 +86,9 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
 
     /// Brings one point inside, decodes it and lets `judge` see the solution.
     #[inline]
-    pub(crate) fn with_one<P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized, R>(
+    pub(crate) fn with_one<R>(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         point: &mut [S],
         judge: impl FnOnce(&T) -> R,
     ) -> R {

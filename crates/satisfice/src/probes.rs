@@ -5,13 +5,11 @@
 //! sample that is independent of E, which the estimates of [`Unseen`] require. If the engine followed up the hits of probes,
 //! it would turn the evidence of unseen hits into known ones.
 
-use num_traits::Zero;
-
 use crate::archive::Archive;
 use crate::batch::{Batch, Outcome};
 use crate::error::Error;
 use crate::identity::Identity;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Space;
@@ -109,10 +107,10 @@ impl Probes {
         self.due = ((self.sample.probes + self.batch()) as f64 / self.share).ceil() as u64;
     }
 
-    pub(crate) fn propose<P: SatisficingProblem + ?Sized>(
+    pub(crate) fn propose<S: Real, T: Identity + Clone + Send + Sync>(
         &mut self,
-        problem: &P,
-        out: &mut Batch<P::Scalar>,
+        problem: &AnyProblem<'_, S, T>,
+        out: &mut Batch<S>,
     ) {
         out.clear();
         for _ in 0..self.batch() {
@@ -121,15 +119,15 @@ impl Probes {
     }
 
     /// Counts the outcomes of the probes of `batch`.
-    pub(crate) fn take<P: SatisficingProblem + ?Sized>(
+    pub(crate) fn take<S: Real, T: Identity + Clone + Send + Sync>(
         &mut self,
-        problem: &P,
-        batch: &Batch<P::Scalar>,
-        outcomes: &[Outcome<P::Scalar>],
-        archive: &Archive<P::Solution>,
+        problem: &AnyProblem<'_, S, T>,
+        batch: &Batch<S>,
+        outcomes: &[Outcome<S>],
+        archive: &Archive<T>,
     ) {
         let space = problem.space();
-        let mut values = vec![P::Scalar::zero(); space.dimension()];
+        let mut values = vec![S::zero(); space.dimension()];
         for (point, outcome) in batch.points().zip(outcomes) {
             if *outcome == Outcome::NotEvaluated {
                 continue;
@@ -158,14 +156,14 @@ impl Probes {
 
     /// Whether `values` are the one point that stands for `hit`. On a lattice on which several points decode to one
     /// solution, counting only that point gives every solution the same chance.
-    fn place<P: SatisficingProblem + ?Sized>(
+    fn place<S: Real, T: Identity + Clone + Send + Sync>(
         &mut self,
-        problem: &P,
-        values: &[P::Scalar],
-        hit: &P::Solution,
-        canonical: &P::Solution,
+        problem: &AnyProblem<'_, S, T>,
+        values: &[S],
+        hit: &T,
+        canonical: &T,
     ) -> bool {
-        let mut own = vec![P::Scalar::zero(); values.len()];
+        let mut own = vec![S::zero(); values.len()];
         if self.sample.blurred || problem.space().cardinality().is_none() {
             return true; // no lattice, or no use of it
         }
@@ -176,7 +174,7 @@ impl Probes {
             return true;
         }
         // Another point stands for this hit. It has to be a point of the lattice that decodes to it...
-        let mut other = vec![P::Scalar::zero(); values.len()];
+        let mut other = vec![S::zero(); values.len()];
         let stands = problem.space().check_values(&own).is_ok()
             && represents(problem, &problem.decode(&own)).same(hit)
             // ...and this solution has to have the same one: if it has its own, the two are the same only roughly.
@@ -210,10 +208,10 @@ impl Probes {
     }
 
     /// The estimate of hits that are not in the archive; `None` without a probe.
-    pub(crate) fn estimate<P: SatisficingProblem + ?Sized>(
+    pub(crate) fn estimate<S: Real, T: Identity + Clone + Send + Sync>(
         &self,
-        problem: &P,
-        archive: &Archive<P::Solution>,
+        problem: &AnyProblem<'_, S, T>,
+        archive: &Archive<T>,
     ) -> Option<Unseen> {
         let mut sample = self.sample.clone();
         sample.points = problem.space().cardinality();
@@ -235,7 +233,7 @@ impl Probes {
 }
 
 /// The solution that represents a hit.
-fn represents<P: SatisficingProblem + ?Sized>(problem: &P, hit: &P::Solution) -> P::Solution {
+fn represents<S: Real, T: Identity + Clone + Send + Sync>(problem: &AnyProblem<'_, S, T>, hit: &T) -> T {
     problem.canonical(hit).unwrap_or_else(|| hit.clone())
 }
 

@@ -1,10 +1,12 @@
 //! Problems: what a candidate means, how good it is, and when it is good enough.
 
 mod neighbours;
+mod reference;
 
 use std::sync::Arc;
 
 use neighbours::FnNeighbours;
+pub(crate) use reference::AnyProblem;
 
 use crate::capability::{Bounds, Components, Encoding, Neighbourhood};
 use crate::description::Description;
@@ -261,8 +263,8 @@ pub fn evaluated_elsewhere<S: Real>(space: Space<S>, threshold: S) -> FnProblem<
 }
 
 impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
-    /// The same problem with its closure behind a pointer. Every closure is a type of its own, and a search is compiled for each type of
-    /// problem, which makes builds longer; boxed problems are of one type. Each evaluation costs a call through the pointer.
+    /// The same problem with its closure behind a pointer. Every closure is a type of its own; boxed problems are of one type and can be
+    /// kept in one list. Each evaluation costs a call through the pointer.
     ///
     /// ```
     /// use satisfice::{Budget, Search, Space, from_fn};

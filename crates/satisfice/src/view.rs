@@ -8,7 +8,8 @@ use crate::archive::Archive;
 use crate::budget::Budget;
 use crate::capability::{Components, Encoding, Neighbourhood};
 use crate::context::Context;
-use crate::problem::SatisficingProblem;
+use crate::identity::Identity;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 use crate::space::{Axis, AxisKind, Region, Space};
 
@@ -30,21 +31,17 @@ pub(crate) struct Scratch<S, T> {
 /// Memory not in use: a list, because an engine may ask again while it visits neighbours.
 pub(crate) type Scratches<S, T> = RefCell<Vec<Scratch<S, T>>>;
 
-pub(crate) struct View<'a, P: SatisficingProblem + ?Sized> {
-    pub(crate) problem: &'a P,
-    pub(crate) previous: &'a Archive<P::Solution>,
-    pub(crate) ledger: &'a Ledger<P::Solution>,
+pub(crate) struct View<'a, S, T> {
+    pub(crate) problem: &'a AnyProblem<'a, S, T>,
+    pub(crate) previous: &'a Archive<T>,
+    pub(crate) ledger: &'a Ledger<T>,
     pub(crate) calls: &'a Calls,
-    pub(crate) scratches: &'a Scratches<P::Scalar, P::Solution>,
+    pub(crate) scratches: &'a Scratches<S, T>,
 }
 
-impl<P: SatisficingProblem + ?Sized> View<'_, P> {
+impl<S: Real, T: Identity + Clone + Send + Sync> View<'_, S, T> {
     /// Lends memory that holds the position, brought inside.
-    fn with_scratch<R>(
-        &self,
-        position: &[P::Scalar],
-        use_it: impl FnOnce(&mut Scratch<P::Scalar, P::Solution>) -> R,
-    ) -> R {
+    fn with_scratch<R>(&self, position: &[S], use_it: impl FnOnce(&mut Scratch<S, T>) -> R) -> R {
         self.lend(position, |scratch| {
             self.problem.space().keep_inside(&mut scratch.values);
             use_it(scratch)
@@ -52,11 +49,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
     }
 
     /// Lends memory that holds these numbers.
-    fn lend<R>(
-        &self,
-        numbers: &[P::Scalar],
-        use_it: impl FnOnce(&mut Scratch<P::Scalar, P::Solution>) -> R,
-    ) -> R {
+    fn lend<R>(&self, numbers: &[S], use_it: impl FnOnce(&mut Scratch<S, T>) -> R) -> R {
         let free = self.scratches.borrow_mut().pop();
         let mut scratch = free.unwrap_or(Scratch {
             values: Vec::new(),
@@ -71,10 +64,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
     }
 
     /// Turns the position in `scratch` into values and decodes them.
-    fn decode<'s>(
-        &self,
-        scratch: &'s mut Scratch<P::Scalar, P::Solution>,
-    ) -> (&'s P::Solution, &'s mut [P::Scalar]) {
+    fn decode<'s>(&self, scratch: &'s mut Scratch<S, T>) -> (&'s T, &'s mut [S]) {
         let Scratch { values, solution, .. } = scratch;
         self.problem.space().to_values(values);
         let solution = match solution {
@@ -91,13 +81,8 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
     /// without a neighbourhood, an encoding, or values that the solution is encoded by.
     fn with_own_neighbourhood<R>(
         &self,
-        of: &[P::Scalar],
-        use_it: impl FnOnce(
-            &OwnNeighbourhood<'_, P>,
-            &P::Solution,
-            &mut [P::Scalar],
-            &mut Option<P::Solution>,
-        ) -> R,
+        of: &[S],
+        use_it: impl FnOnce(&OwnNeighbourhood<'_, S, T>, &T, &mut [S], &mut Option<T>) -> R,
     ) -> Option<R> {
         let own = OwnNeighbourhood {
             neighbourhood: self.problem.neighbourhood()?,
@@ -116,12 +101,7 @@ impl<P: SatisficingProblem + ?Sized> View<'_, P> {
     /// Index `2 j` is the lattice point below on axis j, `2 j + 1` the one above, around the circle where the axis is periodic;
     /// at a place of a permutation they are swaps with the next place and the one after it. Later indices are the other
     /// categories of each categorical axis.
-    fn lattice_neighbours(
-        &self,
-        position: &[P::Scalar],
-        indices: Range<usize>,
-        visit: &mut dyn FnMut(usize, &[P::Scalar]),
-    ) {
+    fn lattice_neighbours(&self, position: &[S], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[S])) {
         let axes = self.problem.space().axes();
         // The first indices are known to be there, without a look at every axis.
         let count = if indices.end <= 2 * axes.len() {
@@ -217,16 +197,16 @@ fn step<S: Real>(axis: &Axis<S>, here: S, way: i64) -> Option<S> {
 }
 
 /// The capabilities behind a problem's own neighbours.
-struct OwnNeighbourhood<'a, P: SatisficingProblem + ?Sized> {
-    neighbourhood: &'a dyn Neighbourhood<P::Solution>,
-    encoding: &'a dyn Encoding<P::Scalar, P::Solution>,
+struct OwnNeighbourhood<'a, S, T> {
+    neighbourhood: &'a dyn Neighbourhood<T>,
+    encoding: &'a dyn Encoding<S, T>,
 }
 
-impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
-    fn space(&self) -> &Space<P::Scalar> {
+impl<S: Real, T: Identity + Clone + Send + Sync> Context<S> for View<'_, S, T> {
+    fn space(&self) -> &Space<S> {
         self.problem.space()
     }
-    fn threshold(&self) -> P::Scalar {
+    fn threshold(&self) -> S {
         self.problem.threshold()
     }
     fn elapsed_share(&self) -> f64 {
@@ -238,22 +218,17 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn hits(&self) -> usize {
         self.ledger.archive.len() - self.ledger.archive.probe_only()
     }
-    fn is_deleted(&self, position: &[P::Scalar]) -> bool {
+    fn is_deleted(&self, position: &[S]) -> bool {
         !self.ledger.archive.is_empty()
             && self.with_scratch(position, |scratch| {
                 self.ledger.archive.contains(self.decode(scratch).0)
             })
     }
-    fn neighbour_count(&self, of: &[P::Scalar]) -> usize {
+    fn neighbour_count(&self, of: &[S]) -> usize {
         self.with_own_neighbourhood(of, |own, solution, _, _| own.neighbourhood.count(solution))
             .unwrap_or_else(|| lattice_count(self.problem.space().axes()))
     }
-    fn neighbours(
-        &self,
-        of: &[P::Scalar],
-        indices: Range<usize>,
-        visit: &mut dyn FnMut(usize, &[P::Scalar]),
-    ) {
+    fn neighbours(&self, of: &[S], indices: Range<usize>, visit: &mut dyn FnMut(usize, &[S])) {
         self.calls.neighbours.set(self.calls.neighbours.get() + 1);
         let space = self.problem.space();
         let own = self.with_own_neighbourhood(of, |own, solution, values, neighbour| {
@@ -274,7 +249,7 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn component_count(&self) -> usize {
         self.problem.components().map_or(0, Components::count)
     }
-    fn components(&self, position: &[P::Scalar], out: &mut [P::Scalar]) {
+    fn components(&self, position: &[S], out: &mut [S]) {
         if let Some(components) = self.problem.components() {
             self.with_scratch(position, |scratch| components.write(self.decode(scratch).0, out));
         }
@@ -282,12 +257,12 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn offers_neighbours(&self) -> bool {
         self.problem.neighbourhood().is_some() && self.problem.encoding().is_some()
     }
-    fn lower_bound(&self, region: &Region<P::Scalar>) -> Option<P::Scalar> {
+    fn lower_bound(&self, region: &Region<S>) -> Option<S> {
         let bound = self.problem.bounds()?.lower_bound(region)?;
         self.calls.bounds.set(self.calls.bounds.get() + 1);
         Some(bound)
     }
-    fn covers(&self, region: &Region<P::Scalar>) -> bool {
+    fn covers(&self, region: &Region<S>) -> bool {
         if self.ledger.archive.is_empty() {
             return false;
         }
@@ -336,7 +311,7 @@ impl<P: SatisficingProblem + ?Sized> Context<P::Scalar> for View<'_, P> {
     fn previous_hits(&self) -> usize {
         self.previous.len()
     }
-    fn previous_hit(&self, index: usize, position: &mut [P::Scalar]) -> bool {
+    fn previous_hit(&self, index: usize, position: &mut [S]) -> bool {
         let Some(hit) = self.previous.get(index) else {
             return false;
         };

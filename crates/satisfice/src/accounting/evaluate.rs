@@ -6,7 +6,8 @@ use super::Ledger;
 use crate::candidates::Candidates;
 use crate::clock::Stopwatch;
 use crate::identity::Identity;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
+use crate::scalar::Real;
 #[cfg(feature = "rayon")]
 use crate::threads::Items;
 use crate::threads::Threads;
@@ -23,10 +24,10 @@ const TIMED: usize = 8;
 
 impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// Computes the fitness of the live candidates, until time is up.
-    pub(crate) fn evaluate<P: SatisficingProblem<Solution = T> + ?Sized>(
+    pub(crate) fn evaluate<S: Real>(
         &mut self,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
+        problem: &AnyProblem<'_, S, T>,
+        candidates: &mut Candidates<S, T>,
         threads: &Threads,
     ) {
         // Proposals that need no evaluation take time as well.
@@ -52,11 +53,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         self.shared_calls
     }
 
-    fn evaluate_alone<P: SatisficingProblem<Solution = T> + ?Sized>(
-        &mut self,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
-    ) {
+    fn evaluate_alone<S: Real>(&mut self, problem: &AnyProblem<'_, S, T>, candidates: &mut Candidates<S, T>) {
         while candidates.ready < candidates.live && !self.interrupted() && !self.holds() {
             let from = candidates.ready;
             let chunk = usize::try_from(self.clock.until_look()).unwrap_or(usize::MAX);
@@ -80,11 +77,11 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
 
     /// Shares the batch among threads if it is worth it.
     #[cfg(feature = "rayon")]
-    fn evaluate_on<P: SatisficingProblem<Solution = T> + ?Sized>(
+    fn evaluate_on<S: Real>(
         &mut self,
         threads: &Threads,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
+        problem: &AnyProblem<'_, S, T>,
+        candidates: &mut Candidates<S, T>,
     ) {
         if candidates.is_complete() || self.interrupted() {
             return;
@@ -112,10 +109,10 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// Evaluates one candidate and returns the nanoseconds that it took, so that even the first batch of an expensive
     /// fitness is shared.
     #[cfg(feature = "rayon")]
-    fn time_one<P: SatisficingProblem<Solution = T> + ?Sized>(
+    fn time_one<S: Real>(
         &mut self,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
+        problem: &AnyProblem<'_, S, T>,
+        candidates: &mut Candidates<S, T>,
     ) -> u64 {
         let (stopwatch, first) = (Stopwatch::start(), candidates.ready);
         candidates.fitness[first] = problem.fitness(&candidates.solutions[first]);
@@ -125,11 +122,11 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     #[cfg(feature = "rayon")]
-    fn evaluate_shared<P: SatisficingProblem<Solution = T> + ?Sized>(
+    fn evaluate_shared<S: Real>(
         &mut self,
         threads: &Threads,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
+        problem: &AnyProblem<'_, S, T>,
+        candidates: &mut Candidates<S, T>,
     ) {
         use core::sync::atomic::{AtomicU64, Ordering};
 

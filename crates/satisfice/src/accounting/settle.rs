@@ -1,7 +1,5 @@
 //! Settling evaluated candidates in order: counts, hits, the best, the trace.
 
-use num_traits::Float;
-
 use super::{Ledger, stale_at};
 use crate::archive::{Insertion, Mark};
 use crate::batch::Outcome;
@@ -10,7 +8,7 @@ use crate::budget::StopReason;
 use crate::candidates::Candidates;
 use crate::identity::Identity;
 use crate::observer::Observer;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::report::Counts;
 use crate::scalar::Real;
 
@@ -27,10 +25,10 @@ struct Rules {
 
 impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// Settles what was evaluated, in order.
-    pub(crate) fn settle<P: SatisficingProblem<Solution = T> + ?Sized>(
+    pub(crate) fn settle<S: Real>(
         &mut self,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
+        problem: &AnyProblem<'_, S, T>,
+        candidates: &mut Candidates<S, T>,
         observer: &mut dyn Observer<T>,
     ) {
         let threshold = problem.threshold();
@@ -71,14 +69,14 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// [`Candidates::prepare`], [`Ledger::evaluate`] and [`Ledger::settle`] for one point in one go, for engines that move
     /// one point at a time: lists would cost as much as everything else. Only for a slice that is not over.
     #[inline]
-    pub(crate) fn evaluate_one<P: SatisficingProblem<Solution = T> + ?Sized>(
+    pub(crate) fn evaluate_one<S: Real>(
         &mut self,
-        problem: &P,
-        candidates: &mut Candidates<P::Scalar, T>,
-        point: &mut [P::Scalar],
+        problem: &AnyProblem<'_, S, T>,
+        candidates: &mut Candidates<S, T>,
+        point: &mut [S],
         deletes: bool,
         observer: &mut dyn Observer<T>,
-    ) -> Outcome<P::Scalar> {
+    ) -> Outcome<S> {
         let rules = Rules {
             deletes,
             probing: false,
@@ -102,14 +100,14 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// Settles one solution whose fitness was computed elsewhere.
-    pub(crate) fn settle_one<P: SatisficingProblem<Solution = T> + ?Sized>(
+    pub(crate) fn settle_one<S: Real>(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         solution: &T,
-        fitness: P::Scalar,
+        fitness: S,
         deletes: bool,
         probing: bool,
-    ) -> Outcome<P::Scalar> {
+    ) -> Outcome<S> {
         let rules = Rules {
             deletes,
             probing,
@@ -133,12 +131,12 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// Enters a fitness that the budget has not paid for.
-    pub(crate) fn inform<P: SatisficingProblem<Solution = T> + ?Sized>(
+    pub(crate) fn inform<S: Real>(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         solution: &T,
-        fitness: P::Scalar,
-    ) -> Outcome<P::Scalar> {
+        fitness: S,
+    ) -> Outcome<S> {
         self.counts.informed += 1;
         if !fitness.is_finite() {
             self.counts.non_finite += 1;
@@ -168,15 +166,15 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
 
     /// Judges an evaluated solution. Only one below the threshold is looked up in the archive.
     #[inline(always)]
-    fn judge<P: SatisficingProblem<Solution = T> + ?Sized>(
+    fn judge<S: Real>(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         solution: &T,
-        fitness: P::Scalar,
-        threshold: P::Scalar,
+        fitness: S,
+        threshold: S,
         rules: Rules,
         observer: &mut dyn Observer<T>,
-    ) -> Outcome<P::Scalar> {
+    ) -> Outcome<S> {
         self.counts.fitness_calls += 1;
         if !fitness.is_finite() {
             self.counts.non_finite += 1;
@@ -196,14 +194,14 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
 
     /// Inserts a solution below the threshold into the archive, unless the same one is there.
     #[inline(never)]
-    fn insert_hit<P: SatisficingProblem<Solution = T> + ?Sized>(
+    fn insert_hit<S: Real>(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         solution: &T,
-        fitness: P::Scalar,
+        fitness: S,
         rules: Rules,
         observer: &mut dyn Observer<T>,
-    ) -> Outcome<P::Scalar> {
+    ) -> Outcome<S> {
         if self
             .archive
             .contains_again(solution, rules.absent, &mut self.recent)
@@ -236,11 +234,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// The solution listed for a hit.
-    fn representative<P: SatisficingProblem<Solution = T> + ?Sized>(
-        &self,
-        problem: &P,
-        solution: &T,
-    ) -> Representative<P::Scalar, T> {
+    fn representative<S: Real>(&self, problem: &AnyProblem<'_, S, T>, solution: &T) -> Representative<S, T> {
         let Some(other) = problem.canonical(solution) else {
             return Representative::Itself;
         };
@@ -254,10 +248,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     }
 
     /// A representative with its fitness. One that is not a hit breaks the problem's law and is not used.
-    pub(super) fn if_hit<P: SatisficingProblem<Solution = T> + ?Sized>(
-        problem: &P,
-        other: T,
-    ) -> Option<(T, P::Scalar)> {
+    pub(super) fn if_hit<S: Real>(problem: &AnyProblem<'_, S, T>, other: T) -> Option<(T, S)> {
         let fitness = problem.fitness(&other);
         (fitness.is_finite() && fitness < problem.threshold()).then_some((other, fitness))
     }

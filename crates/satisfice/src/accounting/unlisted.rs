@@ -2,7 +2,7 @@
 
 use super::Ledger;
 use crate::identity::Identity;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 
 /// What the other lanes do not know of a lane.
@@ -38,11 +38,11 @@ impl<T> Ledger<T> {
 impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     /// Notes a solution that is rejected because it is the same as hit `index`, if that hit may turn out not to be listed.
     #[inline]
-    pub(super) fn note_rejected<P: SatisficingProblem<Solution = T> + ?Sized>(
+    pub(super) fn note_rejected<S: Real>(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         solution: &T,
-        fitness: P::Scalar,
+        fitness: S,
         index: usize,
     ) {
         if index < self.listed() {

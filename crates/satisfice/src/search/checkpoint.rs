@@ -4,6 +4,7 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use super::Search;
+use super::kept::KeptSearch;
 use super::lanes::LanesProgress;
 use super::running::Running;
 use super::slice::Slice;
@@ -17,7 +18,7 @@ use crate::catalogue::Description;
 use crate::engine::WarmStart;
 use crate::error::Error;
 use crate::identity::Identity;
-use crate::problem::SatisficingProblem;
+use crate::problem::{AnyProblem, SatisficingProblem};
 use crate::report::{Counts, TracePoint};
 use crate::scalar::Real;
 use crate::space::{AxisKind, Boundary};
@@ -114,7 +115,7 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    pub(super) fn of<P: SatisficingProblem + ?Sized>(problem: &P) -> Self {
+    pub(super) fn of<S: Real, T: Identity + Clone + Send + Sync>(problem: &AnyProblem<'_, S, T>) -> Self {
         let axes = problem.space().axes().iter();
         Self {
             description: problem.description(),
@@ -191,11 +192,13 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// ```
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint<P::Solution> {
-        self.save(self.unfinished.as_ref())
+        self.kept.save(self.kept.unfinished.as_ref())
     }
+}
 
+impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
     /// The search and, if one runs, its slice.
-    pub(super) fn save(&self, running: Option<&Running<P::Scalar, P::Solution>>) -> Checkpoint<P::Solution> {
+    pub(super) fn save(&self, running: Option<&Running<S, T>>) -> Checkpoint<T> {
         let lanes = match running {
             Some(running) => running.lanes.iter().map(|lane| lane.lane.save()).collect(),
             None => self.lanes.iter().map(super::lane::Lane::save).collect(),
@@ -208,7 +211,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Checkpoint {
             contents: Contents {
                 version: env!("CARGO_PKG_VERSION").to_owned(),
-                scalar: P::Scalar::NAME.to_owned(),
+                scalar: S::NAME.to_owned(),
                 engine: self.description(),
                 problem: self.problem.clone(),
                 seed: self.seed,

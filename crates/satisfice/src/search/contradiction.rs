@@ -1,7 +1,8 @@
 //! Whether points that were evaluated contradict the bounds by which a slice excluded regions.
 
 use crate::accounting::Ledger;
-use crate::problem::SatisficingProblem;
+use crate::identity::Identity;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 use crate::space::{AxisKind, Region, Space};
 
@@ -13,9 +14,9 @@ const ROUNDING: f64 = 1e-6;
 
 /// Whether a bound is above F of a point in its region: of the best candidate or of a hit, in the whole space and in ever smaller halves around
 /// the point. Cost: at most 64 calls of the bounds and an eighth of those `made` so far, which are counted nowhere.
-pub(super) fn is_contradicted<P: SatisficingProblem + ?Sized>(
-    problem: &P,
-    ledger: &Ledger<P::Solution>,
+pub(super) fn is_contradicted<S: Real, T: Identity + Clone + Send + Sync>(
+    problem: &AnyProblem<'_, S, T>,
+    ledger: &Ledger<T>,
     made: u64,
 ) -> bool {
     let Some(bounds) = problem.bounds() else {
@@ -23,7 +24,7 @@ pub(super) fn is_contradicted<P: SatisficingProblem + ?Sized>(
     };
     let (space, threshold) = (problem.space(), problem.threshold().f64());
     let mut calls = 0;
-    let mut contradicts = |region: &Region<P::Scalar>, fitness: f64| {
+    let mut contradicts = |region: &Region<S>, fitness: f64| {
         calls += 1;
         let bound = bounds.lower_bound(region).map_or(f64::NEG_INFINITY, Real::f64);
         let excludes_a_hit = fitness < threshold && threshold <= bound;

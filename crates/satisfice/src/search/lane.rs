@@ -9,7 +9,7 @@ use crate::budget::StopReason;
 use crate::engine::{Ask, Engine, Origin};
 use crate::identity::Identity;
 use crate::observer::Observer;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::threads::Threads;
@@ -39,15 +39,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
     /// Fills the batch and prepares its candidates; `false` if the slice is over or pauses. With an observer, an engine that
     /// can advances by itself on the way.
     #[inline]
-    pub(super) fn propose<P>(
+    pub(super) fn propose(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         mut alone: Option<&mut dyn Observer<T>>,
-    ) -> bool
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) -> bool {
         let Self { lane, slice } = self;
         let deletes = lane.engine.deletes();
         if let Stage::Repeat(_) = slice.stage {
@@ -124,10 +121,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
 
     /// Settles the batch and tells the engine.
     #[inline]
-    pub(super) fn settle<P>(&mut self, problem: &P, previous: &Archive<T>, observer: &mut dyn Observer<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn settle(
+        &mut self,
+        problem: &AnyProblem<'_, S, T>,
+        previous: &Archive<T>,
+        observer: &mut dyn Observer<T>,
+    ) {
         let Self { lane, slice } = self;
         let (Stage::Settle(from) | Stage::Asked(from)) = slice.stage else {
             return;
@@ -160,14 +159,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
 
     /// Runs until the slice is over or pauses. `keep` is given if a checkpoint may be wanted: then a batch that a
     /// cancellation has cut short is left as it is, and the lane returns early once `keep` has passed.
-    pub(super) fn advance<P>(
+    pub(super) fn advance(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         keep: Option<core::time::Duration>,
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         let threads = Threads::default();
         loop {
             let mut silent = ();

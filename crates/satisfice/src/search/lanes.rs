@@ -18,7 +18,7 @@ use crate::accounting::Unlisted;
 use crate::budget::{Budget, StopReason};
 use crate::identity::Identity;
 use crate::observer::Observer;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::report::Counts;
 use crate::scalar::Real;
 use crate::threads::{Items, Threads};
@@ -106,16 +106,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
     }
 
     /// Runs the lanes, side by side on the threads, up to the next exchange, or until `keep` has passed.
-    pub(super) fn run_round<P>(
+    pub(super) fn run_round(
         &self,
         lanes: &mut [RunningLane<S, T>],
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &crate::archive::Archive<T>,
         threads: &Threads,
         keep: Option<Duration>,
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         // A round is hundreds of evaluations.
         threads.for_each(lanes.iter_mut(), Items::Long, |lane| {
             lane.advance(problem, previous, keep);
@@ -278,10 +276,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
     }
 
     /// Proposes the next probes in the common archive; `false`, with the reason in the accounts, if the slice is over.
-    pub(super) fn propose_probes<P>(&mut self, problem: &P) -> bool
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn propose_probes(&mut self, problem: &AnyProblem<'_, S, T>) -> bool {
         let Some(reason) = self.progress.ended else {
             return false;
         };
@@ -321,10 +316,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
     }
 
     /// Settles a batch of probes.
-    pub(super) fn settle_probes<P>(&mut self, problem: &P, observer: &mut dyn Observer<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn settle_probes(&mut self, problem: &AnyProblem<'_, S, T>, observer: &mut dyn Observer<T>) {
         let common = &mut self.common;
         if matches!(
             common.stage,

@@ -2,6 +2,8 @@
 
 mod checkpoint;
 mod contradiction;
+mod driven;
+mod kept;
 mod lane;
 mod lanes;
 mod options;
@@ -17,18 +19,12 @@ mod tickets;
 
 use std::sync::Arc;
 
-use num_traits::Float;
-
-use crate::accounting::{Reached, Unlisted};
-use crate::archive::Archive;
-use crate::budget::{Budget, StopReason};
+use crate::budget::Budget;
 use crate::engine::{ConfiguredEngine, WarmStart};
 use crate::error::Error;
-use crate::probes::Probes;
 use crate::problem::SatisficingProblem;
 use crate::report::Report;
 use crate::seed::SearchRng;
-use crate::threads::Threads;
 
 pub use checkpoint::{Checkpoint, Contents, Fingerprint, Unfinished};
 pub use options::RunOptions;
@@ -36,13 +32,7 @@ pub use rounds::{IslandRound, Rounds};
 pub use stepper::Stepper;
 pub use tickets::{Asked, Order, Ticket, TicketCounts, TicketEvent, TicketLog, Tickets, Told};
 
-use lane::{Lane, RunningLane};
-use lanes::{Exchange, LanesProgress};
-use running::Running;
-use slice::Slice;
-
-/// The most lanes of a search.
-const MOST_LANES: usize = 65_536;
+use kept::KeptSearch;
 
 /// A search: engine, settings and hits, for one problem or for one that moves from slice to slice.
 ///
@@ -74,32 +64,7 @@ const MOST_LANES: usize = 65_536;
 /// `P` may be unsized: `Search::<dyn SatisficingProblem<Scalar = f64, Solution = T>>::new()` runs on
 /// `&dyn SatisficingProblem<Scalar = f64, Solution = T>`.
 pub struct Search<P: SatisficingProblem + ?Sized> {
-    engine: ConfiguredEngine<P::Scalar>,
-    seed: u64,
-    threads: usize,
-    islands: usize,
-    warm_start: Option<WarmStart>,
-    probes: Option<f64>,
-    /// Points that the next slice evaluates first.
-    starts: Vec<Vec<P::Scalar>>,
-    slices: u64,
-    /// Number of axes, once a slice has begun.
-    dimension: Option<usize>,
-    /// The hits of the slice that ended last.
-    previous: Arc<Archive<P::Solution>>,
-    /// Engines and random numbers; none before the first slice and after a panic.
-    lanes: Vec<Lane<P::Scalar>>,
-    pool: Option<Threads>,
-    /// Calls of the fitness that several threads shared, in the slice that ended last.
-    shared_calls: u64,
-    /// Points in batches as large as the budget asked for, in that slice.
-    in_full_batches: u64,
-    /// The slice that had begun when the search was saved.
-    unfinished: Option<Running<P::Scalar, P::Solution>>,
-    /// The problem of the slice that began last.
-    problem: Option<Fingerprint>,
-    /// Whether that problem is the one of a checkpoint, and no slice has begun since.
-    resumed: bool,
+    kept: KeptSearch<P::Scalar, P::Solution>,
 }
 
 /// A search by the default engine, as [`Search::new`].
@@ -112,11 +77,11 @@ impl<P: SatisficingProblem + ?Sized> Default for Search<P> {
 impl<P: SatisficingProblem + ?Sized> core::fmt::Debug for Search<P> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("Search")
-            .field("engine", &self.engine)
-            .field("seed", &self.seed)
-            .field("threads", &self.threads)
-            .field("islands", &self.islands)
-            .field("slices", &self.slices)
+            .field("engine", &self.kept.engine)
+            .field("seed", &self.kept.seed)
+            .field("threads", &self.kept.threads)
+            .field("islands", &self.kept.islands)
+            .field("slices", &self.kept.slices)
             .finish_non_exhaustive()
     }
 }
@@ -134,23 +99,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     #[must_use]
     pub fn with(engine: impl Into<ConfiguredEngine<P::Scalar>>) -> Self {
         Self {
-            engine: engine.into(),
-            seed: 0,
-            threads: 1,
-            islands: 1,
-            warm_start: None,
-            probes: None,
-            starts: Vec::new(),
-            slices: 0,
-            dimension: None,
-            previous: Arc::default(),
-            lanes: Vec::new(),
-            pool: None,
-            shared_calls: 0,
-            in_full_batches: 0,
-            unfinished: None,
-            problem: None,
-            resumed: false,
+            kept: KeptSearch::new(engine.into()),
         }
     }
 
@@ -177,16 +126,16 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// # Errors
     /// As [`ConfiguredEngine::set`].
     pub fn set(mut self, name: &str, text: &str) -> Result<Self, Error> {
-        self.engine = self.engine.set(name, text)?;
-        self.lanes.clear();
+        self.kept.engine = self.kept.engine.set(name, text)?;
+        self.kept.lanes.clear();
         Ok(self)
     }
 
     /// The seed, 0 by default. Setting it restarts the sequence of random numbers.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
-        self.seed = seed;
-        for (stream, lane) in (0..).zip(&mut self.lanes) {
+        self.kept.seed = seed;
+        for (stream, lane) in (0..).zip(&mut self.kept.lanes) {
             lane.rng = SearchRng::stream(seed, stream);
         }
         self
@@ -200,8 +149,8 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// busy. With several [islands](Search::islands), threads share the lanes.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
-        self.threads = threads;
-        self.pool = None;
+        self.kept.threads = threads;
+        self.kept.pool = None;
         self
     }
 
@@ -210,7 +159,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// [islands](Search::islands) keep the threads busy. It is no part of a report, which does not depend on threads.
     #[must_use]
     pub fn shared_calls(&self) -> u64 {
-        self.shared_calls
+        self.kept.shared_calls
     }
 
     /// How many points of the slice that ended last were proposed at least as many at a time as [`Budget::with_parallel`] says, with
@@ -218,7 +167,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// not known.
     #[must_use]
     pub fn in_full_batches(&self) -> u64 {
-        self.in_full_batches
+        self.kept.in_full_batches
     }
 
     /// The number of lanes, from 1 (the default) to 65,536: engines side by side, each with an equal share of the
@@ -243,15 +192,15 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// ```
     #[must_use]
     pub fn islands(mut self, islands: usize) -> Self {
-        self.islands = islands;
-        self.lanes.clear();
+        self.kept.islands = islands;
+        self.kept.lanes.clear();
         self
     }
 
     /// How slices after the first use the hits before; by default as the engine prefers.
     #[must_use]
     pub fn warm_start(mut self, rule: WarmStart) -> Self {
-        self.warm_start = Some(rule);
+        self.kept.warm_start = Some(rule);
         self
     }
 
@@ -272,7 +221,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// ```
     #[must_use]
     pub fn start_from<X: AsRef<[P::Scalar]>>(mut self, points: impl IntoIterator<Item = X>) -> Self {
-        self.starts = points.into_iter().map(|point| point.as_ref().to_vec()).collect();
+        self.kept.starts = points.into_iter().map(|point| point.as_ref().to_vec()).collect();
         self
     }
 
@@ -296,13 +245,13 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// ```
     #[must_use]
     pub fn probes(mut self, share: f64) -> Self {
-        self.probes = Some(share);
+        self.kept.probes = Some(share);
         self
     }
 
     /// Forgets the hits so far: the next slice starts cold.
     pub fn clear(&mut self) {
-        self.previous = Arc::default();
+        self.kept.previous = Arc::default();
     }
 
     /// Runs one time slice on `problem`.
@@ -329,7 +278,8 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         if options.cancel.is_some() {
             budget.cancel.clone_from(&options.cancel);
         }
-        self.start(problem, &budget)?.drive(options)
+        let Stepper { problem, driven } = self.start(problem, &budget)?;
+        driven.drive(&problem, options)
     }
 
     /// Begins a slice that is driven by hand. A slice that was saved unfinished is forgotten.
@@ -337,153 +287,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// # Errors
     /// As [`Search::run`].
     pub fn start<'a>(&'a mut self, problem: &'a P, budget: &Budget) -> Result<Stepper<'a, P>, Error> {
-        let (probes, rule) = self.prepare(problem, budget)?;
-        let running = self.begin(problem, budget, &probes, rule)?;
-        Ok(Stepper::new(self, problem, running))
-    }
-
-    /// Checks everything and builds the engines, before a slice begins.
-    fn prepare(&mut self, problem: &P, budget: &Budget) -> Result<(Probes, WarmStart), Error> {
-        budget.check()?;
-        let now = self.check(problem)?;
-        self.check_resumed(problem)?;
-        for (index, point) in self.starts.iter().enumerate() {
-            let checked = problem.space().check_values(point);
-            checked.map_err(|error| Error::StartPoint {
-                index,
-                reason: error.to_string(),
-            })?;
-        }
-        self.resumed = false;
-        self.unfinished = None;
-        self.build_lanes()?;
-        let first = &self.lanes[0].engine;
-        let rule = self.warm_start.unwrap_or_else(|| first.warm_start());
-        let share = self.probes.unwrap_or_else(|| {
-            let (share, planned) = (first.probes(), budget.evaluations);
-            // A proof needs no estimate.
-            let is_proof = self.islands == 1 && Probes::leave_no_room(problem.space(), share, planned);
-            let is_unprobed = is_proof || Probes::are_too_few(share, planned);
-            if is_unprobed { 0.0 } else { share }
-        });
-        let probes = Probes::new(share, self.seed, self.slices)?;
-        if rule == WarmStart::Cold {
-            self.clear();
-        }
-        self.dimension = Some(now);
-        self.problem = Some(Fingerprint::of(problem));
-        Ok((probes, rule))
-    }
-
-    /// Checks what does not depend on the budget; returns the number of axes.
-    fn check(&self, problem: &P) -> Result<usize, Error> {
-        self.engine.check()?;
-        if !(1..=MOST_LANES).contains(&self.islands) {
-            return Err(Error::parameter(
-                "islands",
-                self.islands,
-                "a number from 1 to 65536",
-            ));
-        }
-        if problem.threshold().is_nan() {
-            return Err(Error::Threshold);
-        }
-        let now = problem.space().dimension();
-        match self.dimension {
-            Some(before) if before != now => Err(Error::SpaceChanged { before, now }),
-            _ => Ok(now),
-        }
-    }
-
-    /// Builds the engines, unless they are there.
-    fn build_lanes(&mut self) -> Result<(), Error> {
-        if self.lanes.len() != self.islands {
-            self.lanes = (0..self.islands as u64)
-                .map(|stream| {
-                    Ok(Lane {
-                        engine: self.engine.build()?,
-                        rng: SearchRng::stream(self.seed, stream),
-                    })
-                })
-                .collect::<Result<_, Error>>()?;
-        }
-        Ok(())
-    }
-
-    /// Begins the slice in every lane.
-    fn begin(
-        &mut self,
-        problem: &P,
-        budget: &Budget,
-        probes: &Probes,
-        rule: WarmStart,
-    ) -> Result<Running<P::Scalar, P::Solution>, Error> {
-        let (dimension, count) = (problem.space().dimension(), self.lanes.len());
-        let hits = self.previous.len();
-        let to_verify = |lane: usize| match rule {
-            WarmStart::Verify => lanes::verified_by(lane, count, hits),
-            WarmStart::Cold | WarmStart::Engine => hits..hits,
-        };
-        let exchange = if count > 1 {
-            let common = Slice::begin(budget, dimension, probes.clone(), 0..0, Reached::default());
-            Some(Exchange {
-                common,
-                progress: LanesProgress::new(count),
-            })
-        } else {
-            None
-        };
-        let mut running = Running {
-            lanes: Vec::with_capacity(count),
-            exchange,
-        };
-        let starts = self.take_starts(problem);
-        let at_once = self.threads_at_once(budget);
-        for (number, mut lane) in core::mem::take(&mut self.lanes).into_iter().enumerate() {
-            let (own_budget, own_probes) = match &running.exchange {
-                Some(_) => (
-                    lanes::share_of(budget, number, count, probes.share()),
-                    Probes::new(0.0, self.seed, self.slices)?,
-                ),
-                None => (budget.clone(), probes.clone()),
-            };
-            let mut slice = Slice::begin(
-                &own_budget,
-                dimension,
-                own_probes,
-                to_verify(number),
-                Reached::default(),
-            );
-            slice.ledger.at_once = at_once;
-            slice.ledger.unlisted = running.exchange.is_some().then(|| Unlisted::after(0));
-            slice.starts = starts[lanes::verified_by(number, count, starts.len())].concat();
-            if own_budget.evaluations == Some(0) {
-                slice.ledger.stop = Some(StopReason::Evaluations); // fewer evaluations than lanes
-            } else {
-                lane.engine.begin(&slice.view(problem, &self.previous));
-            }
-            running.lanes.push(RunningLane { lane, slice });
-        }
-        running.pause_for_exchange();
-        Ok(running)
-    }
-
-    /// Where time is limited and evaluations are not, a report depends on the machine anyway: then as many evaluations go on at once as there
-    /// are threads, unless the budget says how many.
-    pub(super) fn threads_at_once(&self, budget: &Budget) -> usize {
-        if budget.is_timed() && budget.parallel.is_none() && self.islands == 1 {
-            Threads::most(self.threads)
-        } else {
-            1
-        }
-    }
-
-    /// The positions that the slice evaluates first.
-    fn take_starts(&mut self, problem: &P) -> Vec<Vec<P::Scalar>> {
-        let mut starts = core::mem::take(&mut self.starts);
-        for point in &mut starts {
-            problem.space().positions(point);
-        }
-        starts
+        let running = self.kept.start(&problem, budget)?;
+        Ok(Stepper::new(&mut self.kept, problem, running))
     }
 }

@@ -3,18 +3,19 @@
 use core::time::Duration;
 use std::sync::Arc;
 
-use super::Search;
 use super::contradiction::is_contradicted;
+use super::kept::KeptSearch;
 use super::running::Running;
 use super::slice::Slice;
 use crate::budget::StopReason;
 use crate::catalogue::Description;
-use crate::problem::SatisficingProblem;
+use crate::identity::Identity;
+use crate::problem::AnyProblem;
 use crate::report::{Completeness, Report};
 use crate::scalar::Real;
 use crate::unseen::Unseen;
 
-impl<P: SatisficingProblem + ?Sized> Search<P> {
+impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
     /// Name and parameters of the engine.
     pub(super) fn description(&self) -> Description {
         Description {
@@ -24,11 +25,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     }
 
     /// Ends the slice and writes the report.
-    pub(super) fn report(
-        &mut self,
-        problem: &P,
-        running: Running<P::Scalar, P::Solution>,
-    ) -> Report<P::Solution> {
+    pub(super) fn report(&mut self, problem: &AnyProblem<'_, S, T>, running: Running<S, T>) -> Report<T> {
         let (mut slice, lanes) = running.into_parts();
         let evaluations = slice.ledger.counts.evaluations;
         let engines = lanes.iter().map(|lane| lane.engine.sources());
@@ -48,10 +45,10 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// The report of the slice as it is, without its hits; with the time it took and its overshoot.
     pub(super) fn describe(
         &self,
-        problem: &P,
-        slice: &Slice<P::Scalar, P::Solution>,
+        problem: &AnyProblem<'_, S, T>,
+        slice: &Slice<S, T>,
         (elapsed, overshoot): (Duration, Duration),
-    ) -> Report<P::Solution> {
+    ) -> Report<T> {
         let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
         let counts = slice.counts();
         // A hit that only a probe found contradicts an engine that says it has covered everything; so does a bound above F.
@@ -67,7 +64,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Report {
             problem: problem.description(),
             engine: self.description(),
-            scalar: P::Scalar::NAME.to_owned(),
+            scalar: S::NAME.to_owned(),
             seed: self.seed,
             islands: self.islands,
             slice: self.slices,

@@ -1,6 +1,7 @@
 //! Continuing a search that was saved.
 
 use super::Search;
+use super::kept::KeptSearch;
 use core::time::Duration;
 
 use super::checkpoint::{Checkpoint, Contents, Fingerprint, Unfinished, fits, named};
@@ -18,7 +19,7 @@ use crate::engine::ConfiguredEngine;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::probes::Probes;
-use crate::problem::SatisficingProblem;
+use crate::problem::{AnyProblem, SatisficingProblem};
 use crate::report::Report;
 use crate::scalar::Real;
 use crate::state::{Reader, State};
@@ -40,6 +41,57 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         checkpoint: Checkpoint<P::Solution>,
         engine: impl Into<ConfiguredEngine<P::Scalar>>,
     ) -> Result<Self, Error> {
+        let kept = KeptSearch::resume(checkpoint, engine.into())?;
+        Ok(Self { kept })
+    }
+
+    /// Runs the slice that had not ended when the search was saved to its end. Its budget is the one it began with, with the
+    /// [cancellation of the options](RunOptions::cancel).
+    ///
+    /// # Errors
+    /// [`Error::State`] if no slice has begun, or if it began with another problem: another
+    /// [description](SatisficingProblem::description), space or threshold; [`Error::SpaceChanged`], [`Error::Threshold`],
+    /// [`Error::Threads`].
+    pub fn run_resumed(
+        &mut self,
+        problem: &P,
+        options: RunOptions<'_, P::Solution>,
+    ) -> Result<Report<P::Solution>, Error> {
+        if let Some(running) = &mut self.kept.unfinished {
+            running.set_cancel(options.cancel.as_ref());
+        }
+        let Stepper { problem, driven } = self.start_resumed(problem)?;
+        driven.drive(&problem, options)
+    }
+
+    /// Continues the slice that had not ended when the search was saved, by hand.
+    ///
+    /// # Errors
+    /// As [`Search::run_resumed`].
+    pub fn start_resumed<'a>(&'a mut self, problem: &'a P) -> Result<Stepper<'a, P>, Error> {
+        let running = self.kept.start_resumed(&problem)?;
+        Ok(Stepper::new(&mut self.kept, problem, running))
+    }
+
+    /// The same, with a flag that cancels the slice, in place of the one that it began with.
+    ///
+    /// # Errors
+    /// As [`Search::run_resumed`].
+    pub fn start_resumed_until<'a>(
+        &'a mut self,
+        problem: &'a P,
+        cancel: &Cancel,
+    ) -> Result<Stepper<'a, P>, Error> {
+        if let Some(running) = &mut self.kept.unfinished {
+            running.set_cancel(Some(cancel));
+        }
+        self.start_resumed(problem)
+    }
+}
+
+impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
+    /// The search that was saved.
+    fn resume(checkpoint: Checkpoint<T>, engine: ConfiguredEngine<S>) -> Result<Self, Error> {
         let (mut search, saved, lanes) = Self::resume_parts(checkpoint, engine)?;
         if saved.tickets.is_some() {
             return Err(Error::State(
@@ -60,13 +112,14 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// The search, the rest of the checkpoint, and its engines.
     #[expect(clippy::type_complexity, reason = "three things")]
     pub(super) fn resume_parts(
-        checkpoint: Checkpoint<P::Solution>,
-        engine: impl Into<ConfiguredEngine<P::Scalar>>,
-    ) -> Result<(Self, Contents<P::Solution>, Vec<Lane<P::Scalar>>), Error> {
+        checkpoint: Checkpoint<T>,
+        engine: ConfiguredEngine<S>,
+    ) -> Result<(Self, Contents<T>, Vec<Lane<S>>), Error> {
         let saved = checkpoint.contents;
         fits("version", &saved.version, env!("CARGO_PKG_VERSION"))?;
-        fits("scalar", &saved.scalar, P::Scalar::NAME)?;
-        let mut search = Self::with(engine).islands(saved.islands).seed(saved.seed);
+        fits("scalar", &saved.scalar, S::NAME)?;
+        let mut search = Self::new(engine);
+        (search.islands, search.seed) = (saved.islands, saved.seed);
         fits("engine", &named(&saved.engine), &named(&search.description()))?;
         search.warm_start = saved.warm_start;
         search.probes = saved.probes;
@@ -83,68 +136,36 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         Ok((search, saved, lanes))
     }
 
-    /// Runs the slice that had not ended when the search was saved to its end. Its budget is the one it began with, with the
-    /// [cancellation of the options](RunOptions::cancel).
-    ///
-    /// # Errors
-    /// [`Error::State`] if no slice has begun, or if it began with another problem: another
-    /// [description](SatisficingProblem::description), space or threshold; [`Error::SpaceChanged`], [`Error::Threshold`],
-    /// [`Error::Threads`].
-    pub fn run_resumed(
-        &mut self,
-        problem: &P,
-        options: RunOptions<'_, P::Solution>,
-    ) -> Result<Report<P::Solution>, Error> {
-        if let Some(running) = &mut self.unfinished {
-            running.set_cancel(options.cancel.as_ref());
+    /// Checks that the problem is the one that the search was saved with.
+    pub(super) fn check_saved(&self, problem: &AnyProblem<'_, S, T>) -> Result<(), Error> {
+        self.check(problem)?;
+        match &self.problem {
+            Some(saved) => saved.check::<S>(&Fingerprint::of(problem)),
+            None => Ok(()),
         }
-        self.start_resumed(problem)?.drive(options)
     }
 
-    /// Continues the slice that had not ended when the search was saved, by hand.
-    ///
-    /// # Errors
-    /// As [`Search::run_resumed`].
-    pub fn start_resumed<'a>(&'a mut self, problem: &'a P) -> Result<Stepper<'a, P>, Error> {
-        self.check(problem)?;
-        if let Some(saved) = &self.problem {
-            saved.check::<P::Scalar>(&Fingerprint::of(problem))?;
-        }
+    /// Continues the slice that had not ended when the search was saved.
+    fn start_resumed(&mut self, problem: &AnyProblem<'_, S, T>) -> Result<Running<S, T>, Error> {
+        self.check_saved(problem)?;
         let running = self.unfinished.take();
         let mut running = running.ok_or_else(|| Error::State("no slice has begun".to_owned()))?;
         for lane in &mut running.lanes {
             lane.slice.ledger.at_once = self.threads_at_once(&lane.slice.ledger.budget);
         }
         self.resumed = false;
-        Ok(Stepper::new(self, problem, running))
+        Ok(running)
     }
 
     /// # Errors
     /// [`Error::State`] if the search was saved with a problem of another name.
-    pub(super) fn check_resumed(&self, problem: &P) -> Result<(), Error> {
+    pub(super) fn check_resumed(&self, problem: &AnyProblem<'_, S, T>) -> Result<(), Error> {
         match &self.problem {
             Some(saved) if self.resumed => {
                 fits("problem", &saved.description.name, &problem.description().name)
             }
             _ => Ok(()),
         }
-    }
-}
-
-impl<P: SatisficingProblem + ?Sized> Search<P> {
-    /// The same, with a flag that cancels the slice, in place of the one that it began with.
-    ///
-    /// # Errors
-    /// As [`Search::run_resumed`].
-    pub fn start_resumed_until<'a>(
-        &'a mut self,
-        problem: &'a P,
-        cancel: &Cancel,
-    ) -> Result<Stepper<'a, P>, Error> {
-        if let Some(running) = &mut self.unfinished {
-            running.set_cancel(Some(cancel));
-        }
-        self.start_resumed(problem)
     }
 }
 

@@ -4,7 +4,9 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use super::Search;
-use super::checkpoint::{Checkpoint, Fingerprint};
+use super::checkpoint::Checkpoint;
+use super::driven::Driven;
+use super::kept::KeptSearch;
 use super::lane::RunningLane;
 use super::lanes::Exchange;
 use super::resume::restore;
@@ -16,8 +18,9 @@ use crate::engine::ConfiguredEngine;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::observer::Observer;
-use crate::problem::SatisficingProblem;
+use crate::problem::{AnyProblem, SatisficingProblem};
 use crate::report::Report;
+use crate::scalar::Real;
 
 /// A slice of several [islands](Search::islands) that run elsewhere, round by round.
 ///
@@ -116,6 +119,7 @@ impl<T: Identity + Clone + Send + Sync> IslandRound<T> {
     {
         let mut search = Search::resume(self.state.clone(), engine)?;
         let lane = search
+            .kept
             .unfinished
             .as_mut()
             .and_then(|running| running.lanes.first_mut());
@@ -133,9 +137,10 @@ impl<T: Identity + Clone + Send + Sync> IslandRound<T> {
     where
         P: SatisficingProblem<Solution = T> + ?Sized,
     {
-        if !fitness.is_empty() || stepper.is_out() {
-            stepper.end_with(fitness)?;
+        if !fitness.is_empty() || stepper.driven.is_out() {
+            stepper.driven.end_with(&stepper.problem, fitness)?;
             let lane = stepper
+                .driven
                 .running
                 .as_mut()
                 .and_then(|running| running.lanes.first_mut());
@@ -165,7 +170,7 @@ impl<T: Identity + Clone + Send + Sync> IslandRound<T> {
             Some(cancel) => search.start_resumed_until(problem, cancel)?,
             None => search.start_resumed(problem)?,
         };
-        stepper.run_to_pause();
+        stepper.driven.run_to_pause(&stepper.problem);
         if cancel.is_some_and(Cancel::is_cancelled) {
             return Err(Error::State("the round was cancelled".to_owned()));
         }
@@ -179,16 +184,15 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
     /// # Errors
     /// As [`Search::run`]; [`Error::Parameter`] for a search of one island.
     pub fn begin(mut search: Search<P>, problem: impl Into<Arc<P>>, budget: &Budget) -> Result<Self, Error> {
-        if search.islands < 2 {
+        if search.kept.islands < 2 {
             return Err(Error::parameter(
                 "islands",
-                search.islands,
+                search.kept.islands,
                 "at least 2 to run in rounds",
             ));
         }
         let problem = problem.into();
-        let (probes, rule) = search.prepare(&problem, budget)?;
-        let running = search.begin(&problem, budget, &probes, rule)?;
+        let running = search.kept.start(&&*problem, budget)?;
         Ok(Self {
             search,
             problem,
@@ -209,17 +213,15 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
     ) -> Result<Self, Error> {
         let problem = problem.into();
         let mut search = Search::<P>::resume(checkpoint, engine)?;
-        search.check(&*problem)?;
-        if let Some(saved) = &search.problem {
-            saved.check::<P::Scalar>(&Fingerprint::of(&*problem))?;
-        }
+        search.kept.check_saved(&&*problem)?;
         let running = search
+            .kept
             .unfinished
             .take()
             .filter(|running| running.exchange.is_some());
         let running =
             running.ok_or_else(|| Error::State("no slice of several islands has begun".to_owned()))?;
-        search.resumed = false;
+        search.kept.resumed = false;
         Ok(Self {
             search,
             problem,
@@ -251,7 +253,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
         let due = lanes.iter().enumerate();
         let due = due.filter(|(_, lane)| !Exchange::is_due(exchange, core::slice::from_ref(*lane)));
         due.map(|(island, lane)| {
-            let mut state = self.search.save(None);
+            let mut state = self.search.kept.save(None);
             state.contents.islands = 1;
             state.contents.lanes = vec![lane.lane.save()];
             state.contents.unfinished = Some(lane.slice.save());
@@ -268,7 +270,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
     /// search; errors of [`Search::resume`].
     pub fn take(&mut self, done: IslandRound<P::Solution>) -> Result<(), Error> {
         let misfit = || Error::State("the round does not fit the search".to_owned());
-        let (_, saved, lanes) = Search::<P>::resume_parts(done.state, self.search.engine.clone())?;
+        let (_, saved, lanes) = KeptSearch::resume_parts(done.state, self.search.kept.engine.clone())?;
         let lane = restore(saved, lanes)?.lanes.into_iter().next();
         let mut lane: RunningLane<_, _> = lane.ok_or_else(misfit)?;
         lane.slice.pause = done.until;
@@ -294,7 +296,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
         let Some(exchange) = &mut self.running.exchange else {
             return &[];
         };
-        while !self.asked && !self.ended && exchange.propose_probes(&*self.problem) {
+        while !self.asked && !self.ended && exchange.propose_probes(&&*self.problem) {
             let common = &mut exchange.common;
             if let Stage::Settle(from) = common.stage {
                 common.stage = Stage::Asked(from);
@@ -303,7 +305,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
                 common
                     .ledger
                     .evaluated_elsewhere(common.candidates.outcomes.len());
-                exchange.settle_probes(&*self.problem, &mut ());
+                exchange.settle_probes(&&*self.problem, &mut ());
             } else {
                 self.asked = true;
             }
@@ -331,7 +333,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
         common.candidates.take_fitness(fitness)?;
         common.ledger.evaluated_elsewhere(fitness.len());
         self.asked = false;
-        exchange.settle_probes(&*self.problem, &mut ());
+        exchange.settle_probes(&&*self.problem, &mut ());
         Ok(())
     }
 
@@ -362,7 +364,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
     /// The search and the slice as they are now; rounds that are out are run again after resuming.
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint<P::Solution> {
-        self.search.save(Some(&self.running))
+        self.search.kept.save(Some(&self.running))
     }
 
     /// The slice as it is, without its hits.
@@ -379,25 +381,25 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
     /// Ends the slice and reports. One that is not over counts as cancelled.
     #[must_use]
     pub fn finish(mut self) -> Report<P::Solution> {
-        self.search.report(&self.problem, self.running)
+        self.search.kept.report(&&*self.problem, self.running)
     }
 }
 
-impl<P: SatisficingProblem + ?Sized> Stepper<'_, P> {
+impl<S: Real, T: Identity + Clone + Send + Sync> Driven<'_, S, T> {
     /// Whether a batch is out.
     fn is_out(&self) -> bool {
         self.turn != Turn::Over
     }
 
     /// Runs the only lane until it pauses or the slice is over.
-    fn run_to_pause(&mut self) {
-        let previous = Arc::clone(&self.search.previous);
+    fn run_to_pause(&mut self, problem: &AnyProblem<'_, S, T>) {
+        let previous = Arc::clone(&self.kept.previous);
         if let Some(lane) = self
             .running
             .as_mut()
             .and_then(|running| running.lanes.first_mut())
         {
-            lane.advance(self.problem, &previous, None);
+            lane.advance(problem, &previous, None);
         }
         self.turn = Turn::Over;
     }

@@ -8,7 +8,7 @@ use crate::archive::Archive;
 use crate::budget::{Cancel, StopReason};
 use crate::identity::Identity;
 use crate::observer::Observer;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 
 /// All lanes of a slice that has begun, and the exchange between them if there are several.
@@ -54,15 +54,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Running<S, T> {
     }
 
     /// Proposes the next batch that has to be evaluated, lane by lane.
-    pub(super) fn propose<P>(
+    pub(super) fn propose(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         observer: &mut dyn Observer<T>,
-    ) -> Turn
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) -> Turn {
         loop {
             let searching = self.exchange.as_ref().is_none_or(Exchange::is_searching);
             if searching {
@@ -97,15 +94,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Running<S, T> {
     }
 
     /// Settles the batch whose turn it is.
-    pub(super) fn settle<P>(
+    pub(super) fn settle(
         &mut self,
         turn: Turn,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         observer: &mut dyn Observer<T>,
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         match (turn, &mut self.exchange) {
             (Turn::Lane(lane), None) => self.lanes[lane].settle(problem, previous, observer),
             // Observers are told at the exchange.

@@ -9,7 +9,7 @@ use crate::candidates::Candidates;
 use crate::engine::Ask;
 use crate::identity::Identity;
 use crate::probes::Probes;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::report::{Counts, SourceCount, SourceTrace};
 use crate::scalar::Real;
 use crate::view::{Calls, Scratches, View};
@@ -79,10 +79,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     }
 
     #[inline]
-    pub(super) fn view<'a, P>(&'a self, problem: &'a P, previous: &'a Archive<T>) -> View<'a, P>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn view<'a>(
+        &'a self,
+        problem: &'a AnyProblem<'a, S, T>,
+        previous: &'a Archive<T>,
+    ) -> View<'a, S, T> {
         View {
             problem,
             previous,
@@ -103,10 +104,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
 
     /// Prepares the candidates of the batch, as many as the budget has room for.
     #[inline]
-    pub(super) fn prepare<P>(&mut self, problem: &P, from: BatchSource, deletes: bool)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn prepare(&mut self, problem: &AnyProblem<'_, S, T>, from: BatchSource, deletes: bool) {
         let limit = self.ledger.remaining();
         self.candidates.probing = from == BatchSource::Probes;
         let ledger = &self.ledger;
@@ -118,10 +116,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     }
 
     /// Proposes the next hits of the slice before, to be evaluated again.
-    pub(super) fn propose_previous<P>(&mut self, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn propose_previous(&mut self, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let (space, limit) = (problem.space(), self.ledger.remaining());
         let next = &previous.solutions()[self.to_verify.clone()];
         let next = &next[..next.len().min(VERIFY_BATCH).min(limit)];
@@ -146,10 +141,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     }
 
     /// Proposes the next points that the user has given.
-    pub(super) fn propose_starts<P>(&mut self, problem: &P, deletes: bool)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn propose_starts(&mut self, problem: &AnyProblem<'_, S, T>, deletes: bool) {
         let dimension = self.batch.dimension();
         let numbers = self.starts.len().min(VERIFY_BATCH * dimension);
         self.batch.clear();
@@ -161,25 +153,20 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     }
 
     /// Proposes the next uniform probes, at most so many.
-    pub(super) fn propose_probes<P>(&mut self, problem: &P, most: usize)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn propose_probes(&mut self, problem: &AnyProblem<'_, S, T>, most: usize) {
         self.probes.propose(problem, &mut self.batch);
         self.batch.truncate(most);
         self.prepare(problem, BatchSource::Probes, true);
     }
 
     /// Prepares a batch again that was out when the slice was saved.
-    pub(super) fn propose_again<P>(
+    pub(super) fn propose_again(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         pending: Pending<S>,
         deletes: bool,
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         if pending.from == BatchSource::WarmStart {
             self.propose_previous(problem, previous);
         } else {
@@ -221,10 +208,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
     }
 
     /// Settles a batch of probes.
-    pub(super) fn settle_probes<P>(&mut self, problem: &P)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn settle_probes(&mut self, problem: &AnyProblem<'_, S, T>) {
         self.probes.take(
             problem,
             &self.batch,

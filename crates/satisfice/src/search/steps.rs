@@ -4,17 +4,19 @@ use crate::accounting::Ledger;
 use crate::batch::Outcome;
 use crate::candidates::Candidates;
 use crate::engine::Steps;
+use crate::identity::Identity;
 use crate::observer::Observer;
 use crate::probes::Probes;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
+use crate::scalar::Real;
 
 /// What a step needs of the slice.
-pub(super) struct SingleSteps<'a, P: SatisficingProblem + ?Sized> {
-    pub(super) problem: &'a P,
-    pub(super) ledger: &'a mut Ledger<P::Solution>,
-    pub(super) candidates: &'a mut Candidates<P::Scalar, P::Solution>,
+pub(super) struct SingleSteps<'a, S, T> {
+    pub(super) problem: &'a AnyProblem<'a, S, T>,
+    pub(super) ledger: &'a mut Ledger<T>,
+    pub(super) candidates: &'a mut Candidates<S, T>,
     pub(super) probes: &'a Probes,
-    pub(super) observer: &'a mut dyn Observer<P::Solution>,
+    pub(super) observer: &'a mut dyn Observer<T>,
     pub(super) deletes: bool,
     /// Evaluations after which the engine is to pause.
     pub(super) pause: u64,
@@ -22,8 +24,8 @@ pub(super) struct SingleSteps<'a, P: SatisficingProblem + ?Sized> {
     pub(super) over: bool,
 }
 
-impl<P: SatisficingProblem + ?Sized> Steps<P::Scalar> for SingleSteps<'_, P> {
-    fn take(&mut self, position: &mut [P::Scalar]) -> (Outcome<P::Scalar>, bool) {
+impl<S: Real, T: Identity + Clone + Send + Sync> Steps<S> for SingleSteps<'_, S, T> {
+    fn take(&mut self, position: &mut [S]) -> (Outcome<S>, bool) {
         if self.over {
             return (Outcome::NotEvaluated, false); // no budget is overrun by an engine that does not listen
         }

@@ -12,14 +12,14 @@ use crate::archive::Archive;
 use crate::batch::{Batch, Outcome};
 use crate::budget::{Budget, StopReason};
 use crate::engine::{Answers, Ask, Origin, WarmStart};
+use crate::error::Error;
 use crate::identity::Identity;
-use crate::probes::Probes;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
+use crate::search::kept::{KeptSearch, MOST_LANES};
 use crate::search::lane::{EMPTY_ASKS, Lane, RunningLane};
 use crate::search::running::Running;
 use crate::search::slice::Slice;
-use crate::search::{MOST_LANES, Search};
 use crate::seed::SearchRng;
 use crate::view::View;
 
@@ -47,24 +47,20 @@ pub(super) struct Eager<S, T> {
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     /// Begins the slice.
-    pub(super) fn begin<P>(
-        search: &mut Search<P>,
-        problem: &P,
+    pub(super) fn begin(
+        kept: &mut KeptSearch<S, T>,
+        problem: &AnyProblem<'_, S, T>,
         budget: &Budget,
-        probes: Probes,
-        rule: WarmStart,
-    ) -> Self
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) -> Result<Self, Error> {
+        let (probes, rule) = kept.prepare(problem, budget)?;
         let dimension = problem.space().dimension();
-        let hits = search.previous.len();
+        let hits = kept.previous.len();
         let to_verify = match rule {
             WarmStart::Verify => 0..hits,
             WarmStart::Cold | WarmStart::Engine => hits..hits,
         };
         let mut slice = Slice::begin(budget, dimension, probes, to_verify, Reached::default());
-        slice.starts = search.take_starts(problem).concat();
+        slice.starts = kept.take_starts(problem).concat();
         let mut eager = Self {
             slice,
             lanes: Vec::new(),
@@ -75,16 +71,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             given: Vec::new(),
             has_gaps: false,
         };
-        for lane in core::mem::take(&mut search.lanes) {
-            eager.add(lane, problem, &search.previous);
+        for lane in core::mem::take(&mut kept.lanes) {
+            eager.add(lane, problem, &kept.previous);
         }
-        eager
+        Ok(eager)
     }
 
-    fn add<P>(&mut self, mut lane: Lane<S>, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn add(&mut self, mut lane: Lane<S>, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         self.slice.ledger.in_any_order = lane.engine.answers() == Answers::AnyOrder;
         let view = self.slice.view(problem, previous);
         lane.engine.begin(&view);
@@ -96,16 +89,18 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Gives out the next solution under a number; `None` if others have to be answered first or the slice is over.
-    pub(super) fn next<P>(&mut self, number: u64, problem: &P, search: &Search<P>) -> Option<T>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn next(
+        &mut self,
+        number: u64,
+        problem: &AnyProblem<'_, S, T>,
+        kept: &KeptSearch<S, T>,
+    ) -> Option<T> {
         let mut fruitless = 0;
         while fruitless < FRUITLESS && !self.slice.ledger.is_over() {
             if self.slice.ledger.remaining() <= self.open.len() {
                 return None;
             }
-            let Some((position, solution, of)) = self.candidate(problem, search) else {
+            let Some((position, solution, of)) = self.candidate(problem, kept) else {
                 if self.open.is_empty() {
                     self.slice.ledger.stop = self.slice.ledger.stop.or(self.verdict());
                 }
@@ -114,13 +109,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             let deletes = self.deletes(of);
             if deletes && self.slice.ledger.archive.contains(&solution) {
                 self.slice.ledger.settle_deleted();
-                self.route(of, &position, Outcome::Deleted, problem, &search.previous);
+                self.route(of, &position, Outcome::Deleted, problem, &kept.previous);
             } else if self
                 .points_out
                 .contains(problem.space().axes(), &position, &self.open)
             {
                 fruitless += 1;
-                self.route(of, &position, Outcome::NotEvaluated, problem, &search.previous);
+                self.route(of, &position, Outcome::NotEvaluated, problem, &kept.previous);
             } else {
                 if let Of::Lane { lane, .. } = of {
                     self.lanes[lane].progress.out += 1;
@@ -161,12 +156,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// The next candidate.
-    fn candidate<P>(&mut self, problem: &P, search: &Search<P>) -> Option<(Vec<S>, T, Of)>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn candidate(
+        &mut self,
+        problem: &AnyProblem<'_, S, T>,
+        kept: &KeptSearch<S, T>,
+    ) -> Option<(Vec<S>, T, Of)> {
         if let Some(index) = self.slice.to_verify.next() {
-            let solution = search.previous.solutions().get(index)?.clone();
+            let solution = kept.previous.solutions().get(index)?.clone();
             let position = super::position_of(problem, &solution).unwrap_or_default();
             return Some((position, solution, Of::Verified));
         }
@@ -182,7 +178,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         let (mut position, of) = if self.slice.starts.is_empty() {
             match self.probes.pop_front() {
                 Some(position) => (position, Of::Probe),
-                None => self.point(problem, search)?,
+                None => self.point(problem, kept)?,
             }
         } else {
             (self.slice.starts.drain(..dimension).collect(), Of::Start)
@@ -198,11 +194,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// The next point of a lane.
-    fn point<P>(&mut self, problem: &P, search: &Search<P>) -> Option<(Vec<S>, Of)>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
-        let previous = &*search.previous;
+    fn point(&mut self, problem: &AnyProblem<'_, S, T>, kept: &KeptSearch<S, T>) -> Option<(Vec<S>, Of)> {
+        let previous = &*kept.previous;
         loop {
             if self.lanes.iter().any(EagerLane::has_covered) {
                 return None;
@@ -229,9 +222,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 && self.lanes.iter().all(|lane| {
                     lane.progress.last == Ask::More && lane.lane.engine.answers() == Answers::ByBatch
                 })
-                && let Ok(engine) = search.engine.build()
+                && let Ok(engine) = kept.engine.build()
             {
-                let rng = SearchRng::stream(search.seed, self.lanes.len() as u64);
+                let rng = SearchRng::stream(kept.seed, self.lanes.len() as u64);
                 self.add(Lane { engine, rng }, problem, previous);
             } else {
                 return None;
@@ -240,10 +233,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Asks a lane for its next batch.
-    fn ask<P>(&mut self, lane: usize, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn ask(&mut self, lane: usize, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let EagerLane {
             lane,
             batch,
@@ -280,10 +270,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Tells a lane's engine what is known of its batch.
-    fn tell_batch<P>(&mut self, lane: usize, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn tell_batch(&mut self, lane: usize, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let EagerLane {
             lane,
             batch,
@@ -299,10 +286,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Lets a lane, the probes, or all engines know what became of a candidate that is not out any more.
-    fn route<P>(&mut self, of: Of, position: &[S], outcome: Outcome<S>, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn route(
+        &mut self,
+        of: Of,
+        position: &[S],
+        outcome: Outcome<S>,
+        problem: &AnyProblem<'_, S, T>,
+        previous: &Archive<T>,
+    ) {
         match of {
             Of::Lane { lane, batch, place } => {
                 let view = self.slice.view(problem, previous);
@@ -338,16 +329,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         }
     }
 
-    fn tell_all<P>(
+    fn tell_all(
         &mut self,
         position: &[S],
         outcome: Outcome<S>,
         origin: Origin,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         if position.is_empty() || outcome == Outcome::NotEvaluated {
             return;
         }
@@ -359,16 +348,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Takes a value, or forgets a ticket; `None` if it is not open.
-    pub(super) fn tell<P>(
+    pub(super) fn tell(
         &mut self,
         number: u64,
         value: Option<S>,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
-    ) -> Option<Told>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) -> Option<Told> {
         let Open {
             solution,
             position,
@@ -400,16 +386,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Enters a value from elsewhere, and tells every engine.
-    pub(super) fn inform<P>(
+    pub(super) fn inform(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         solution: &T,
         value: S,
         position: &[S],
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         let outcome = self.slice.ledger.inform(problem, solution, value);
         self.tell_all(position, outcome, Origin::Start, problem, previous);
     }

@@ -16,8 +16,10 @@ use super::Search;
 use crate::archive::Archive;
 use crate::budget::Budget;
 use crate::error::Error;
-use crate::problem::SatisficingProblem;
+use crate::identity::Identity;
+use crate::problem::{AnyProblem, SatisficingProblem};
 use crate::report::{Counts, Report};
+use crate::scalar::Real;
 
 use eager::Eager;
 use log::ValueBits;
@@ -147,10 +149,10 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         order: Order,
     ) -> Result<Self, Error> {
         let problem = problem.into();
-        let (probes, rule) = search.prepare(&problem, budget)?;
+        let kept = &mut search.kept;
         let state = match order {
-            Order::Ordered => Inner::Ordered(Ordered::new(search.begin(&problem, budget, &probes, rule)?)),
-            Order::Eager => Inner::Eager(Eager::begin(&mut search, &*problem, budget, probes, rule)),
+            Order::Ordered => Inner::Ordered(Ordered::new(kept.start(&&*problem, budget)?)),
+            Order::Eager => Inner::Eager(Eager::begin(kept, &&*problem, budget)?),
         };
         Ok(Self::new(search, problem, state))
     }
@@ -212,10 +214,10 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         }
         let n = repeated + wanted;
         while asked.len() < n {
-            let (search, problem) = (&mut self.search, &*self.problem);
+            let (kept, problem) = (&self.search.kept, &&*self.problem);
             let solution = match &mut self.state {
-                Inner::Ordered(ordered) => ordered.next(self.next, problem, &search.previous),
-                Inner::Eager(eager) => eager.next(self.next, problem, search),
+                Inner::Ordered(ordered) => ordered.next(self.next, problem, &kept.previous),
+                Inner::Eager(eager) => eager.next(self.next, problem, kept),
             };
             let Some(solution) = solution else { break };
             let ticket = Ticket(self.next);
@@ -255,7 +257,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
 
     fn take(&mut self, ticket: Ticket, value: P::Scalar) -> Result<Told, Error> {
         self.check(ticket)?;
-        let (problem, previous) = (&*self.problem, &self.search.previous);
+        let (problem, previous) = (&&*self.problem, &self.search.kept.previous);
         let taken = match &mut self.state {
             Inner::Ordered(ordered) => ordered.tell(ticket.0, Some(value), problem, previous),
             Inner::Eager(eager) => eager.tell(ticket.0, Some(value), problem, previous),
@@ -273,7 +275,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// [`Error::Ticket`] for a ticket that was never given out.
     pub fn forget(&mut self, ticket: Ticket) -> Result<bool, Error> {
         self.check(ticket)?;
-        let (problem, previous) = (&*self.problem, &self.search.previous);
+        let (problem, previous) = (&&*self.problem, &self.search.kept.previous);
         let was_open = match &mut self.state {
             Inner::Ordered(ordered) => ordered.tell(ticket.0, None, problem, previous),
             Inner::Eager(eager) => eager.tell(ticket.0, None, problem, previous),
@@ -295,7 +297,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// # Errors
     /// [`Error::Solution`] if the values that encode the solution are not in the space.
     pub fn inform(&mut self, solution: &P::Solution, value: P::Scalar) -> Result<(), Error> {
-        let (problem, previous) = (&*self.problem, &self.search.previous);
+        let (problem, previous) = (&&*self.problem, &self.search.kept.previous);
         let position = position_of(problem, solution)?;
         match &mut self.state {
             Inner::Ordered(ordered) => ordered.inform(problem, previous, solution, value, position),
@@ -416,7 +418,8 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         let slice = self.slice();
         let mut report = self
             .search
-            .describe(&self.problem, slice, slice.ledger.times_so_far());
+            .kept
+            .describe(&&*self.problem, slice, slice.ledger.times_so_far());
         let evaluations = report.counts.evaluations;
         match &self.state {
             Inner::Ordered(ordered) => {
@@ -454,13 +457,13 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
             ..
         } = self;
         let running = match state {
-            Inner::Ordered(ordered) => ordered.finish(&*problem, &search.previous),
+            Inner::Ordered(ordered) => ordered.finish(&&*problem, &search.kept.previous),
             Inner::Eager(eager) => eager.finish(),
         };
-        (search.report(&problem, running), search)
+        (search.kept.report(&&*problem, running), search)
     }
 
-    fn slice(&self) -> &super::Slice<P::Scalar, P::Solution> {
+    fn slice(&self) -> &super::slice::Slice<P::Scalar, P::Solution> {
         match &self.state {
             Inner::Ordered(ordered) => ordered.running.reported(),
             Inner::Eager(eager) => &eager.slice,
@@ -474,10 +477,10 @@ fn most_open(dimension: usize) -> usize {
 }
 
 /// Position of a solution, empty if the problem does not encode it.
-fn position_of<P: SatisficingProblem + ?Sized>(
-    problem: &P,
-    solution: &P::Solution,
-) -> Result<Vec<P::Scalar>, Error> {
+fn position_of<S: Real, T: Identity + Clone + Send + Sync>(
+    problem: &AnyProblem<'_, S, T>,
+    solution: &T,
+) -> Result<Vec<S>, Error> {
     let space = problem.space();
     let mut position = vec![num_traits::Zero::zero(); space.dimension()];
     let Some(encoding) = problem.encoding() else {

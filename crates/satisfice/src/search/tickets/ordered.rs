@@ -4,7 +4,7 @@ use crate::archive::Archive;
 use crate::budget::StopReason;
 use crate::engine::Origin;
 use crate::identity::Identity;
-use crate::problem::SatisficingProblem;
+use crate::problem::AnyProblem;
 use crate::scalar::Real;
 use crate::search::lanes::Exchange;
 use crate::search::running::{Running, Turn};
@@ -69,10 +69,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Gives out the next solution under a number; `None` if others have to be answered first or the slice is over.
-    pub(super) fn next<P>(&mut self, number: u64, problem: &P, previous: &Archive<T>) -> Option<T>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn next(
+        &mut self,
+        number: u64,
+        problem: &AnyProblem<'_, S, T>,
+        previous: &Archive<T>,
+    ) -> Option<T> {
         loop {
             let free = self
                 .out
@@ -93,10 +95,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Lets the next lane propose that has no batch out, or lets the lanes exchange; `false` if none of it is possible.
-    fn propose<P>(&mut self, problem: &P, previous: &Archive<T>) -> bool
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn propose(&mut self, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) -> bool {
         let Running { lanes, exchange } = &mut self.running;
         let searching = exchange.as_ref().is_none_or(Exchange::is_searching);
         if searching {
@@ -139,10 +138,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Notes a batch that is proposed; one whose solutions are all in the archive is settled at once.
-    fn register<P>(&mut self, turn: Turn, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn register(&mut self, turn: Turn, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let Some(slice) = self.running.slice_at(turn) else {
             return;
         };
@@ -162,10 +158,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Proposes a batch again that was out when the slice was saved; `false` if there is none.
-    pub(super) fn propose_again<P>(&mut self, out: Out<S>, problem: &P, previous: &Archive<T>) -> bool
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn propose_again(
+        &mut self,
+        out: Out<S>,
+        problem: &AnyProblem<'_, S, T>,
+        previous: &Archive<T>,
+    ) -> bool {
         let Some(slice) = self.running.slice_at(out.turn) else {
             return false;
         };
@@ -199,16 +197,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Takes a value, or forgets a ticket; `None` if it is not open.
-    pub(super) fn tell<P>(
+    pub(super) fn tell(
         &mut self,
         number: u64,
         value: Option<S>,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
-    ) -> Option<Told>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) -> Option<Told> {
         let (at, slot) = self.find(number)?;
         self.has_gaps |= value.is_none();
         self.out[at].answers[slot] = value.map_or(Answer::Forgotten, Answer::Value);
@@ -219,10 +214,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         Some(Told::Taken)
     }
 
-    fn settle<P>(&mut self, out: &Out<S>, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn settle(&mut self, out: &Out<S>, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let computed = out.computed();
         let values = computed.iter().flatten().count();
         let before = self.fitness_values(out.turn);
@@ -243,26 +235,21 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Takes a value from elsewhere. It waits while a batch is out that was prepared without it.
-    pub(super) fn inform<P>(
+    pub(super) fn inform(
         &mut self,
-        problem: &P,
+        problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
         solution: &T,
         value: S,
         position: Vec<S>,
-    ) where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    ) {
         self.informed.push((solution.clone(), value, position));
         self.enter_informed(problem, previous);
     }
 
     /// Enters values from elsewhere in the first lane, or in the common archive once the lanes have ended, and tells every
     /// engine.
-    fn enter_informed<P>(&mut self, problem: &P, previous: &Archive<T>)
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    fn enter_informed(&mut self, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let searching = self.running.exchange.as_ref().is_none_or(Exchange::is_searching);
         let turn = if searching { Turn::Lane(0) } else { Turn::Probes };
         if self.out.iter().any(|out| out.turn == turn) {
@@ -316,10 +303,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     /// Enters the answers of batches that are not complete, and ends the slice.
-    pub(super) fn finish<P>(mut self, problem: &P, previous: &Archive<T>) -> Running<S, T>
-    where
-        P: SatisficingProblem<Scalar = S, Solution = T> + ?Sized,
-    {
+    pub(super) fn finish(mut self, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) -> Running<S, T> {
         for out in core::mem::take(&mut self.out) {
             self.settle(&out, problem, previous);
         }

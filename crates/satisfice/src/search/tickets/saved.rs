@@ -14,7 +14,8 @@ use crate::identity::Identity;
 use crate::problem::SatisficingProblem;
 use crate::scalar::Real;
 use crate::search::Search;
-use crate::search::checkpoint::{Checkpoint, Fingerprint};
+use crate::search::checkpoint::Checkpoint;
+use crate::search::kept::KeptSearch;
 use crate::search::lane::Lane;
 use crate::search::slice::Slice;
 use crate::state::{Reader, Saved, State};
@@ -31,10 +32,10 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
                 let waiting = ordered.informed.iter();
                 informed
                     .extend(waiting.map(|(solution, value, _)| (solution.clone(), ValueBits::of(*value))));
-                (self.search.save(Some(&ordered.running)), state)
+                (self.search.kept.save(Some(&ordered.running)), state)
             }
             Inner::Eager(eager) => {
-                let mut checkpoint = self.search.save(None);
+                let mut checkpoint = self.search.kept.save(None);
                 checkpoint.contents.unfinished = Some(eager.slice.save());
                 checkpoint.contents.lanes = eager.lanes.iter().map(|lane| lane.lane.save()).collect();
                 (checkpoint, eager.save())
@@ -70,17 +71,14 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         problem: impl Into<Arc<P>>,
     ) -> Result<Self, Error> {
         let problem = problem.into();
-        let (mut search, mut saved, lanes) = Search::<P>::resume_parts(checkpoint, engine)?;
+        let (mut kept, mut saved, lanes) = KeptSearch::resume_parts(checkpoint, engine.into())?;
         let Some(tickets) = saved.tickets.take() else {
             return Err(Error::State(
                 "its slice has no tickets: resume the search".to_owned(),
             ));
         };
-        search.check(&problem)?;
-        if let Some(fingerprint) = &search.problem {
-            fingerprint.check::<P::Scalar>(&Fingerprint::of(&*problem))?;
-        }
-        search.resumed = false;
+        kept.check_saved(&&*problem)?;
+        kept.resumed = false;
         let dimension = problem.space().dimension();
         if saved.dimension != Some(dimension) {
             return Err(Error::State("a slice without axes".to_owned()));
@@ -93,18 +91,18 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
                 ordered.unused = tickets.counts.unused;
                 let out: Vec<Out<P::Scalar>> = reader.read()?;
                 for out in out {
-                    if !ordered.propose_again(out, &*problem, &search.previous) {
+                    if !ordered.propose_again(out, &&*problem, &kept.previous) {
                         return Err(misfit());
                     }
                 }
                 for (solution, value) in tickets.informed {
-                    let position = position_of(&*problem, &solution)?;
+                    let position = position_of(&&*problem, &solution)?;
                     ordered.informed.push((solution, value.value(), position));
                 }
                 Inner::Ordered(ordered)
             }
             Order::Eager => {
-                let previous = search.previous.len();
+                let previous = kept.previous.len();
                 let slice = saved.unfinished.ok_or_else(misfit)?;
                 let slice = Slice::restore(slice, dimension, previous)?;
                 Inner::Eager(Eager::restore(
@@ -117,7 +115,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
             }
         };
         reader.finish()?;
-        let mut resumed = Self::new(search, problem, state);
+        let mut resumed = Self::new(Search { kept }, problem, state);
         let numbers: VecDeque<u64> = tickets.open.iter().map(|&(number, _)| number).collect();
         let pending = resumed.pending();
         let fits = pending.len() == numbers.len()
