@@ -13,11 +13,9 @@ mod points;
 
 use core::ops::Deref;
 
-use num_traits::Float;
-
 use super::Violation;
 use crate::identity::Identity;
-use crate::problem::SatisficingProblem;
+use crate::problem::{AnyProblem, SatisficingProblem};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 use crate::space::Region;
@@ -54,8 +52,6 @@ const REGIONS: usize = 100;
 const SAMPLES: usize = 30;
 /// By how much rounding may lift a component of a hit above 1.
 const ROUNDING: f64 = 1e-6;
-
-type Point<P> = Vec<<P as SatisficingProblem>::Scalar>;
 
 /// The result of [`check`]: the violations, as a slice, and what could not be tested.
 ///
@@ -108,7 +104,15 @@ impl core::fmt::Display for Checked {
 ///
 /// Cost: about 9,000 calls of F and `decode`, and about 300 of the other methods.
 #[must_use]
-pub fn check<P: SatisficingProblem>(problem: &P, seed: u64) -> Checked {
+pub fn check<P: SatisficingProblem + ?Sized>(problem: &P, seed: u64) -> Checked {
+    check_any(&problem, seed)
+}
+
+/// Compiled once for each type of solution.
+fn check_any<S: Real, T: Identity + Clone + Send + Sync>(
+    problem: &AnyProblem<'_, S, T>,
+    seed: u64,
+) -> Checked {
     let mut rng = SearchRng::new(seed);
     let mut points = points::points(problem.space(), &mut rng);
     let random = points.len();
@@ -147,13 +151,13 @@ fn same_bits<S: Real>(a: S, b: S) -> bool {
     a.to_word() == b.to_word() || (a.is_nan() && b.is_nan())
 }
 
-struct ProblemSuite<'a, P> {
-    problem: &'a P,
+struct ProblemSuite<'a, S, T> {
+    problem: &'a AnyProblem<'a, S, T>,
     violations: Vec<Violation<ProblemLaw>>,
 }
 
-impl<P: SatisficingProblem> ProblemSuite<'_, P> {
-    fn say(&mut self, law: ProblemLaw, at: &[P::Scalar], what: impl Into<String>) {
+impl<S: Real, T: Identity + Clone + Send + Sync> ProblemSuite<'_, S, T> {
+    fn say(&mut self, law: ProblemLaw, at: &[S], what: impl Into<String>) {
         if self.violations.iter().all(|violation| violation.law != law) {
             self.violations.push(Violation {
                 law,
@@ -163,7 +167,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn is_hit(&self, solution: &P::Solution) -> bool {
+    fn is_hit(&self, solution: &T) -> bool {
         let fitness = self.problem.fitness(solution);
         fitness.is_finite() && fitness < self.problem.threshold()
     }
@@ -175,7 +179,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn decode(&mut self, points: &[Point<P>]) {
+    fn decode(&mut self, points: &[Vec<S>]) {
         let mut used = None;
         for point in points {
             let [a, b] = [self.problem.decode(point), self.problem.decode(point)];
@@ -194,7 +198,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn identity(&mut self, points: &[Point<P>]) {
+    fn identity(&mut self, points: &[Vec<S>]) {
         let solutions: Vec<_> = points.iter().map(|point| self.problem.decode(point)).collect();
         for (i, a) in solutions.iter().enumerate() {
             if !a.same(a) {
@@ -221,9 +225,9 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn fitness(&mut self, points: &[Point<P>]) {
+    fn fitness(&mut self, points: &[Vec<S>]) {
         let solutions: Vec<_> = points.iter().map(|point| self.problem.decode(point)).collect();
-        let mut together = vec![P::Scalar::of(f64::NAN); solutions.len()];
+        let mut together = vec![S::of(f64::NAN); solutions.len()];
         self.problem.fitness_all(&solutions, &mut together);
         for ((point, solution), among_others) in points.iter().zip(&solutions).zip(together) {
             let [a, b] = [self.problem.fitness(solution), self.problem.fitness(solution)];
@@ -240,7 +244,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn encode(&mut self, points: &[Point<P>]) {
+    fn encode(&mut self, points: &[Vec<S>]) {
         for point in points {
             let solution = self.problem.decode(point);
             self.encodes_to_itself(ProblemLaw::Encode, point, &solution);
@@ -248,8 +252,8 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
     }
 
     /// Whether a solution that can be encoded decodes to itself.
-    fn encodes_to_itself(&mut self, law: ProblemLaw, point: &[P::Scalar], solution: &P::Solution) {
-        let mut values = vec![P::Scalar::of(f64::NAN); point.len()];
+    fn encodes_to_itself(&mut self, law: ProblemLaw, point: &[S], solution: &T) {
+        let mut values = vec![S::of(f64::NAN); point.len()];
         let encoding = self.problem.encoding();
         if !encoding.is_some_and(|encoding| encoding.encode(solution, &mut values)) {
             return;
@@ -265,7 +269,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn neighbours(&mut self, points: &[Point<P>]) {
+    fn neighbours(&mut self, points: &[Vec<S>]) {
         let Some(neighbourhood) = self.problem.neighbourhood() else {
             return;
         };
@@ -287,7 +291,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
                 let neighbour = neighbourhood.neighbour(&solution, index);
                 let again = neighbourhood.neighbour(&solution, index);
                 let is_written = neighbourhood.neighbour_into(&solution, index, &mut written);
-                let alike = |other: Option<&P::Solution>| match (&neighbour, other) {
+                let alike = |other: Option<&T>| match (&neighbour, other) {
                     (Some(a), Some(b)) => a.same(b),
                     (None, None) => true,
                     _ => false,
@@ -322,7 +326,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
     }
 
     /// `random` points were drawn; after them come hits.
-    fn lower_bound(&mut self, points: &[Point<P>], random: usize, rng: &mut SearchRng) {
+    fn lower_bound(&mut self, points: &[Vec<S>], random: usize, rng: &mut SearchRng) {
         let Some(bounds) = self.problem.bounds() else {
             return;
         };
@@ -352,7 +356,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
             }
         }
         for point in points {
-            let region = region_between::<P::Scalar>(point, point);
+            let region = region_between::<S>(point, point);
             let fitness = self.problem.fitness(&self.problem.decode(point));
             if let Some(bound) = bounds.lower_bound(&region)
                 && (fitness < bound || bound.is_nan())
@@ -366,7 +370,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn components(&mut self, points: &[Point<P>]) {
+    fn components(&mut self, points: &[Vec<S>]) {
         let Some(components) = self.problem.components() else {
             return;
         };
@@ -374,11 +378,11 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         if count == 0 {
             self.say(ProblemLaw::Components, &points[0], "there are none");
         }
-        let one = P::Scalar::of(1.0 + ROUNDING);
+        let one = S::of(1.0 + ROUNDING);
         for point in points {
             let solution = self.problem.decode(point);
             let [first, again] = [(); 2].map(|()| {
-                let mut all = vec![P::Scalar::of(f64::NAN); count];
+                let mut all = vec![S::of(f64::NAN); count];
                 components.write(&solution, &mut all);
                 all
             });
@@ -394,7 +398,7 @@ impl<P: SatisficingProblem> ProblemSuite<'_, P> {
         }
     }
 
-    fn canonical(&mut self, points: &[Point<P>]) {
+    fn canonical(&mut self, points: &[Vec<S>]) {
         for point in points {
             let solution = self.problem.decode(point);
             if !self.is_hit(&solution) {

@@ -4,8 +4,8 @@ use core::ops::Range;
 
 use crate::budget::Budget;
 use crate::capability::{Encoding, Neighbourhood};
-use crate::identity::Located;
-use crate::problem::{BoxedFn, FnProblem, SatisficingProblem, from_fn};
+use crate::identity::{Identity, Located};
+use crate::problem::{AnyProblem, BoxedFn, FnProblem, SatisficingProblem, from_fn};
 use crate::scalar::Real;
 use crate::search::Search;
 use crate::seed::SearchRng;
@@ -18,8 +18,6 @@ const POINTS: usize = 300;
 const SEARCHES: [(u64, u64); 2] = [(3_500, 20_000), (500, 500)];
 /// Hits that are enough.
 const ENOUGH: u64 = 30;
-
-type Point<P> = Vec<<P as SatisficingProblem>::Scalar>;
 
 /// Random values in a region; `None` if it holds no order of a permutation.
 pub(super) fn sample<S: Real>(space: &Space<S>, region: &Region<S>, rng: &mut SearchRng) -> Option<Vec<S>> {
@@ -72,8 +70,11 @@ pub(super) fn points<S: Real>(space: &Space<S>, rng: &mut SearchRng) -> Vec<Vec<
 
 /// Hits that the default engine finds, as values. The problem's bounds, components and representatives are not used, for
 /// they may be wrong.
-pub(super) fn hits<P: SatisficingProblem>(problem: &P, seed: u64) -> Vec<Point<P>> {
-    let fitness = |x: &[P::Scalar]| problem.fitness(&problem.decode(x));
+pub(super) fn hits<S: Real, T: Identity + Clone + Send + Sync>(
+    problem: &AnyProblem<'_, S, T>,
+    seed: u64,
+) -> Vec<Vec<S>> {
+    let fitness = |x: &[S]| problem.fitness(&problem.decode(x));
     let neighbours = Neighbours { problem };
     let is_offered = problem.neighbourhood().is_some() && problem.encoding().is_some();
     search(
@@ -135,18 +136,18 @@ impl<S: Real> SatisficingProblem for Bare<'_, S> {
 }
 
 /// The neighbours that a problem names, at their values.
-struct Neighbours<'a, P> {
-    problem: &'a P,
+struct Neighbours<'a, S, T> {
+    problem: &'a AnyProblem<'a, S, T>,
 }
 
-impl<P: SatisficingProblem> Neighbourhood<Located<P::Scalar>> for Neighbours<'_, P> {
-    fn count(&self, of: &Located<P::Scalar>) -> usize {
+impl<S: Real, T: Identity + Clone + Send + Sync> Neighbourhood<Located<S>> for Neighbours<'_, S, T> {
+    fn count(&self, of: &Located<S>) -> usize {
         let solution = self.problem.decode(&of.coordinates);
         let neighbourhood = self.problem.neighbourhood();
         neighbourhood.map_or(0, |neighbourhood| neighbourhood.count(&solution))
     }
 
-    fn neighbour(&self, of: &Located<P::Scalar>, index: usize) -> Option<Located<P::Scalar>> {
+    fn neighbour(&self, of: &Located<S>, index: usize) -> Option<Located<S>> {
         let solution = self.problem.decode(&of.coordinates);
         let neighbour = self.problem.neighbourhood()?.neighbour(&solution, index)?;
         let mut values = of.coordinates.clone();
