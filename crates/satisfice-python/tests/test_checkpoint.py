@@ -95,7 +95,7 @@ def test_kill_9_loses_no_more_than_was_done_since_the_last_save(tmp_path):
 
 
 def test_islands_go_on_elsewhere(tmp_path):
-    options = {**RING, "islands": 3}
+    options = {**RING, "islands": 3, "options": {"without": "model"}}
     file = tmp_path / "search.json"
 
     def callback(progress):
