@@ -76,8 +76,8 @@ impl EngineConfig for BranchAndBound {
 
 impl BranchAndBound {
     #[expect(clippy::cast_precision_loss, reason = "at most 2^20")]
-    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
-        Box::new(RegionSearch {
+    pub(in crate::engine) fn search<S: Real>(&self) -> RegionSearch<S> {
+        RegionSearch {
             leaf: self.leaf as f64,
             batch: self.batch,
             regions: self.regions,
@@ -95,7 +95,11 @@ impl BranchAndBound {
             answered: false,
             enumerated: false,
             given_up: false,
-        })
+        }
+    }
+
+    fn engine<S: Real>(&self) -> Box<dyn Engine<S>> {
+        Box::new(self.search())
     }
 }
 
@@ -110,7 +114,7 @@ const MOST_COORDINATES: usize = 1 << 25;
 
 /// The engine of [`BranchAndBound`].
 #[derive(Debug)]
-struct RegionSearch<S> {
+pub(in crate::engine) struct RegionSearch<S> {
     leaf: f64,
     batch: usize,
     regions: usize,
@@ -132,6 +136,11 @@ struct RegionSearch<S> {
 }
 
 impl<S: Real> RegionSearch<S> {
+    /// Changes the number of points of the next batch.
+    pub(in crate::engine) fn set_batch(&mut self, points: usize) {
+        self.batch = points;
+    }
+
     /// The bound of a region, at least its parent's; `None` if it excludes the region.
     fn bound(&mut self, context: &dyn Context<S>, region: &Region<S>, parent: S) -> Option<S> {
         if !self.answered && self.unanswered >= SILENCE {

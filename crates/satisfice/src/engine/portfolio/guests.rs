@@ -145,13 +145,7 @@ impl<S: Real> Guest<S> {
                 .build(),
             ),
             GuestKind::Flood => Member::Other(Box::new(FloodAlone::new(FLOOD_STEP))),
-            GuestKind::Regions => Member::Other(
-                BranchAndBound {
-                    batch: sizes.regions,
-                    ..BranchAndBound::default()
-                }
-                .build(),
-            ),
+            GuestKind::Regions => Member::Regions(Box::new(BranchAndBound::default().search())),
             GuestKind::Quadratic => Member::Other(
                 QuadraticDescent {
                     searches: sizes.searches,
@@ -305,7 +299,7 @@ impl<S: Real> Guests<S> {
             Member::Model(model) => {
                 guest.readiness == Readiness::Open && model.is_useful(self.yardstick()) != Some(false)
             }
-            Member::Other(_) => false,
+            Member::Regions(_) | Member::Other(_) => false,
         })
     }
 
@@ -371,14 +365,18 @@ impl<S: Real> Guests<S> {
         context: &dyn Context<S>,
         rng: &mut SearchRng,
         out: &mut Batch<S>,
-        (wanted, idle_cost): (usize, f64),
+        (wanted, room, idle_cost): (usize, usize, f64),
         credit: &mut Credit,
     ) -> GuestAnswer {
         let guest = &mut self.guests[index];
-        if let Member::Model(model) = &mut guest.engine {
-            // With one point more than wanted, a worker would do two while the others wait.
-            let room = wanted.saturating_sub(out.len());
-            model.set_batch(room.min(self.sizes.proposals_at_once));
+        match &mut guest.engine {
+            Member::Model(model) => {
+                // With one point more than wanted, a worker would do two while the others wait.
+                let wanted = wanted.saturating_sub(out.len());
+                model.set_batch(wanted.min(self.sizes.proposals_at_once));
+            }
+            Member::Regions(regions) => regions.set_batch(self.sizes.regions.max(room)),
+            Member::Other(_) => {}
         }
         let before = context.evaluations_left();
         if guest.kind == GuestKind::Regions && before < LAST_BOUNDS {

@@ -60,7 +60,7 @@ impl<S: Real> Guests<S> {
     pub(super) fn promises_little(&self) -> bool {
         self.guests.iter().any(|guest| match &guest.engine {
             Member::Model(model) => model.promises_little(),
-            Member::Other(_) => false,
+            Member::Regions(_) | Member::Other(_) => false,
         })
     }
 

@@ -15,7 +15,7 @@ const MOST_PROPOSALS_AT_ONCE: usize = 32;
 const PROPOSAL: f64 = 5e-4;
 /// Searches of (1+1)-CMA-ES, at most: one for each four evaluations that go on at once.
 const MOST_SEARCHES: usize = 64;
-/// Regions that are split at once: one for so many evaluations planned, and so many at most.
+/// Regions that are split at once: one for so many evaluations planned, and so many at most, or as many as the batch has points.
 const EVALUATIONS_OF_A_REGION: u64 = 64;
 const MOST_REGIONS: usize = 8;
 
@@ -29,7 +29,7 @@ pub(super) struct Sizes {
     /// Proposals of the model, at most, and in one batch.
     pub(super) proposals: u64,
     pub(super) proposals_at_once: usize,
-    /// Regions that are split at once.
+    /// Regions that are split at once, at least.
     pub(super) regions: usize,
 }
 

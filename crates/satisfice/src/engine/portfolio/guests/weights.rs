@@ -62,7 +62,7 @@ impl<S: Real> Guest<S> {
                 Some(false) => own.is_within(all, trial).then_some(1.0),
             },
             // Niching is not drawn by its yield.
-            (GuestKind::Niching, _) | (GuestKind::Model, Member::Other(_)) => None,
+            (GuestKind::Niching, _) | (GuestKind::Model, Member::Regions(_) | Member::Other(_)) => None,
         }
     }
 }
