@@ -90,13 +90,26 @@ impl Template {
         for word in &self.words {
             match places.iter().find(|(place, _)| place == word) {
                 Some((_, range)) => words.extend_from_slice(&texts[range.clone()]), // an argument each
-                None => words.push(places.iter().fold(word.clone(), |filled, (place, range)| {
-                    filled.replace(place, &texts[range.clone()].join(","))
+                None => words.push(fill(word, |rest| {
+                    let (place, range) = find(rest)?;
+                    Some((place.len(), texts[range.clone()].join(",")))
                 })),
             }
         }
         words
     }
+}
+
+/// A word with texts in its places. `find` says of the rest of the word how long the place at its beginning is, if it is one, and what belongs
+/// there. A text is not read again: a category may be named as a place is.
+fn fill(word: &str, find: impl Fn(&str) -> Option<(usize, String)>) -> String {
+    let (mut filled, mut rest) = (String::new(), word);
+    while let Some(c) = rest.chars().next() {
+        let (taken, text) = find(rest).unwrap_or_else(|| (c.len_utf8(), c.to_string()));
+        filled.push_str(&text);
+        rest = &rest[taken..];
+    }
+    filled
 }
 
 /// Splits a text at blanks; quotes and backslashes keep blanks, as in a shell. Nothing is expanded.
@@ -161,6 +174,20 @@ mod tests {
         );
         let shell = Template::new("echo {a} '{b}' ${a}{x}", true, &space()).unwrap();
         assert_eq!(shell.words(&[1.0, 2.0], &space())[2], "echo 1 '2' $11 2");
+    }
+
+    /// Nor is what stands in a place read as one.
+    #[test]
+    fn a_category_may_be_named_as_a_place() {
+        let file = "[[axis]]\nname = \"a\"\ncategories = [\"{b}\", \"{x}\"]\n[[axis]]\nname = \"b\"\nlower = 0\nupper = 9\n";
+        let space = SpaceFile {
+            separation: None,
+            axes: toml::from_str::<SpaceFile>(file).unwrap().axes,
+        };
+        let template = Template::new("./run --a={a} --all=ü{x} {b}", false, &space).unwrap();
+        let words = |a: f64| template.words(&[a, 2.0], &space);
+        assert_eq!(words(0.0), ["./run", "--a={b}", "--all=ü{b},2", "2"]);
+        assert_eq!(words(1.0), ["./run", "--a={x}", "--all=ü{x},2", "2"]);
     }
 
     #[test]

@@ -106,7 +106,7 @@ impl<'a, P: SatisficingProblem + ?Sized> Stepper<'a, P> {
     }
 
     /// The fitness of the first of the candidates that [`ask`](Stepper::ask) gave, where it was [noted](Stepper::note) before the
-    /// slice was saved. After [`start_resumed`](Search::start_resumed) only the others need to be evaluated.
+    /// slice was saved. After [`start_resumed`](crate::Search::start_resumed) only the others need to be evaluated.
     ///
     /// ```
     /// use satisfice::{engine, from_fn, Budget, SatisficingProblem, Search, Space};

@@ -80,9 +80,14 @@ impl<S: Real> Sources<S> {
             let watch = self.pace.proposes(place);
             if tag.0 == Source::Guest {
                 let (credit, idle_cost) = (&mut self.credits[place], self.pace.idle_cost(place));
-                let answer =
-                    self.guests
-                        .ask(tag.1, context, rng, out, (wanted, self.batch, idle_cost), credit);
+                let answer = self.guests.ask(
+                    tag.1,
+                    context,
+                    rng,
+                    out,
+                    (wanted, self.batch - before, idle_cost),
+                    credit,
+                );
                 self.tags.resize(out.len(), tag);
                 let cost = match answer {
                     GuestAnswer::Worked(cost) => cost,
