@@ -8,7 +8,7 @@ use super::kept::KeptSearch;
 use super::lane::RunningLane;
 use super::lanes::Exchange;
 use super::options::{Keeper, RunOptions, message_of};
-use super::running::{Running, Turn};
+use super::running::{Running, Turn, first_lane};
 use super::stage::Stage;
 use crate::budget::StopReason;
 use crate::error::Error;
@@ -240,11 +240,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Driven<'_, S, T> {
         // While an engine advances by itself, no checkpoint can be taken.
         let advance = keeper.is_none();
         loop {
-            let Some(lane) = self
-                .running
-                .as_mut()
-                .and_then(|running| running.lanes.first_mut())
-            else {
+            let Some(lane) = first_lane(&mut self.running) else {
                 return;
             };
             let alone: Option<&mut dyn Observer<T>> = if advance { Some(&mut *observer) } else { None };
@@ -252,11 +248,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Driven<'_, S, T> {
                 return;
             }
             self.evaluate(problem, Turn::Lane(0), threads, keeper);
-            let Some(lane) = self
-                .running
-                .as_mut()
-                .and_then(|running| running.lanes.first_mut())
-            else {
+            let Some(lane) = first_lane(&mut self.running) else {
                 return;
             };
             lane.settle(problem, previous, observer);

@@ -10,7 +10,7 @@ use super::kept::KeptSearch;
 use super::lane::RunningLane;
 use super::lanes::Exchange;
 use super::resume::restore;
-use super::running::{Running, Turn};
+use super::running::{Running, Turn, first_lane};
 use super::stage::Stage;
 use super::stepper::Stepper;
 use crate::budget::{Budget, Cancel, StopReason};
@@ -118,11 +118,7 @@ impl<T: Identity + Clone + Send + Sync> IslandRound<T> {
         P: SatisficingProblem<Solution = T> + ?Sized,
     {
         let mut search = Search::resume(self.state.clone(), engine)?;
-        let lane = search
-            .kept
-            .unfinished
-            .as_mut()
-            .and_then(|running| running.lanes.first_mut());
+        let lane = first_lane(&mut search.kept.unfinished);
         let lane = lane.ok_or_else(|| Error::State("no round has begun".to_owned()))?;
         lane.slice.pause = self.until;
         Ok(search)
@@ -139,11 +135,7 @@ impl<T: Identity + Clone + Send + Sync> IslandRound<T> {
     {
         if !fitness.is_empty() || stepper.driven.is_out() {
             stepper.driven.end_with(&stepper.problem, fitness)?;
-            let lane = stepper
-                .driven
-                .running
-                .as_mut()
-                .and_then(|running| running.lanes.first_mut());
+            let lane = first_lane(&mut stepper.driven.running);
             if let Some(lane) = lane {
                 lane.slice.ledger.stop = Some(StopReason::Time);
             }
@@ -394,11 +386,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Driven<'_, S, T> {
     /// Runs the only lane until it pauses or the slice is over.
     fn run_to_pause(&mut self, problem: &AnyProblem<'_, S, T>) {
         let previous = Arc::clone(&self.kept.previous);
-        if let Some(lane) = self
-            .running
-            .as_mut()
-            .and_then(|running| running.lanes.first_mut())
-        {
+        if let Some(lane) = first_lane(&mut self.running) {
             lane.advance(problem, &previous, None);
         }
         self.turn = Turn::Over;

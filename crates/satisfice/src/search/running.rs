@@ -17,6 +17,11 @@ pub(super) struct Running<S, T> {
     pub(super) exchange: Option<Exchange<S, T>>,
 }
 
+/// The first lane, while a slice runs.
+pub(super) fn first_lane<S, T>(running: &mut Option<Running<S, T>>) -> Option<&mut RunningLane<S, T>> {
+    running.as_mut()?.lanes.first_mut()
+}
+
 /// What the next step of a slice needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(super) enum Turn {
