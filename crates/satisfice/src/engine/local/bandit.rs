@@ -53,7 +53,7 @@ impl Arm {
 /// A draw from the posterior of a rate after `hits` in `evaluations`, priors included: Gamma(hits, 1/evaluations), the
 /// conjugate of rare hits. Always choosing the arm with the largest draw has logarithmic regret (Agrawal, Goyal 2012,
 /// arXiv 1111.1797); fading for rates that drift is Raj, Kalyani 2017 (arXiv 1707.09727).
-fn draw(rng: &mut SearchRng, hits: f64, evaluations: f64) -> f64 {
+pub(in crate::engine) fn draw(rng: &mut SearchRng, hits: f64, evaluations: f64) -> f64 {
     Gamma::new(hits, 1.0 / evaluations).map_or(0.0, |gamma| gamma.sample(rng))
 }
 

@@ -1,6 +1,6 @@
 //! Sampling and local search.
 
-mod bandit;
+pub(super) mod bandit;
 pub(super) mod descent;
 mod descent_flood;
 mod ends;
@@ -9,6 +9,7 @@ pub(super) mod luby;
 mod misses;
 mod niching;
 pub(super) mod one_plus_one;
+mod pairs_of_hits;
 mod random;
 pub(super) mod recombination;
 mod repelled;

@@ -4,16 +4,13 @@
 mod starts;
 
 use self::starts::Start;
-use super::bandit::Arm;
 use super::ends::Ends;
-use super::misses::MissList;
-use super::recombination::Pairs;
+use super::pairs_of_hits::PairsOfHits;
 use super::repelled::Repelled;
 use super::strategy::{Strategy, usual_size};
 use crate::batch::{Batch, Outcome};
 use crate::context::{Context, points_between_looks};
 use crate::engine::compiled::both_scalars;
-use crate::engine::hit_list::HitList;
 use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
@@ -69,8 +66,6 @@ impl Niching {
     }
 }
 
-/// Recombinations that are examined for one that is not a known hit, for each candidate of a batch.
-const LOOKS: usize = 8;
 /// Samples at once: the rest of a larger generation is left out if one of these hits.
 const AT_ONCE: usize = 64;
 /// Spreads within which a known end has to be to be looked at: a hit, and another end. Around those, F is often rugged.
@@ -121,12 +116,7 @@ struct StrategyRun {
 struct NichingSearch<S> {
     settings: Niching,
     ends: Ends,
-    hits: HitList<S>,
-    pairs: Pairs,
-    /// Recombinations that were no hits.
-    misses: MissList,
-    /// What searches and recombinations have yielded.
-    arms: [Arm; 2],
+    recombined: PairsOfHits<S>,
     restarts: u64,
     /// Where searches start that do not start beside a known end.
     even: EvenPoints,
@@ -180,10 +170,7 @@ impl<S: Real> NichingSearch<S> {
         Self {
             settings,
             ends: Ends::default(),
-            hits: HitList::default(),
-            pairs: Pairs::default(),
-            misses: MissList::default(),
-            arms: [Arm::default(); 2],
+            recombined: PairsOfHits::new(0),
             restarts: 0,
             even: EvenPoints::default(),
             started: [0; 2],
@@ -197,26 +184,6 @@ impl<S: Real> NichingSearch<S> {
             position: Vec::new(),
             repelled: Repelled::default(),
             place: Vec::new(),
-        }
-    }
-
-    /// Appends the next recombinations that are no known hits.
-    fn recombine(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
-        let dimension = self.position.len();
-        let count = usual_size(dimension).min(points_between_looks(dimension));
-        for _ in 0..LOOKS * count {
-            if out.len() == count {
-                return;
-            }
-            let Some(is_new) = self.pairs.next(&self.hits, rng, &mut self.position) else {
-                return;
-            };
-            if is_new && !context.is_deleted(&self.position) {
-                out.push(&self.position);
-            } else {
-                // Paid like a miss: looking costs time, and a source that has run dry is not to be asked for ever.
-                self.arms[1].count(false);
-            }
         }
     }
 
@@ -248,7 +215,6 @@ impl<S: Real> NichingSearch<S> {
         self.spent[0] += u64::from(run.from == Start::NearMiss) * count;
         self.spent[1] += count;
         for (position, outcome) in batch.points().zip(outcomes) {
-            self.arms[0].count(outcome.is_hit());
             run.deleted += usize::from(*outcome == Outcome::Deleted);
             let fitness = outcome.fitness().f64();
             self.distribution.tell(fitness);
@@ -329,6 +295,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
                 best: vec![0.5; dimension],
                 ..StrategyRun::default()
             },
+            recombined: PairsOfHits::new(dimension),
             position: vec![S::zero(); dimension],
             ..Self::new(self.settings.clone())
         };
@@ -338,11 +305,9 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
         let space = context.space();
         let dimension = self.position.len();
         if !self.run.running || self.distribution.sampled() == 0 {
-            if dimension > 1
-                && self.pairs.is_left(self.hits.rows())
-                && self.arms[1].draw(rng) > self.arms[0].draw(rng)
-            {
-                self.recombine(context, rng, out);
+            if self.recombined.are_next(rng) {
+                let count = usual_size(dimension).min(points_between_looks(dimension));
+                self.recombined.propose(count, context, rng, out);
                 if !out.is_empty() {
                     self.asked = BatchKind::Recombinations;
                     return Ask::More;
@@ -379,9 +344,9 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         let space = context.space();
+        self.recombined.take_hits(space, batch, outcomes);
         for (position, outcome) in batch.points().zip(outcomes) {
             if outcome.is_hit() {
-                self.hits.push(space, position);
                 self.place.resize(position.len(), 0.0);
                 to_place(space, position, &mut self.place);
                 self.ends.add(&self.place, outcome.fitness().f64(), true);
@@ -389,13 +354,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
         }
         let is_recombined = origin == Origin::Engine && self.asked == BatchKind::Recombinations;
         if is_recombined || origin == Origin::Start {
-            for (position, outcome) in batch.points().zip(outcomes) {
-                if let Outcome::Miss(fitness) = *outcome {
-                    self.misses.keep(position.len(), fitness.f64(), |place| {
-                        to_place(space, position, place);
-                    });
-                }
-            }
+            self.recombined.keep_misses(batch, outcomes);
         }
         if origin != Origin::Engine {
             return;
@@ -410,17 +369,14 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
                 if !self.run.running {
                     self.attracted(self.approaching);
                 }
-                for outcome in outcomes {
-                    self.arms[0].count(outcome.is_hit());
-                }
             }
-            BatchKind::Recombinations => {
-                for outcome in outcomes {
-                    self.arms[1].count(outcome.is_hit());
-                }
-            }
+            BatchKind::Recombinations => {}
         }
-        Arm::fade(&mut self.arms, outcomes.len());
+        if is_recombined {
+            self.recombined.count_recombinations(outcomes);
+        } else {
+            self.recombined.count_searches(outcomes);
+        }
     }
 
     fn save(&self, state: &mut State) {
@@ -435,9 +391,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
             && (!self.run.running || self.distribution.fit(dimension, self.run.size))
             && self.ends.fit(dimension)
             && self.approaching.is_none_or(|index| index < self.ends.len())
-            && self.misses.fit(dimension)
-            && self.hits.fit(dimension)
-            && self.pairs.fit(self.hits.rows(), dimension);
+            && self.recombined.fit(dimension);
         fits.then_some(())
             .ok_or_else(|| Error::State("its parts do not fit each other".to_owned()))
     }
@@ -446,10 +400,7 @@ impl<S: Real> Engine<S> for NichingSearch<S> {
 impl<S: Real> Part for NichingSearch<S> {
     crate::saved_fields!(
         ends,
-        hits,
-        pairs,
-        misses,
-        arms,
+        recombined,
         restarts,
         even,
         started,

@@ -1,13 +1,11 @@
 //! Restarted (1+1)-CMA-ES with recombination of hits: for the many optima of a function of continuous coordinates.
 
-use super::bandit::Arm;
 use super::luby::luby;
 use super::one_plus_one::Mutation;
-use super::recombination::Pairs;
+use super::pairs_of_hits::PairsOfHits;
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
-use crate::engine::hit_list::HitList;
 use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Ask, Engine, EngineConfig, Origin};
 use crate::engine_settings;
@@ -66,10 +64,6 @@ impl RestartedCmaEs {
 const CONVERGED: f64 = 1e-9;
 /// The first step from a near miss.
 const REFINING_STEP: f64 = 0.003;
-/// Near misses that are kept to be searched from.
-const MISSES: usize = 16;
-/// Recombinations that are examined for one that is not a known hit, for each candidate of a batch.
-const LOOKS: usize = 8;
 
 /// One local search: keeps its best point, accepts what is no worse.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -83,13 +77,6 @@ struct Climb<S> {
     mutation: Mutation,
 }
 
-/// A recombination that was no hit.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-struct Miss<S> {
-    position: Vec<S>,
-    fitness: S,
-}
-
 /// The engine of [`RestartedCmaEs`].
 #[derive(Debug)]
 struct Searches<S> {
@@ -99,16 +86,9 @@ struct Searches<S> {
     restarts: u64,
     /// Where searches start.
     even: EvenPoints,
-    hits: HitList<S>,
-    pairs: Pairs,
-    /// Near misses, the first `kept` of them; what stands behind is memory.
-    misses: Vec<Miss<S>>,
-    kept: usize,
-    /// What searches and recombinations have yielded.
-    arms: [Arm; 2],
-    /// How many candidates of this batch are steps of searches, of the first of them on; all or none.
-    stepped: usize,
-    position: Vec<S>,
+    recombined: PairsOfHits<S>,
+    /// Whether the candidates of this batch are steps of searches.
+    stepped: bool,
 }
 
 impl<S: Real> Searches<S> {
@@ -128,32 +108,8 @@ impl<S: Real> Searches<S> {
             climbs: vec![climb; searches],
             restarts: 0,
             even: EvenPoints::default(),
-            hits: HitList::default(),
-            pairs: Pairs::default(),
-            misses: Vec::new(),
-            kept: 0,
-            arms: [Arm::default(); 2],
-            stepped: 0,
-            position: Vec::new(),
-        }
-    }
-
-    /// Appends the next recombinations that are no known hits.
-    fn recombine(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
-        let count = self.climbs.len();
-        for _ in 0..LOOKS * count {
-            if out.len() == count {
-                return;
-            }
-            let Some(is_new) = self.pairs.next(&self.hits, rng, &mut self.position) else {
-                return;
-            };
-            if is_new && !context.is_deleted(&self.position) {
-                out.push(&self.position);
-            } else {
-                // Paid like a miss: looking costs time, and a source that has run dry is not to be asked for ever.
-                self.arms[1].count(false);
-            }
+            recombined: PairsOfHits::new(0),
+            stepped: false,
         }
     }
 
@@ -167,49 +123,22 @@ impl<S: Real> Searches<S> {
         climb.patience = luby(self.restarts)
             .saturating_mul(self.patience)
             .saturating_mul(dimension as u64);
-        if self.restarts.is_multiple_of(2) && self.kept > 0 {
-            self.kept -= 1;
-            let miss = &mut self.misses[self.kept];
-            core::mem::swap(&mut climb.position, &mut miss.position);
-            climb.fitness = miss.fitness;
+        climb.position.resize(dimension, S::zero());
+        if self.restarts.is_multiple_of(2)
+            && self.recombined.take_best_miss(|position, fitness| {
+                climb.position.copy_from_slice(position);
+                climb.fitness = fitness;
+            })
+        {
             climb.mutation.reset(dimension, REFINING_STEP);
             return;
         }
-        climb.position.resize(dimension, S::zero());
         self.even.draw(space, rng, &mut climb.position);
         climb.fitness = S::infinity();
         let (smallest, largest) = self.step;
         climb
             .mutation
             .reset(dimension, largest * (smallest / largest).powf(rng.uniform()));
-    }
-
-    /// Keeps a near miss, if it is among the best; the best one comes last.
-    fn keep(&mut self, position: &[S], fitness: S) {
-        if !fitness.is_finite() {
-            return;
-        }
-        let place = self.misses[..self.kept].partition_point(|miss| miss.fitness > fitness);
-        let place = if self.kept < MISSES {
-            if self.kept == self.misses.len() {
-                self.misses.push(Miss {
-                    position: Vec::new(),
-                    fitness,
-                });
-            }
-            self.kept += 1;
-            self.misses[place..self.kept].rotate_right(1);
-            place
-        } else if place > 0 {
-            self.misses[..place].rotate_left(1); // the worst one makes room
-            place - 1
-        } else {
-            return;
-        };
-        let miss = &mut self.misses[place];
-        miss.fitness = fitness;
-        miss.position.clear();
-        miss.position.extend_from_slice(position);
     }
 }
 
@@ -254,26 +183,19 @@ fn converged<S: Real>(space: &Space<S>) -> f64 {
 
 impl<S: Real> Engine<S> for Searches<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
-        self.hits.clear();
-        self.pairs = Pairs::default();
-        self.kept = 0;
+        self.recombined = PairsOfHits::new(context.space().dimension());
         self.even = EvenPoints::default();
-        self.arms = [Arm::default(); 2];
-        self.position = vec![S::zero(); context.space().dimension()];
         for climb in &mut self.climbs {
             climb.running = false;
         }
     }
 
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
-        self.stepped = 0;
-        if self.position.len() > 1
-            && self.pairs.is_left(self.hits.rows())
-            && self.arms[1].draw(rng) > self.arms[0].draw(rng)
-        {
-            self.recombine(context, rng, out);
+        if self.recombined.are_next(rng) {
+            self.recombined.propose(self.climbs.len(), context, rng, out);
         }
-        if !out.is_empty() {
+        self.stepped = out.is_empty();
+        if !self.stepped {
             return Ask::More;
         }
         let space = context.space();
@@ -291,40 +213,26 @@ impl<S: Real> Engine<S> for Searches<S> {
                 }
             });
         }
-        self.stepped = out.len();
         Ask::More
     }
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         let space = context.space();
-        let converged = converged(space);
-        for (position, outcome) in batch.points().zip(outcomes) {
-            if outcome.is_hit() {
-                self.hits.push(space, position);
+        self.recombined.take_hits(space, batch, outcomes);
+        let is_own = origin == Origin::Engine;
+        if origin == Origin::Start || is_own && !self.stepped {
+            self.recombined.keep_misses(batch, outcomes);
+        }
+        if is_own && self.stepped {
+            self.recombined.count_searches(outcomes);
+            let converged = converged(space);
+            let told = batch.points().zip(outcomes);
+            for (climb, (position, &outcome)) in self.climbs.iter_mut().zip(told) {
+                climb.learn(position, outcome, converged);
             }
+        } else if is_own {
+            self.recombined.count_recombinations(outcomes);
         }
-        if origin == Origin::Start {
-            for (position, outcome) in batch.points().zip(outcomes) {
-                if let Outcome::Miss(fitness) = *outcome {
-                    self.keep(position, fitness);
-                }
-            }
-        }
-        if origin != Origin::Engine {
-            return;
-        }
-        for (i, (position, &outcome)) in batch.points().zip(outcomes).enumerate() {
-            if i < self.stepped {
-                self.arms[0].count(outcome.is_hit());
-                self.climbs[i].learn(position, outcome, converged);
-            } else {
-                self.arms[1].count(outcome.is_hit());
-                if let Outcome::Miss(fitness) = outcome {
-                    self.keep(position, fitness);
-                }
-            }
-        }
-        Arm::fade(&mut self.arms, outcomes.len());
     }
 
     fn save(&self, state: &mut State) {
@@ -334,28 +242,18 @@ impl<S: Real> Engine<S> for Searches<S> {
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Error> {
         let searches = self.climbs.len();
         Part::restore(self, from)?;
-        let dimension = self.position.len();
+        let dimension = self.recombined.dimension();
+        let of_space = |climb: &Climb<S>| !climb.running || climb.position.len() == dimension;
         let fits = self.climbs.len() == searches
-            && self.stepped <= searches
-            && self.kept <= self.misses.len()
-            && self.hits.fit(dimension)
-            && self.pairs.fit(self.hits.rows(), dimension)
-            && self
-                .climbs
-                .iter()
-                .all(|climb| !climb.running || climb.position.len() == dimension)
-            && self.misses[..self.kept]
-                .iter()
-                .all(|miss| miss.position.len() == dimension);
+            && self.recombined.fit(dimension)
+            && self.climbs.iter().all(of_space);
         fits.then_some(())
             .ok_or_else(|| Error::State("its parts do not fit each other".to_owned()))
     }
 }
 
 impl<S: Real> Part for Searches<S> {
-    crate::saved_fields!(
-        climbs, restarts, even, hits, pairs, misses, kept, arms, stepped, position
-    );
+    crate::saved_fields!(climbs, restarts, even, recombined, stepped);
 }
 
 #[cfg(test)]
@@ -410,23 +308,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn near_misses_are_kept_best_last() {
-        let mut engine = Searches::<f64>::new((0.001, 0.1), 8, 1);
-        let mut rng = SearchRng::new(5);
-        let mut all = Vec::new();
-        for _ in 0..200 {
-            let fitness = rng.uniform();
-            all.push(fitness);
-            engine.keep(&[fitness], fitness);
-            engine.keep(&[0.0], f64::INFINITY);
-        }
-        all.sort_by(|a, b| b.total_cmp(a));
-        assert_eq!(engine.misses.len(), engine.kept);
-        let kept: Vec<f64> = engine.misses.iter().map(|miss| miss.fitness).collect();
-        assert_eq!(kept, all[all.len() - MISSES..]);
-        assert!(engine.misses.iter().all(|miss| miss.position == [miss.fitness]));
     }
 }

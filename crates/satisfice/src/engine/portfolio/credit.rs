@@ -1,8 +1,7 @@
 //! Which source of candidates is next: Thompson sampling on what each has yielded lately.
 
-use rand_distr::{Distribution, Gamma};
-
 use super::source::{PLACES, Role};
+pub(super) use crate::engine::local::bandit::draw;
 use crate::seed::SearchRng;
 
 /// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
@@ -230,13 +229,6 @@ impl Patches {
         let (hits, evaluations) = (self.hits / self.places, self.evaluations / self.places);
         rate.max(PLACE_SHARE * rate * (1.0 + hits) / (1.0 + rate * evaluations))
     }
-}
-
-/// A draw from the posterior of a rate after `hits` in `evaluations`, priors included: Gamma(hits, 1/evaluations), the
-/// conjugate of rare hits. Always choosing the arm with the largest draw has logarithmic regret (Agrawal, Goyal 2012,
-/// arXiv 1111.1797); fading for rates that drift is Raj, Kalyani 2017 (arXiv 1707.09727).
-pub(super) fn draw(rng: &mut SearchRng, hits: f64, evaluations: f64) -> f64 {
-    Gamma::new(hits, 1.0 / evaluations).map_or(0.0, |gamma| gamma.sample(rng))
 }
 
 #[cfg(test)]

@@ -65,20 +65,23 @@ impl<S: Real> NichingSearch<S> {
             before: f64::INFINITY,
             looked: f64::INFINITY,
         };
-        let step =
-            if self.is_refining_due() && self.misses.take_best(|place| self.start.copy_from_slice(place)) {
-                self.run.from = Start::NearMiss;
-                REFINING_STEP
-            } else {
-                let step = self
-                    .hop(space, rng)
-                    .unwrap_or_else(|| self.start_anywhere(space, rng));
-                self.started[usize::from(self.run.from != Start::Hop)] += 1;
-                while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
-                    self.run.size *= 2;
-                }
-                step
-            };
+        let step = if self.is_refining_due()
+            && self
+                .recombined
+                .take_best_miss(|position, _| to_place(space, position, &mut self.start))
+        {
+            self.run.from = Start::NearMiss;
+            REFINING_STEP
+        } else {
+            let step = self
+                .hop(space, rng)
+                .unwrap_or_else(|| self.start_anywhere(space, rng));
+            self.started[usize::from(self.run.from != Start::Hop)] += 1;
+            while 2 * self.run.size * dimension <= COORDINATES && rng.uniform() < DOUBLING {
+                self.run.size *= 2;
+            }
+            step
+        };
         self.distribution.reset(&self.start, step, self.run.size);
         self.run.first_spread = self.distribution.spread();
     }
@@ -103,7 +106,7 @@ impl<S: Real> NichingSearch<S> {
     /// Writes a start that is far from known hits, in their radii, of points that cover the space evenly.
     fn draw_start(&mut self, space: &Space<S>, rng: &mut SearchRng) {
         let dimension = self.start.len();
-        let coordinates = self.hits.len().min(self.ends.len() * dimension);
+        let coordinates = self.recombined.hits().len().min(self.ends.len() * dimension);
         let candidates = LOOKED
             .checked_div(coordinates)
             .map_or(1, |count| count.clamp(1, STARTS));
