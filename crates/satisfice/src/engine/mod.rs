@@ -70,7 +70,7 @@ impl Answers {
 /// How a slice makes use of the hits of the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum WarmStart {
-    /// Not at all.
+    /// Not at all: a new engine begins.
     Cold,
     /// The engine's own rule, from [`Context::previous_hit`].
     Engine,
@@ -85,7 +85,7 @@ pub enum WarmStart {
 /// [`advance`](Engine::advance) by itself, which saves half of what the detour costs (`cargo bench --bench engine`).
 ///
 /// Laws, checked for every registered engine by the conformance suite of [`crate::testing`]: numbers are drawn from `rng`
-/// in `ask` only; nothing depends on time, threads or addresses; NaN and infinite fitness do no harm; axes of width zero
+/// in `ask` and `advance` only; nothing depends on time, threads or addresses; NaN and infinite fitness do no harm; axes of width zero
 /// and a single axis are fine; a restored engine continues as the saved one would have.
 pub trait Engine<S: Real>: Send {
     /// A slice begins: the problem may have moved, C is empty, C_prev is available in `context`.
@@ -95,7 +95,7 @@ pub trait Engine<S: Real>: Send {
     fn ask(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask;
 
     /// Reports the outcome of each point of `batch`, which holds the proposals as the boundary rule left them. Also called
-    /// with points that the engine has not proposed: hits found by exhaustion, and those of a warm start.
+    /// with points that the engine has not proposed: see [`Origin`].
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin);
 
     /// Takes steps of one point each until [`Steps::take`] says that it was the last, and returns `true`; or returns `false`

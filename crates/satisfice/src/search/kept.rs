@@ -116,6 +116,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         let probes = Probes::new(share, self.seed, self.slices)?;
         if rule == WarmStart::Cold {
             self.previous = Arc::default();
+            for lane in &mut self.lanes {
+                lane.engine = self.engine.build()?;
+            }
         }
         self.dimension = Some(now);
         self.problem = Some(Fingerprint::of(problem));

@@ -14,6 +14,7 @@ mod portfolio;
 mod problem_suite;
 mod problem_suite_rare;
 mod rounds;
+mod slices;
 mod start_points;
 mod tickets;
 mod tickets_at_once;

@@ -163,8 +163,8 @@ impl<S: Real> Engine<S> for Sources<S> {
     fn begin(&mut self, context: &dyn Context<S>) {
         let space = context.space();
         let dimension = space.dimension();
-        // A slice that begins cold sees no hits of the one before; a space of another dimension is another problem.
-        let follows = context.previous_hits() > 0 && self.position.len() == dimension;
+        // A space of another dimension is another problem.
+        let follows = self.position.len() == dimension;
         self.near_misses.begin(dimension, follows);
         self.position = vec![S::zero(); dimension];
         self.hits.clear();
