@@ -45,6 +45,15 @@ def test_vectorized_probes_and_starts_are_as_here():
     assert report.unseen_interval is not None
 
 
+def test_patience_alone_ends_the_search_and_a_callback_is_told():
+    options = {**RING, "evaluations": None, "patience": 400}
+    shares = []
+    report = satisfice.find(evaluations.ring, SQUARE, **options, executor=2, callback=lambda progress: shares.append(progress.share))
+    assert report.stop_reason == "Patience"
+    assert shares
+    assert set(shares) == {0.0}
+
+
 def test_a_killed_worker_costs_nothing(tmp_path, monkeypatch, here):
     monkeypatch.setenv("SATISFICE_TEST_PLACE", str(tmp_path))
     report = satisfice.find(evaluations.kills_process_once, SQUARE, **RING, executor=2)

@@ -235,6 +235,8 @@ def test_a_time_ends_a_search_that_waits():
         search = satisfice.Search(SQUARE, **RING)
         search.run(never, executor=pool, time=0.3, in_flight=2)
         assert len(search.pending) == 2
+        with pytest.raises(ValueError, match="give one of them"):
+            search.run(evaluations.ring, executor=pool, workers=2)
     assert search.run(evaluations.ring, workers=map).evaluations == 300
 
 

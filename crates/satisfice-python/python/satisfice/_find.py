@@ -142,7 +142,7 @@ def find(
         Whether `f` takes all points of a batch at once.
     workers : int, map-like, or Executor, default 1
         Where `f` is evaluated: so many processes, a function such as ``pool.map``, or a `concurrent.futures.Executor` (Dask's,
-        mpi4py's, ...). See `Search.run`. A `callback` is not called then.
+        mpi4py's, ...). As `Search.run`; not with `callback` or `vectorized`.
     executor : int, Executor or Dask client, optional
         Where the islands run: an island and `f` with it, a round of it a task. For an `f` that is cheap beside what it costs
         to send a point away. A number starts so many processes. A round that is lost with its worker is run again elsewhere;

@@ -56,7 +56,7 @@ def find_with_islands(
             return False
         evaluations, hits, time = rounds.progress()
         shares = [part / whole for part, whole in [(evaluations, run["evaluations"]), (time, run["time"])] if whole]
-        return told(evaluations, hits, time, min(1.0, max(shares)))
+        return told(evaluations, hits, time, min(1.0, max(shares, default=0.0)))
 
     with contextlib.ExitStack() as stack:
         if isinstance(executor, int):

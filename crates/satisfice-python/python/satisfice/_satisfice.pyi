@@ -213,7 +213,7 @@ class Report:
         """Wall time in seconds."""
     @property
     def stop_reason(self) -> str:
-        """Why the search ended: ``"Time"``, ``"Evaluations"``, ``"Hits"``, ``"Cancelled"`` (a signal, an exception),
+        """Why the search ended: ``"Time"``, ``"Evaluations"``, ``"Hits"``, ``"Patience"``, ``"Cancelled"`` (a signal, an exception),
         ``"Observer"`` (the callback), ``"Exhausted"`` (the engine has no more to propose), ``"Covered"`` (the whole space)."""
     @property
     def completeness(self) -> str:

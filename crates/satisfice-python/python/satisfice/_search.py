@@ -271,6 +271,8 @@ class Search:
         """
         catch = exceptions(catch)
         workers = workers_of(workers)
+        if executor is not None and workers != 1:
+            raise ValueError("both workers= and executor= say where f is evaluated: give one of them")
         if in_flight is not None:
             in_flight = whole("in_flight", in_flight)
         time = seconds(time)
