@@ -92,7 +92,7 @@ pub static OPTIONS: &[RunOption] = &[
          threads does not [default: 1]"),
     option!("parallel", "N", false, parallel => budget.parallel,
         "Let the engine propose at least this number of points at a time, so that as many threads or workers have something to \
-         evaluate. Engines that go point by point, or by batches of their own, do not follow it (walk, descent, the swarms and others), of which a note on stderr tells. \
+         evaluate. Engines with batches of their own (walk, descent, the swarms and others) do not follow it; a note on stderr then says so. \
          It changes the result, like a seed; the number of threads does not [default: 1, or the number of workers \
          unless --ordered is given]"),
 ];

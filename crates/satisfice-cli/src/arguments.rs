@@ -135,8 +135,8 @@ pub(crate) struct RunArguments {
     pub(crate) slices: Options<false>,
 
     /// Keep a checkpoint of the run in this file: at the beginning, after a second, then every `--checkpoint-every`, at Ctrl-C
-    /// and at the end. If memory ends during a run, or the machine, only a checkpoint has its hits. Not for `--program` and `--worker`,
-    /// nor is --resume: their hits are written at the end, which Ctrl-C and SIGTERM bring about; give --json.
+    /// and at the end. If a run is killed or out of memory, only a checkpoint has its hits. Neither this nor --resume is for `--program` and
+    /// `--worker`: give --json, which they write at the end, also after Ctrl-C or SIGTERM.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
 
@@ -185,8 +185,8 @@ pub(crate) struct SearchArguments {
     #[arg(long, value_name = "T", default_value = "1", value_parser = quantity::threads, allow_hyphen_values = true)]
     threads: usize,
 
-    /// Count all hits for the recall, even if that takes longer than the search. Without it, the count may take as long as the
-    /// search, and at least 2 s.
+    /// Count all hits for the recall, even if that takes longer than the search. Without it, it may take as long as the search,
+    /// or 2 s if longer.
     #[arg(long)]
     pub(crate) reference: bool,
 }
@@ -357,7 +357,7 @@ pub(crate) struct BenchArguments {
     #[arg(value_name = "SUITE|FILE.toml", value_hint = ValueHint::FilePath, required = true)]
     pub(crate) suite: Option<String>,
 
-    /// Run this part of the runs only: 3/16 is the third of sixteen. `bench merge` puts the parts together.
+    /// Run this shard of the runs only: 3/16 is the third of sixteen. `bench merge` joins the shards.
     #[arg(long, value_name = "NUMBER/COUNT")]
     pub(crate) shard: Option<satisfice_bench::sweep::Shard>,
 

@@ -58,7 +58,7 @@ impl Budget {
     }
     /// A budget of evaluations: reproducible.
     ///
-    /// Evaluations are then taken to be what is dear. The default engine may think for about a millisecond on each of the first 1,000, whatever F
+    /// Evaluations are then taken to be expensive. The default engine may think for about a millisecond on each of the first 1,000, whatever F
     /// costs: a search of 1,000 to 10,000 evaluations of a cheap F of two coordinates takes about half a second, a longer one, which is planned without a model of
     /// F, a few microseconds an evaluation. If time matters as well, [limit it](Budget::and_time), too ([`Portfolio`](crate::engine::Portfolio)).
     #[must_use]
@@ -135,10 +135,9 @@ impl Budget {
 
     /// Says how many evaluations can go on at once: the number of workers or threads, 1 by default.
     ///
-    /// An engine that decides by itself how many points to propose at a time proposes at least so many, so that no worker waits. One
-    /// that goes point by point or by a batch of its own, such as a walk, a descent or a swarm, does not follow it:
-    /// [`Search::in_full_batches`](crate::Search::in_full_batches) shows it. One
-    /// that proposes fewer learns from each outcome before the next point. The number is part of the search, like a seed: reports
+    /// From 1 to [`Budget::MOST_PARALLEL`]. The default engine and `surrogate` as a rule propose at least so many points at a time, so
+    /// that no worker waits; a walk, a descent or a swarm has batches of its own, which
+    /// [`Search::in_full_batches`](crate::Search::in_full_batches) shows. The number is part of the search, like a seed: reports
     /// depend on it, and not on how many threads or workers there really are.
     ///
     /// ```

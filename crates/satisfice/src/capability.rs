@@ -45,7 +45,9 @@
 //! }
 //!
 //! let problem = SmallSums(Space::lattice(2, 100)?);
-//! assert_eq!(satisfice::testing::problem::check(&problem, 1), []);
+//! let checked = satisfice::testing::problem::check(&problem, 1);
+//! assert_eq!(checked, []); // no law is broken
+//! assert!(checked.hits > 0); // and there were hits to see
 //! let report = satisfice::Search::with(satisfice::engine::BranchAndBound::default())
 //!     .run(&problem, &satisfice::Budget::evaluations(10_000))?;
 //! assert_eq!((report.hit_count(), report.completeness), (15, satisfice::Completeness::Proved));
@@ -143,8 +145,8 @@ pub trait Bounds<S> {
 }
 
 /// The components of F: quantities all of which are near 0 at a hit, such as the residuals of equations, the errors of a design, or how far
-/// a tool is from its goal along each axis. F, their norm or the largest of their magnitudes, has kinks and valleys where they
-/// are smooth, so that an engine which models F knows far more by modelling each of them: with isolated roots it needs a fraction
+/// a tool is from its goal along each axis. F, their norm or largest magnitude, has kinks and valleys; the components are
+/// smooth. An engine that models each of them learns far more than from F alone: with isolated roots it needs a fraction
 /// of the evaluations.
 ///
 /// ```

@@ -27,7 +27,7 @@ pub trait Context<S: Real> {
     fn is_deleted(&self, position: &[S]) -> bool;
 
     /// The number of indices of neighbours of `of`: those of the problem's own neighbours, if it declares any and `of` can be
-    /// encoded; else two for each axis, which are the next lattice points on an integer axis and empty on others.
+    /// encoded; else the next lattice points, other categories, swaps of near places; empty on continuous axes.
     fn neighbour_count(&self, of: &[S]) -> usize;
 
     /// Visits the neighbours at some indices below [`neighbour_count`](Self::neighbour_count), in order, with each one's

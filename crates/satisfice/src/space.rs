@@ -20,8 +20,6 @@ pub use axis::{Axis, AxisKind};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Boundary {
     /// Mirrored at the bounds as often as needed, in closed form: any overshoot ends inside.
-    ///
-    /// Measured as the best rule for latest-hit swarms (664 ± 50 hits against 580 ± 166 for clamping).
     #[default]
     Reflect,
     /// Put on the bound.

@@ -114,7 +114,7 @@ pub struct SliceReport {
 /// One hit of a [`RunReport`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FoundSolution<S> {
-    /// The hits.
+    /// The hit.
     pub solution: S,
     /// F of it.
     pub fitness: f64,

@@ -142,7 +142,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     }
 
     /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. **Needs the feature `rayon`:**
-    /// without it one thread works, whatever the number, and nothing says so, for no report depends on threads. Reports under a budget of evaluations do not depend on it.
+    /// without it one thread works, whatever the number, and no error says so. Reports under a budget of evaluations do not depend on it.
     ///
     /// With one lane, threads share each batch that is worth it. [`Budget::with_parallel`] tells the engine how large batches have to
     /// be; under a limit of time alone, it is the number of threads. An engine that proposes one point at a time keeps one of them
@@ -259,7 +259,8 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// # Errors
     /// [`Error::Budget`] for a budget that is empty or zero, [`Error::Threshold`] for a threshold of NaN,
     /// [`Error::Parameter`] for a setting out of range, [`Error::SpaceChanged`] if the number of axes differs from that of
-    /// the slice before, [`Error::Threads`].
+    /// the slice before, [`Error::StartPoint`] for a start point outside the space, [`Error::State`] if the search was resumed and
+    /// this is another problem, [`Error::Threads`].
     pub fn run(&mut self, problem: &P, budget: &Budget) -> Result<Report<P::Solution>, Error> {
         self.run_with(problem, budget, RunOptions::new())
     }
