@@ -12,7 +12,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 /// Features below this number take less than ten milliseconds, and need no thread, whose memory would be reserved beside them.
 const QUICK: usize = 1 << 14;
 
-/// What `build` returns for so many features, or `None` and a message if the limit is reached before.
+/// What `build` returns for so many features, or `None` if the limit is reached before.
 pub(super) fn within_limit<T: Send + 'static>(
     features: usize,
     is_reached: impl Fn() -> bool,
@@ -30,16 +30,18 @@ pub(super) fn within_limit<T: Send + 'static>(
         })?;
     loop {
         match receiver.recv_timeout(LOOK_EVERY) {
-            Err(RecvTimeoutError::Disconnected) => bail!("the trees of the meshes could not be built"),
+            Err(RecvTimeoutError::Disconnected) => bail!("what the search needs could not be built"),
             // On a busy machine this thread wakes up when they are built, long after the limit.
             Ok(_) | Err(RecvTimeoutError::Timeout) if is_reached() => {
-                message::say(format_args!(
-                    "no pair was compared: the trees of the meshes were still being built"
-                ));
                 return Ok(None);
             }
             Ok(built) => return Ok(Some(built)),
             Err(RecvTimeoutError::Timeout) => {}
         }
     }
+}
+
+/// Why an answer is empty.
+pub(super) fn say_nothing_compared(because: &str) {
+    message::say(format_args!("no pair was compared: {because}"));
 }

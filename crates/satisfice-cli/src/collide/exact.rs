@@ -1,7 +1,7 @@
 //! The exact methods: every pair is decided, or excluded by a bound.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -12,6 +12,7 @@ use satisfice_collision::scene::{self, Completeness, Contact, Skips};
 
 use super::arguments::Find;
 use super::building;
+use super::limit::Limit;
 use super::memory::{Listed, Lists, Room};
 use super::overlaps::{self, Overlap};
 use super::pairs::Pairs;
@@ -91,38 +92,10 @@ impl Enumerated {
     }
 }
 
-/// Until when to work.
-struct Limit<'a> {
-    start: Instant,
-    time: Option<Duration>,
-    cancel: &'a Cancel,
-}
-
-impl Limit<'_> {
-    fn is_reached(&self) -> bool {
-        self.cancel.is_cancelled() || self.time.is_some_and(|time| self.start.elapsed() >= time)
-    }
-
-    fn reason(&self) -> StopReason {
-        match self.cancel.is_cancelled() {
-            true => StopReason::Cancelled,
-            false => StopReason::Time,
-        }
-    }
-}
-
 impl Exact<'_> {
     /// Finds on as many threads as are wanted.
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "a scene is told when to stop; it does not ask the time itself"
-    )]
     pub(super) fn find(&self, world: &Arc<World>) -> anyhow::Result<Found> {
-        let limit = Limit {
-            start: Instant::now(),
-            time: self.time,
-            cancel: self.cancel,
-        };
+        let limit = Limit::new(self.time, self.cancel);
         let pool = match self.threads {
             1 => None,
             threads => Some(Arc::new(super::threads(threads)?)),
@@ -157,6 +130,9 @@ impl Exact<'_> {
                 Ok(scene)
             },
         )?;
+        if built.is_none() {
+            building::say_nothing_compared("the trees of the meshes were still being built");
+        }
         built.transpose()
     }
 
@@ -191,7 +167,7 @@ impl Exact<'_> {
             pairs,
             stop: answer.stop,
             skips: answer.skips,
-            elapsed: limit.start.elapsed(),
+            elapsed: limit.elapsed(),
             is_full: answer.is_full,
         })
     }
@@ -204,7 +180,7 @@ impl Exact<'_> {
         counting: &Counting,
     ) -> anyhow::Result<Enumerated> {
         let stop = |found: usize| {
-            counting.show(found, limit.start);
+            counting.show(found, limit.start());
             limit.is_reached()
         };
         // `enough`: why no more were wanted, if some pairs answer the question.
@@ -261,7 +237,7 @@ impl Exact<'_> {
             .map_or(usize::MAX, |hits| usize::try_from(hits).unwrap_or(usize::MAX));
         let room = Room::new(self.witnesses);
         let has_enough = |found: usize| {
-            counting.show(found, limit.start);
+            counting.show(found, limit.start());
             // One more than the list takes shows that there are more.
             found >= wanted || found > self.most || limit.is_reached() || !room.holds(found)
         };
@@ -302,7 +278,7 @@ impl Exact<'_> {
         } else if found > self.most || is_full {
             pairs.shrink_to_fit();
             let (count, state) = scene.count_until(&|found| {
-                counting.show(found, limit.start);
+                counting.show(found, limit.start());
                 limit.is_reached()
             })?;
             if state == Completeness::Proved {

@@ -2,11 +2,13 @@
 
 pub(crate) mod arguments;
 mod building;
+mod couples;
 mod csv;
 mod digits;
 mod exact;
 mod files;
 pub(crate) mod inputs;
+mod limit;
 mod memory;
 mod motion;
 mod names;
@@ -41,6 +43,7 @@ use overlaps::Overlap;
 use pairs::Pairs;
 use report::{Head, Report};
 use scene::{Pair, World};
+use search::Searched;
 pub(crate) use verify::verify;
 
 /// The problem's name in a report.
@@ -174,7 +177,11 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
     }
     let files = Files::open(arguments, &world.files)?;
     warn(world);
-    let (mut report, pairs) = search::find(world, &spec, arguments.witnesses, cancel)?;
+    let Searched {
+        mut report,
+        pairs,
+        apart,
+    } = search::find(world, &spec, arguments.witnesses, cancel)?;
     let reference = Arc::new(Mutex::new((Vec::new(), Skips::default())));
     let (counted, kept) = (Arc::clone(world), Arc::clone(&reference));
     let most = usize::try_from(arguments.max_pairs).unwrap_or(usize::MAX);
@@ -185,10 +192,13 @@ fn by_engine(arguments: &CollideArguments, world: &Arc<World>, cancel: &Cancel) 
         || {},
         move || count(&counted, most, &kept),
     ));
-    let (reference, skips) = reference
+    let (reference, mut skips) = reference
         .lock()
         .map(|mut kept| std::mem::take(&mut *kept))
         .unwrap_or_default();
+    if apart > 0 {
+        skips.boxes_apart = apart;
+    }
     Ok(Answer {
         head: Head::of_search(report, world),
         pairs,

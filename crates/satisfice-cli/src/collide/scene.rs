@@ -1,17 +1,15 @@
 //! The scene of the command: bodies, and which of them can have pairs with which.
 
 use std::path::PathBuf;
-use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use satisfice_catalogue::Settings;
-use satisfice_collision::FeatureKind;
 use satisfice_collision::broad::Method;
 use satisfice_collision::distance::Proximity;
 use satisfice_collision::distance::{PairKind, Threshold};
-use satisfice_collision::problem::FeaturePairs;
 use satisfice_collision::scene::{self, Body, BodyId, Contact};
 use satisfice_collision::solid::Solid;
+use satisfice_collision::{Aabb, FeatureKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -59,27 +57,6 @@ impl std::fmt::Display for Pair {
     }
 }
 
-/// The pairs of two bodies, or of one with itself, as a problem for an engine.
-#[derive(Debug)]
-pub(super) struct PairProblem {
-    pub(super) bodies: [usize; 2],
-    pub(super) problem: FeaturePairs,
-}
-
-impl PairProblem {
-    /// The pair of features that a solution of this job is.
-    pub(super) fn pair(&self, (a, b): (u32, u32)) -> Pair {
-        let side = |body: usize, feature| Feature {
-            body: body as u32,
-            feature,
-        };
-        Pair {
-            a: side(self.bodies[0], a),
-            b: side(self.bodies[1], b),
-        }
-    }
-}
-
 /// What makes a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Request {
@@ -104,7 +81,6 @@ pub(super) struct World {
     pub(super) threshold: Threshold,
     /// The bodies as solids, if they are.
     pub(super) solids: Vec<Solid>,
-    jobs: OnceLock<Vec<PairProblem>>,
 }
 
 impl World {
@@ -126,7 +102,6 @@ impl World {
             request,
             bodies,
             files,
-            jobs: OnceLock::new(),
         };
         if world.couples().next().is_none() {
             let (a, b) = world.kinds();
@@ -240,16 +215,35 @@ impl World {
         self.bodies.len() > self.request.inputs.paths.len()
     }
 
+    /// The bodies with a feature of this kind.
+    pub(super) fn with(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
+        let bodies = 0..self.bodies.len();
+        bodies.filter(move |&body| kind.count(&self.bodies[body].mesh) > 0)
+    }
+
     /// The bodies of the first and of the second feature, for every combination that can have pairs.
-    fn couples(&self) -> impl Iterator<Item = [usize; 2]> {
+    pub(super) fn couples(&self) -> impl Iterator<Item = [usize; 2]> {
         let (kind_a, kind_b) = self.kinds();
-        let with = move |kind: FeatureKind| {
-            let bodies = 0..self.bodies.len();
-            bodies.filter(move |&body| kind.count(&self.bodies[body].mesh) > 0)
-        };
-        with(kind_a)
-            .flat_map(move |a| with(kind_b).map(move |b| [a, b]))
+        self.with(kind_a)
+            .flat_map(move |a| self.with(kind_b).map(move |b| [a, b]))
             .filter(|&bodies| self.is_couple(bodies))
+    }
+
+    /// How many [couples](Self::couples) there are.
+    pub(super) fn couple_count(&self) -> u64 {
+        let (kind_a, kind_b) = self.kinds();
+        let bodies = |kind| self.with(kind).count() as u64;
+        let both = self
+            .with(kind_a)
+            .filter(|&body| kind_b.count(&self.bodies[body].mesh) > 0);
+        let both = both.count() as u64;
+        let all = bodies(kind_a) * bodies(kind_b);
+        let of_two = if kind_a == kind_b {
+            (all - both) / 2
+        } else {
+            all - both
+        };
+        of_two + if self.request.within { both } else { 0 }
     }
 
     /// Whether the body of the first feature and that of the second may be these.
@@ -307,7 +301,8 @@ impl World {
         for body in self.present() {
             ids[body] = Some(scene.add(Body::fixed((*self.bodies[body].mesh).clone()))?);
         }
-        Ok(Measure { scene, ids })
+        let bodies = self.present();
+        Ok(Measure { scene, ids, bodies })
     }
 
     /// Contacts of a [scene](Self::scene) as pairs of features of the bodies.
@@ -322,33 +317,6 @@ impl World {
                 a: side(contact.body_a, contact.a),
                 b: side(contact.body_b, contact.b),
             }
-        })
-    }
-
-    /// A problem for every combination of bodies, made when it is first asked for.
-    pub(super) fn jobs(&self) -> anyhow::Result<&[PairProblem]> {
-        if let Some(jobs) = self.jobs.get() {
-            return Ok(jobs);
-        }
-        let jobs = self.couples().map(|bodies| self.job(bodies));
-        let jobs = jobs.collect::<anyhow::Result<Vec<_>>>()?;
-        Ok(self.jobs.get_or_init(|| jobs))
-    }
-
-    /// The problem of one combination of bodies.
-    pub(super) fn job(&self, bodies: [usize; 2]) -> anyhow::Result<PairProblem> {
-        let kind = self.request.kind;
-        // The closest pairs at any distance have an infinite one.
-        let threshold = self.request.threshold.min(f64::MAX);
-        let [first, second] = bodies.map(|body| &*self.bodies[body].mesh);
-        let problem = if bodies[0] == bodies[1] {
-            FeaturePairs::within(kind, first, threshold, self.ring_width())
-        } else {
-            FeaturePairs::between(kind, first, second, threshold)
-        };
-        Ok(PairProblem {
-            bodies,
-            problem: problem?,
         })
     }
 
@@ -381,6 +349,8 @@ impl World {
 pub(super) struct Measure {
     scene: scene::World,
     ids: Vec<Option<BodyId>>,
+    /// The number of each body of the scene.
+    bodies: Vec<usize>,
 }
 
 impl Measure {
@@ -396,5 +366,19 @@ impl Measure {
             a: pair.a.feature,
             b: pair.b.feature,
         })?)
+    }
+
+    /// The bodies whose boxes are within a distance of the box of this one, itself included, in order.
+    pub(super) fn near(&mut self, body: usize, distance: Threshold) -> anyhow::Result<Vec<usize>> {
+        let Some(id) = self.ids[body] else {
+            return Ok(Vec::new());
+        };
+        let Aabb { min, max } = self.scene.bounds(id)?;
+        let region = Aabb {
+            min: min.map(|c| (c - distance.get()).next_down()),
+            max: max.map(|c| (c + distance.get()).next_up()),
+        };
+        let near = self.scene.bodies_in(&region)?.into_iter();
+        Ok(near.map(|near| self.bodies[near.index()]).collect())
     }
 }

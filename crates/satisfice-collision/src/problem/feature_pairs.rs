@@ -1,17 +1,19 @@
 //! The problem of any kind of feature pair: which edges, triangles and vertices are closer than delta?
 
+use std::sync::Arc;
+
 use satisfice::catalogue::Description;
 use satisfice::{Axis, Region, SatisficingProblem, Space};
 use satisfice::{Bounds, Encoding, Neighbourhood};
 
 use super::metric::{PointMetric, far};
+use super::ordered_features::OrderedFeatures;
 use super::ranges;
 use super::side::Side;
 use crate::broad::{FeatureTree, TreeJoin};
 use crate::distance::{self, PairKind, Threshold};
 use crate::error::Error;
 use crate::mesh::{Adjacency, Mesh, Shape};
-use crate::order::VertexOrder;
 use crate::placement::Placement;
 
 /// The problem of all pairs `(i, j)` of features with F(i, j) < delta, between two bodies or within one. F is their distance,
@@ -44,9 +46,9 @@ use crate::placement::Placement;
 #[derive(Debug, Clone)]
 pub struct FeaturePairs {
     kind: PairKind,
-    pub(super) a: Side,
+    pub(super) a: Arc<Side>,
     /// `None` if both features are of one body and of one kind.
-    pub(super) b: Option<Side>,
+    pub(super) b: Option<Arc<Side>>,
     pub(super) own: Option<Own>,
     pub(super) threshold: Threshold,
     pub(super) points: PointMetric,
@@ -69,9 +71,38 @@ impl FeaturePairs {
     /// [`Error::Parameter`] unless `delta` is finite and above 0, and for a body without such a feature.
     pub fn between(kind: PairKind, a: &Mesh, b: &Mesh, delta: f64) -> Result<Self, Error> {
         let (kind_a, kind_b) = kind.features();
-        let order = VertexOrder::default();
-        let sides = (Side::new(a, kind_a, order)?, Some(Side::new(b, kind_b, order)?));
-        Self::new(kind, sides, None, Threshold::new(delta)?)
+        let a = OrderedFeatures::new(a, kind_a)?;
+        let b = OrderedFeatures::new(b, kind_b)?;
+        Self::between_ordered(kind, &a, &b, delta)
+    }
+
+    /// [`FeaturePairs::between`] of features that are in order already, which costs no time for features. A body that is part of
+    /// several problems is ordered once for all of them.
+    ///
+    /// ```
+    /// use satisfice_collision::distance::PairKind;
+    /// use satisfice_collision::problem::OrderedFeatures;
+    /// use satisfice_collision::{FeatureKind, FeaturePairs, Placement, generate};
+    /// let ball = generate::icosphere(1.0, 2)?;
+    /// let features = OrderedFeatures::new(&ball, FeatureKind::Triangle)?;
+    /// for x in [1.8, 1.9] {
+    ///     let other = Placement::from_translation([x, 0.0, 0.0])?.place(&ball)?;
+    ///     let other = OrderedFeatures::new(&other, FeatureKind::Triangle)?;
+    ///     let problem = FeaturePairs::between_ordered(PairKind::TriangleTriangle, &features, &other, 0.1)?;
+    ///     assert!(!problem.exact_pairs().is_empty());
+    /// }
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless `delta` is finite and above 0, and for features that are not of the two kinds.
+    pub fn between_ordered(
+        kind: PairKind,
+        a: &OrderedFeatures,
+        b: &OrderedFeatures,
+        delta: f64,
+    ) -> Result<Self, Error> {
+        Self::new(kind, [a, b], None, Threshold::new(delta)?)
     }
 
     /// Pairs of features of one body closer than `delta`, except those that share a vertex or have two vertices at most
@@ -80,34 +111,60 @@ impl FeaturePairs {
     /// # Errors
     /// As [`FeaturePairs::between`].
     pub fn within(kind: PairKind, mesh: &Mesh, delta: f64, ring_width: usize) -> Result<Self, Error> {
-        let threshold = Threshold::new(delta)?;
         let (kind_a, kind_b) = kind.features();
-        let order = VertexOrder::default();
-        let second = (kind_a != kind_b).then(|| Side::new(mesh, kind_b, order));
-        let sides = (Side::new(mesh, kind_a, order)?, second.transpose()?);
+        let a = OrderedFeatures::new(mesh, kind_a)?;
+        let b = (kind_a != kind_b).then(|| OrderedFeatures::new(mesh, kind_b));
+        let b = b.transpose()?;
+        Self::within_ordered(kind, &a, b.as_ref().unwrap_or(&a), delta, ring_width)
+    }
+
+    /// [`FeaturePairs::within`] of features that are in order already; twice the same ones if they are of one kind.
+    ///
+    /// # Errors
+    /// As [`FeaturePairs::between_ordered`], and for features of two bodies.
+    pub fn within_ordered(
+        kind: PairKind,
+        a: &OrderedFeatures,
+        b: &OrderedFeatures,
+        delta: f64,
+        ring_width: usize,
+    ) -> Result<Self, Error> {
+        let (mesh, other) = (a.mesh(), b.mesh());
+        if !mesh.same_body(other) || mesh.vertices() != other.vertices() {
+            return Err(Error::parameter("bodies", 2, "both features of one body"));
+        }
         let own = Own {
             rings: mesh.adjacency().rings(ring_width),
             far: far(mesh, delta),
         };
-        Self::new(kind, sides, Some(own), threshold)
+        Self::new(kind, [a, b], Some(own), Threshold::new(delta)?)
     }
 
     fn new(
         kind: PairKind,
-        (a, b): (Side, Option<Side>),
+        [a, b]: [&OrderedFeatures; 2],
         own: Option<Own>,
         threshold: Threshold,
     ) -> Result<Self, Error> {
-        let second = b.as_ref().unwrap_or(&a);
+        let kinds = (a.kind(), b.kind());
+        if kinds != kind.features() {
+            let given = format!("{} and {}", kinds.0.plural(), kinds.1.plural());
+            return Err(Error::parameter(
+                "features",
+                given,
+                "of the two kinds of the pairs",
+            ));
+        }
+        let is_symmetric = own.is_some() && kinds.0 == kinds.1;
         Ok(Self {
-            joint_moves: threshold.get() < a.spacing().max(second.spacing()),
-            space: space(&a, second)?,
+            joint_moves: threshold.get() < a.spacing().max(b.spacing()),
+            space: space(a.side(), b.side())?,
             kind,
             own,
             threshold,
             points: PointMetric::new(threshold),
-            a,
-            b,
+            a: Arc::clone(a.side()),
+            b: (!is_symmetric).then(|| Arc::clone(b.side())),
         })
     }
 
@@ -117,8 +174,8 @@ impl FeaturePairs {
         a: impl FnOnce(&mut Side) -> Result<(), Error>,
         b: impl FnOnce(&mut Side) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        a(&mut self.a)?;
-        self.b.as_mut().map_or(Ok(()), b)?;
+        a(Arc::make_mut(&mut self.a))?;
+        self.b.as_mut().map(Arc::make_mut).map_or(Ok(()), b)?;
         self.space = space(&self.a, self.second())?;
         Ok(())
     }
@@ -160,11 +217,11 @@ impl FeaturePairs {
     /// # Errors
     /// [`Error::Parameter`] if edges or triangles differ.
     pub fn move_a(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        self.a.go_to(mesh)?;
+        Arc::make_mut(&mut self.a).go_to(mesh)?;
         if let Some(own) = &mut self.own {
             own.far = far(mesh, self.threshold.get());
             if let Some(b) = &mut self.b {
-                b.go_to(mesh)?;
+                Arc::make_mut(b).go_to(mesh)?;
             }
         }
         Ok(())
@@ -176,16 +233,27 @@ impl FeaturePairs {
     /// As [`FeaturePairs::move_a`].
     pub fn move_b(&mut self, mesh: &Mesh) -> Result<(), Error> {
         match &mut self.b {
-            Some(b) if self.own.is_none() => b.go_to(mesh),
+            Some(b) if self.own.is_none() => Arc::make_mut(b).go_to(mesh),
             _ => self.move_a(mesh),
         }
     }
 
-    /// Whether any pair is not excluded, at whatever distance. All pairs of a small body may be within the excluded ring.
+    /// Whether [`FeaturePairs::within`] has any pair, at whatever distance: all pairs of a small body may be within the excluded
+    /// ring. Cost: one ring and a look at the features where there is a pair of the first feature, which is usual.
     #[must_use]
-    pub fn has_pairs(&self) -> bool {
-        let others = self.second().len() as u32;
-        (0..self.a.len() as u32).any(|i| (0..others).any(|j| !self.no_pair(i, j)))
+    pub fn has_pairs_within(kind: PairKind, mesh: &Mesh, ring_width: usize) -> bool {
+        let (kind_a, kind_b) = kind.features();
+        let (features, others) = (mesh.features(kind_a), mesh.features(kind_b));
+        (0..kind_a.count(mesh) as u32).any(|i| {
+            let mut near = Vec::new();
+            for v in features.corners(i) {
+                near.push(v);
+                near.extend(mesh.adjacency().ring(v, ring_width));
+            }
+            near.sort_unstable();
+            let is_near = |v: &u32| near.binary_search(v).is_ok();
+            (0..kind_b.count(mesh) as u32).any(|j| !others.corners(j).iter().any(is_near))
+        })
     }
 
     /// All solutions, sorted, by a box tree and exact decisions: the reference for engines.

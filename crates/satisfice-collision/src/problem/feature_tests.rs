@@ -8,7 +8,7 @@ use satisfice::{Budget, Completeness, SatisficingProblem, Search, engine, testin
 
 use super::*;
 use crate::distance::{self, PairKind};
-use crate::{Mesh, Placement, generate};
+use crate::{FeatureKind, Mesh, Placement, generate};
 
 /// Two balls that cross, turned so that nothing is symmetric.
 fn balls() -> [Mesh; 2] {
@@ -229,4 +229,67 @@ fn bodies_without_the_feature_and_bad_thresholds_are_refused() {
     assert_eq!(neighbourhood.count(&(u32::MAX, 0)), 0);
     assert_eq!(neighbourhood.neighbour(&(u32::MAX, 0), 0), None);
     assert!(problem.fitness(&(0, 0)) == 0.0 && distance::ACCURACY < 1e-9);
+}
+
+/// A ring around a feature leaves pairs where some feature is outside it.
+#[test]
+fn a_body_has_pairs_if_not_all_are_within_the_ring() {
+    let strip: Vec<[f64; 3]> = (0..6)
+        .map(|k| [f64::from(k / 2), f64::from(k % 2), 0.0])
+        .collect();
+    let strip = Mesh::new(strip, vec![], vec![[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]]).unwrap();
+    for kind in PairKind::ALL {
+        for ring_width in 0..4 {
+            let problem = FeaturePairs::within(kind, &strip, 100.0, ring_width).unwrap();
+            let has_pairs = FeaturePairs::has_pairs_within(kind, &strip, ring_width);
+            assert_eq!(
+                has_pairs,
+                !problem.reference_pairs().is_empty(),
+                "{kind} {ring_width}"
+            );
+        }
+    }
+}
+
+#[test]
+fn problems_that_share_ordered_features_are_those_made_alone() {
+    let ball = generate::icosphere(1.0, 2).unwrap();
+    let other = Placement::from_translation([1.8, 0.1, 0.0])
+        .unwrap()
+        .place(&ball)
+        .unwrap();
+    for kind in PairKind::ALL {
+        let (kind_a, kind_b) = kind.features();
+        let a = OrderedFeatures::new(&ball, kind_a).unwrap();
+        let own = OrderedFeatures::new(&ball, kind_b).unwrap();
+        let b = OrderedFeatures::new(&other, kind_b).unwrap();
+        let between = FeaturePairs::between_ordered(kind, &a, &b, 0.2).unwrap();
+        let within = FeaturePairs::within_ordered(kind, &a, &own, 0.2, 1).unwrap();
+        for (shared, alone) in [
+            (between, FeaturePairs::between(kind, &ball, &other, 0.2).unwrap()),
+            (within, FeaturePairs::within(kind, &ball, 0.2, 1).unwrap()),
+        ] {
+            let budget = Budget::evaluations(2_000);
+            let [one, two] = [shared, alone].map(|problem| {
+                let report = Search::new().seed(5).run(&problem, &budget).unwrap();
+                (
+                    report.hits().map(|hit| *hit.solution).collect::<Vec<_>>(),
+                    problem.joint_moves(),
+                )
+            });
+            assert_eq!(one, two, "{kind}");
+        }
+        assert!(FeaturePairs::within_ordered(kind, &a, &b, 0.2, 1).is_err());
+        if kind_a != kind_b {
+            assert!(FeaturePairs::between_ordered(kind, &b, &a, 0.2).is_err());
+        }
+    }
+    // A problem that moves on leaves the others as they are.
+    let a = OrderedFeatures::new(&ball, FeatureKind::Vertex).unwrap();
+    let b = OrderedFeatures::new(&other, FeatureKind::Vertex).unwrap();
+    let make = || FeaturePairs::between_ordered(PairKind::VertexVertex, &a, &b, 0.2).unwrap();
+    let (mut moving, resting) = (make(), make());
+    moving.move_a(&other).unwrap();
+    assert_ne!(moving.exact_pairs(), resting.exact_pairs());
+    assert_eq!(resting.exact_pairs(), make().exact_pairs());
 }

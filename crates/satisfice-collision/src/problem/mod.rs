@@ -2,6 +2,7 @@
 
 mod feature_pairs;
 mod metric;
+mod ordered_features;
 mod pleats;
 mod ranges;
 mod recipe;
@@ -10,6 +11,7 @@ mod teapots;
 mod vertex_pairs;
 
 pub use feature_pairs::FeaturePairs;
+pub use ordered_features::OrderedFeatures;
 pub use pleats::{PleatedCloth, Pleats};
 pub use recipe::{Prepared, Recipe};
 pub use teapots::{Teapots, TwoTeapots};

@@ -1,5 +1,7 @@
 //! The vertex-vertex problem of Eq. 1: which pairs of vertices are closer than delta?
 
+use std::sync::Arc;
+
 use satisfice::{Bounds, Encoding, Neighbourhood};
 use satisfice::{SatisficingProblem, Space};
 
@@ -77,9 +79,9 @@ impl VertexPairs {
     /// The same problem with other vertex orders. Within one body, `b` is ignored.
     #[must_use]
     pub fn with_orders(mut self, a: VertexOrder, b: VertexOrder) -> Self {
-        self.pairs.a.reorder(a);
+        Arc::make_mut(&mut self.pairs.a).reorder(a);
         if let Some(side) = &mut self.pairs.b {
-            side.reorder(b);
+            Arc::make_mut(side).reorder(b);
         }
         self
     }

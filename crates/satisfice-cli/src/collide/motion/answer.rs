@@ -91,6 +91,7 @@ impl Search<'_> {
 
     /// What is known before anything is compared.
     fn nothing(&self, frames: &Frames) -> Impacts {
+        building::say_nothing_compared("the trees of the meshes were still being built");
         Impacts {
             pairs: Vec::new(),
             count: None,

@@ -17,6 +17,7 @@ use satisfice_collision::broad::Method;
 use satisfice_collision::scene::Skips;
 use serde::Deserialize;
 
+use super::couples::PairProblem;
 use super::exact::METHODS;
 use super::motion;
 use super::report::{Head, ReadLists};
@@ -161,7 +162,7 @@ fn best(
         checks.that(false, "best.solution", &best.solution, expected);
         return Ok(());
     };
-    let job = world.job(pair.bodies())?;
+    let job = PairProblem::new(world, pair.bodies())?;
     let distance = job.problem.fitness(&(pair.a.feature, pair.b.feature));
     let is_right = agree(best.fitness, distance, head.threshold);
     checks.that(is_right, "best.fitness", best.fitness, distance);
