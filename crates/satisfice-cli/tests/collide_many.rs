@@ -53,7 +53,7 @@ fn pairs(report: &Value) -> Vec<String> {
     pairs
 }
 
-/// 80,000 couples of which 380 come near. A problem for each takes more than ten times this memory.
+/// 80,000 couples of which at most 380 come near. A problem for each takes more than ten times this memory.
 #[cfg(unix)]
 #[test]
 fn an_engine_searches_the_couples_that_come_near_in_little_memory() {
@@ -81,16 +81,19 @@ fn an_engine_searches_the_couples_that_come_near_in_little_memory() {
     assert_eq!(report["completeness"], "Proved");
     assert!(pairs(&exact).len() > 400);
     assert_eq!(pairs(&report), pairs(&exact));
-    assert_eq!(report["skipped"][APART], 400 * 399 / 2 - 380);
-    assert_eq!(report["skipped"][APART], exact["skipped"][APART]);
+    let [apart, by_exact] = [&report, &exact].map(|report| report["skipped"][APART].as_u64().unwrap());
+    assert!(
+        apart >= by_exact && by_exact >= 400 * 399 / 2 - 380,
+        "{apart} {by_exact}"
+    );
     let verified = satisfice_in(folder.path(), "verify report.json");
     assert_eq!(verified.code, 0, "{}", verified.stdout);
 }
 
 #[test]
 fn the_budget_is_shared_by_the_couples_that_come_near() {
-    let folder = rows(100, 1);
-    let scene = "collide rows.toml --threshold 0.05 --method random --seed 3";
+    let folder = rows(100, 0);
+    let scene = "collide rows.toml --threshold 0.05 --pairs triangle-triangle --method random --seed 3";
     for evaluations in [3_u64, 5_000] {
         let report = json_of(folder.path(), &format!("{scene} --evaluations {evaluations}"));
         assert_eq!(report["evaluations"], evaluations);

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use satisfice_collision::FeatureKind;
 use satisfice_collision::problem::{FeaturePairs, OrderedFeatures};
+use satisfice_collision::{Aabb, FeatureKind};
 
+use super::body::NamedBody;
 use super::building;
 use super::limit::Limit;
 use super::scene::{Feature, Measure, Pair, World};
@@ -32,7 +33,7 @@ impl PairProblem {
         // The closest pairs at any distance have an infinite one.
         let threshold = world.request.threshold.min(f64::MAX);
         let (kind_a, kind_b) = kind.features();
-        let order = |body: usize, kind| OrderedFeatures::new(&world.bodies[body].mesh, kind);
+        let order = |body: usize, kind| OrderedFeatures::new(&*world.bodies[body].placed()?, kind);
         let a = first.map_or_else(|| order(bodies[0], kind_a), Ok)?;
         let is_same = bodies[0] == bodies[1] && kind_a == kind_b;
         let b = second.or_else(|| is_same.then(|| a.clone()));
@@ -75,7 +76,7 @@ impl Couples {
     pub(super) fn of(world: &World, measure: &mut Measure) -> anyhow::Result<Self> {
         let has_pairs = |&[a, b]: &[usize; 2]| {
             let within = || {
-                let mesh = &world.bodies[a].mesh;
+                let mesh = world.bodies[a].unplaced();
                 FeaturePairs::has_pairs_within(world.request.kind, mesh, world.ring_width())
             };
             a != b || within()
@@ -90,10 +91,18 @@ impl Couples {
         }
         let mut near = Vec::new();
         let (kind_a, kind_b) = world.kinds();
+        // The scene has boxes that are easy to move; these are as small as can be.
+        let boxes: Vec<Aabb> = world.bodies.iter().map(NamedBody::bounds).collect();
+        let distance = world.threshold.get();
+        let may_touch = |&[a, b]: &[usize; 2]| {
+            let gap = |k: usize| (boxes[b].min[k] - boxes[a].max[k]).max(boxes[a].min[k] - boxes[b].max[k]);
+            (0..3).all(|k| gap(k).next_down() <= distance)
+        };
         for a in world.with(kind_a) {
             let others = measure.near(a, world.threshold)?.into_iter();
             let couples = others.map(|b| [a, b]).filter(|&couple| world.is_couple(couple));
-            near.extend(couples.filter(|&[_, b]| kind_b.count(&world.bodies[b].mesh) > 0));
+            let couples = couples.filter(may_touch);
+            near.extend(couples.filter(|&[_, b]| world.bodies[b].count(kind_b) > 0));
         }
         let apart = world.couple_count() - near.len() as u64;
         near.retain(has_pairs);
@@ -143,7 +152,7 @@ impl<'w> Problems<'w> {
     ) -> anyhow::Result<Option<PairProblem>> {
         let known = [0, 1].map(|side| self.features[self.list(side)][bodies[side]].clone());
         let is_known = bodies[0] != bodies[1] && known.iter().all(Option::is_some);
-        let count = |side: usize| self.kinds[side].count(&self.world.bodies[bodies[side]].mesh);
+        let count = |side: usize| self.world.bodies[bodies[side]].count(self.kinds[side]);
         let features = if is_known { 0 } else { count(0) + count(1) };
         let world = Arc::clone(self.world);
         let build = move || PairProblem::of(&world, bodies, known);

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 use std::io::StdinLock;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use satisfice_collision::io::{AnimatedScene, Format, PlacedMesh};
-use satisfice_collision::{Error, Mesh};
+use satisfice_collision::{Error, Placement};
 use serde::{Deserialize, Serialize};
 
+use super::body::{Meshes, NamedBody};
 use super::names::Names;
 use super::weld;
 
@@ -25,15 +25,6 @@ pub(super) struct Inputs {
     pub(super) at: Vec<At>,
     /// Vertices of a body that are equal or closer than this become one.
     pub(super) weld: Option<f64>,
-}
-
-/// A body and what it is called in messages.
-#[derive(Debug, Clone)]
-pub(super) struct NamedBody {
-    pub(super) name: String,
-    /// The file it comes from.
-    pub(super) file: PathBuf,
-    pub(super) mesh: Arc<Mesh>,
 }
 
 /// A placement of `--at`: `BODY:x,y,z[,rx,ry,rz[,scale]]`.
@@ -157,16 +148,31 @@ impl Inputs {
             let body = &mut files[number].1;
             *body = body.moved(at.to, at.turn, at.scale)?;
         }
+        let mut meshes = Meshes::default();
         files
             .into_iter()
             .zip(names.into_vec())
             .map(|((file, body), name)| {
-                let mesh = body.placed().with_context(|| name.clone())?;
-                let mesh = match self.weld {
-                    Some(distance) => Arc::new(weld::welded(&mesh, distance)?),
-                    None => mesh,
+                let PlacedMesh { mesh, placement, .. } = body;
+                let body = NamedBody {
+                    name,
+                    file,
+                    mesh: meshes.shared(mesh),
+                    placement,
                 };
-                Ok(NamedBody { name, file, mesh })
+                // A place beyond all numbers is refused here.
+                let placed = body.placed().with_context(|| body.name.clone())?;
+                let Some(distance) = self.weld else {
+                    drop(placed);
+                    return Ok(body);
+                };
+                let mesh = weld::welded(&placed, distance)?.into();
+                drop(placed);
+                Ok(NamedBody {
+                    mesh,
+                    placement: Placement::IDENTITY,
+                    ..body
+                })
             })
             .collect()
     }

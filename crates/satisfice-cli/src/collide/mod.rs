@@ -1,6 +1,7 @@
 //! `satisfice collide`: pairs of mesh features that are closer than a threshold.
 
 pub(crate) mod arguments;
+mod body;
 mod building;
 mod couples;
 mod csv;

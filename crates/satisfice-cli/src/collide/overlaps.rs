@@ -4,8 +4,8 @@ use anyhow::Context;
 use satisfice_collision::solid::{self, Relation, Solid};
 use serde::{Deserialize, Serialize};
 
+use super::body::NamedBody;
 use super::digits::digits;
-use super::inputs::NamedBody;
 
 /// Two bodies that overlap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,7 +49,7 @@ impl From<Relation> for Lies {
 /// If one is not closed.
 pub(super) fn solids(bodies: &[NamedBody]) -> anyhow::Result<Vec<Solid>> {
     let of = |body: &NamedBody| {
-        let solid = Solid::new(&body.mesh);
+        let solid = body.placed().and_then(|mesh| Solid::new(&mesh));
         solid.with_context(|| format!("--solid takes closed meshes, which {} is not", body.name))
     };
     bodies.iter().map(of).collect()

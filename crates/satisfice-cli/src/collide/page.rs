@@ -5,7 +5,7 @@ use satisfice_collision::FeatureKind;
 use satisfice_page::{Contact, Feature, ScenePage, Up};
 
 use super::arguments::Axis;
-use super::inputs::NamedBody;
+use super::body::NamedBody;
 use super::pairs::Pairs;
 use super::picture::up_of;
 use super::report::Report;
@@ -55,7 +55,7 @@ pub(super) fn html(report: &Report<'_>, asked: Option<Axis>, missed: &[Pair]) ->
     }
     page.method(&head.engine);
     for body in &world.bodies {
-        let mesh = &body.mesh;
+        let mesh = body.placed()?;
         page.body(&body.name, mesh.vertices(), mesh.triangles(), mesh.lines());
     }
     let (name, says) = summary::assurance(report);

@@ -95,7 +95,7 @@ impl Side {
             world
                 .bodies
                 .get(body)?
-                .mesh
+                .unplaced()
                 .edges()
                 .get(feature as usize)
                 .copied()

@@ -8,7 +8,7 @@ use satisfice_collision::FeatureKind;
 use satisfice_picture::{Picture, Up, View};
 
 use super::arguments::Axis;
-use super::inputs::NamedBody;
+use super::body::NamedBody;
 use super::scene::{Feature, Pair, World};
 
 const WIDTH: u32 = 1400;
@@ -61,8 +61,10 @@ pub(super) fn draw(
         },
         ..View::default()
     };
+    let placed = world.bodies.iter().map(NamedBody::placed);
+    let placed = placed.collect::<Result<Vec<_>, _>>()?;
     let mut picture = Picture::new(WIDTH, HEIGHT, view);
-    world.bodies.iter().for_each(|body| picture.body(&body.mesh));
+    placed.iter().for_each(|mesh| picture.body(mesh));
     let (kind_a, kind_b) = world.kinds();
     for Pair { a, b } in found {
         for (kind, &Feature { body, feature }) in [(kind_a, a), (kind_b, b)] {

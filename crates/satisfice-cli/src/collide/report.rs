@@ -11,8 +11,8 @@ use satisfice_collision::scene::Skips;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::PROBLEM;
+use super::body::NamedBody;
 use super::exact::{Exact, Found};
-use super::inputs::NamedBody;
 use super::overlaps::Overlap;
 use super::pairs::{Line, Pairs};
 use super::scene::World;
@@ -154,9 +154,9 @@ impl BodyLine {
         Self {
             name: body.name.clone(),
             file: body.file.to_string_lossy().into_owned(),
-            vertices: body.mesh.vertices().len(),
-            edges: body.mesh.edges().len(),
-            triangles: body.mesh.triangles().len(),
+            vertices: body.unplaced().vertices().len(),
+            edges: body.unplaced().edges().len(),
+            triangles: body.unplaced().triangles().len(),
         }
     }
 }

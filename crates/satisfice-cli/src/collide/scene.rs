@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::arguments::Find;
-use super::inputs::{Inputs, NamedBody};
+use super::body::NamedBody;
+use super::inputs::Inputs;
 use super::overlaps;
 use super::report::BodyLine;
 
@@ -105,7 +106,7 @@ impl World {
         };
         if world.couples().next().is_none() {
             let (a, b) = world.kinds();
-            let lacks = |kind: FeatureKind| world.bodies.iter().all(|body| kind.count(&body.mesh) == 0);
+            let lacks = |kind: FeatureKind| world.bodies.iter().all(|body| body.count(kind) == 0);
             let missing = if lacks(a) { a } else { b };
             let plural = missing.plural();
             bail!(
@@ -218,7 +219,7 @@ impl World {
     /// The bodies with a feature of this kind.
     pub(super) fn with(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
         let bodies = 0..self.bodies.len();
-        bodies.filter(move |&body| kind.count(&self.bodies[body].mesh) > 0)
+        bodies.filter(move |&body| self.bodies[body].count(kind) > 0)
     }
 
     /// The bodies of the first and of the second feature, for every combination that can have pairs.
@@ -235,7 +236,7 @@ impl World {
         let bodies = |kind| self.with(kind).count() as u64;
         let both = self
             .with(kind_a)
-            .filter(|&body| kind_b.count(&self.bodies[body].mesh) > 0);
+            .filter(|&body| self.bodies[body].count(kind_b) > 0);
         let both = both.count() as u64;
         let all = bodies(kind_a) * bodies(kind_b);
         let of_two = if kind_a == kind_b {
@@ -259,14 +260,14 @@ impl World {
         let kinds = || [kind_a].into_iter().chain(second);
         let bodies = self.bodies.iter();
         bodies
-            .map(|body| kinds().map(|kind| kind.count(&body.mesh)).sum::<usize>())
+            .map(|body| kinds().map(|kind| body.count(kind)).sum::<usize>())
             .sum()
     }
 
     /// The bodies without a feature of this kind.
     pub(super) fn without(&self, kind: FeatureKind) -> impl Iterator<Item = usize> {
         let bodies = self.bodies.iter().enumerate();
-        bodies.filter_map(move |(number, body)| (kind.count(&body.mesh) == 0).then_some(number))
+        bodies.filter_map(move |(number, body)| (body.count(kind) == 0).then_some(number))
     }
 
     /// The bodies that have a feature of a pair. They are the bodies of the scene, in this order.
@@ -275,7 +276,7 @@ impl World {
         let has = |body: &usize| {
             [kind_a, kind_b]
                 .iter()
-                .any(|kind| kind.count(&self.bodies[*body].mesh) > 0)
+                .any(|kind| self.bodies[*body].count(*kind) > 0)
         };
         (0..self.bodies.len()).filter(has).collect()
     }
@@ -284,11 +285,11 @@ impl World {
     pub(super) fn scene(&self, method: Method) -> anyhow::Result<scene::World> {
         let mut scene = scene::World::new(self.request.kind, self.threshold).with_method(method);
         for body in self.present() {
-            let mesh = (*self.bodies[body].mesh).clone();
+            let body = &self.bodies[body];
             scene.add(if self.request.within {
-                Body::deforming(mesh).beyond_ring(self.ring_width())
+                Body::deforming(body.placed()?.into_owned()).beyond_ring(self.ring_width())
             } else {
-                Body::fixed(mesh)
+                body.fixed()
             })?;
         }
         Ok(scene)
@@ -299,7 +300,7 @@ impl World {
         let mut scene = scene::World::new(self.request.kind, self.threshold);
         let mut ids = vec![None; self.bodies.len()];
         for body in self.present() {
-            ids[body] = Some(scene.add(Body::fixed((*self.bodies[body].mesh).clone()))?);
+            ids[body] = Some(scene.add(self.bodies[body].fixed())?);
         }
         let bodies = self.present();
         Ok(Measure { scene, ids, bodies })
@@ -324,7 +325,7 @@ impl World {
     pub(super) fn size(&self) -> u64 {
         let (kind_a, kind_b) = self.kinds();
         let counts = || {
-            let of = |kind: FeatureKind, body: &NamedBody| kind.count(&body.mesh) as u128;
+            let of = |kind: FeatureKind, body: &NamedBody| body.count(kind) as u128;
             self.bodies
                 .iter()
                 .map(move |body| (of(kind_a, body), of(kind_b, body)))

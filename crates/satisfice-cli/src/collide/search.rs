@@ -38,7 +38,7 @@ pub(super) fn find(
         found: Some(Vec::new()),
         ..Pairs::default()
     };
-    let mut search = Search {
+    let mut search = CoupleSearch {
         world,
         spec,
         limit: &limit,
@@ -90,7 +90,7 @@ fn nothing(spec: &RunSpec) -> anyhow::Result<RunReport> {
 }
 
 /// A search through couples.
-struct Search<'a> {
+struct CoupleSearch<'a> {
     world: &'a Arc<World>,
     spec: &'a RunSpec,
     limit: &'a Limit<'a>,
@@ -100,7 +100,7 @@ struct Search<'a> {
     searched: usize,
 }
 
-impl Search<'_> {
+impl CoupleSearch<'_> {
     /// Searches the couples in turn until a limit ends it. Returns whether all were searched.
     fn all(&mut self, measure: &Measure, couples: &[[usize; 2]], cancel: &Cancel) -> anyhow::Result<bool> {
         let bar = Bar::new();

@@ -8,8 +8,8 @@ use satisfice_catalogue::quantity::shown;
 use satisfice_collision::FeatureKind;
 
 use super::arguments::Find;
+use super::body::NamedBody;
 use super::digits::digits;
-use super::inputs::NamedBody;
 use super::pairs::Side;
 use super::report::{Head, Report};
 use crate::message::plain;

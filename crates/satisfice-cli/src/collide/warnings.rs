@@ -16,8 +16,7 @@ const UNLIKE: f64 = 999.0;
 pub(super) fn warnings(world: &World) -> Vec<String> {
     let mut said = Vec::new();
     let name = |body: usize| &world.bodies[body].name;
-    let bodies = || world.bodies.iter().enumerate();
-    let sizes: Vec<f64> = world.bodies.iter().map(|body| body.mesh.size()).collect();
+    let sizes: Vec<f64> = world.bodies.iter().map(|body| body.bounds().size()).collect();
     let (kind_a, kind_b) = world.kinds();
     for kind in if kind_a == kind_b {
         vec![kind_a]
@@ -35,8 +34,8 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
 
     if kind_a == FeatureKind::Triangle || kind_b == FeatureKind::Triangle {
         for body in &world.bodies {
-            let lines = body.mesh.lines().len();
-            if lines > 0 && !body.mesh.triangles().is_empty() {
+            let lines = body.unplaced().lines().len();
+            if lines > 0 && !body.unplaced().triangles().is_empty() {
                 said.push(format!(
                     "{} has {} beside its triangles (lines, or faces of two corners): no pair of triangles has one of them",
                     body.name,
@@ -71,8 +70,8 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
         ));
     }
 
-    for (body, mesh) in bodies().map(|(number, body)| (number, &body.mesh)) {
-        let bounds = mesh.bounds();
+    for body in &world.bodies {
+        let bounds = body.bounds();
         let reach = bounds
             .min
             .iter()
@@ -81,24 +80,24 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
         let step = f64::EPSILON * reach;
         if step > threshold {
             // Moving helps only what lies away from the origin.
-            let advice = if reach > 2.0 * mesh.size() {
+            let advice = if reach > 2.0 * bounds.size() {
                 "move it near the origin before it is written"
             } else {
                 "is it in the unit of the meshes?"
             };
             said.push(format!(
                 "{} has coordinates up to {}, where neighbouring numbers are {} apart, more than the threshold: {advice}",
-                name(body),
+                body.name,
                 readable(reach),
                 readable(step)
             ));
-        } else if reach > FAR * mesh.size().max(threshold) {
+        } else if reach > FAR * bounds.size().max(threshold) {
             said.push(format!(
                 "{} lies {} from the origin, {} times its size: in a file of single precision (STL, most PLY) its coordinates \
                  are steps of {}; move it near the origin before it is written",
-                name(body),
+                body.name,
                 readable(reach),
-                readable(reach / mesh.size().max(threshold)),
+                readable(reach / bounds.size().max(threshold)),
                 readable(f64::from(f32::EPSILON) * reach)
             ));
         }
@@ -115,11 +114,9 @@ pub(super) fn only_vertices(world: &World) -> Option<String> {
     }
     let with_surface = || {
         let bodies = world.bodies.iter();
-        bodies.filter(|body| !body.mesh.triangles().is_empty())
+        bodies.filter(|body| !body.unplaced().triangles().is_empty())
     };
-    let boxes: Vec<_> = with_surface()
-        .map(|body| (&body.name, body.mesh.bounds()))
-        .collect();
+    let boxes: Vec<_> = with_surface().map(|body| (&body.name, body.bounds())).collect();
     let (a, b) = boxes.iter().enumerate().find_map(|(index, (a, box_a))| {
         let (b, _) = boxes[index + 1..].iter().find(|(_, box_b)| {
             (0..3).all(|k| box_a.min[k] <= box_b.max[k] && box_b.min[k] <= box_a.max[k])
@@ -138,7 +135,7 @@ fn seams(world: &World) -> Vec<String> {
         return Vec::new();
     }
     let said = world.bodies.iter().filter_map(|body| {
-        let (count, distance) = weld::seams(&body.mesh).ok()?;
+        let (count, distance) = weld::seams(&*body.placed().ok()?).ok()?;
         (count > 0).then(|| {
             format!(
                 "{} has {} vertices that lie on others, as at seams: the features on both sides make pairs; --weld {} joins them",

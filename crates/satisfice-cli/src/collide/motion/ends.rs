@@ -8,7 +8,8 @@ use satisfice_collision::io::AnimatedScene;
 use serde_json::{Value, json};
 
 use super::super::arguments::CollideArguments;
-use super::super::inputs::{self, Inputs, NamedBody};
+use super::super::body::NamedBody;
+use super::super::inputs::{self, Inputs};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Ends {

@@ -10,7 +10,7 @@ use satisfice_collision::distance::PairKind;
 use satisfice_collision::{Error, Mesh};
 use serde_json::json;
 
-use super::super::inputs::NamedBody;
+use super::super::body::NamedBody;
 use super::ends::Ends;
 
 /// What makes a step.
@@ -34,7 +34,7 @@ pub(super) struct Frames {
     /// The bodies at the start.
     pub(super) bodies: Vec<NamedBody>,
     /// The same bodies at the end.
-    pub(super) ends: Vec<Arc<Mesh>>,
+    pub(super) ends: Vec<NamedBody>,
     /// Every file that was read for them.
     pub(super) files: Vec<PathBuf>,
     /// Shared with the thread that builds its trees.
@@ -54,10 +54,10 @@ impl Frames {
         }
         let mut step = Step::new();
         for (body, end) in bodies.iter().zip(&ends) {
-            let to = end.mesh.vertices();
+            let (from, to) = (body.placed()?, end.placed()?);
             let added = match request.within {
-                true => step.add_deforming(&body.mesh, to),
-                false => step.add_rigid(&body.mesh, to),
+                true => step.add_deforming(&from, to.vertices()),
+                false => step.add_rigid(&from, to.vertices()),
             };
             added.with_context(|| end.name.clone())?;
         }
@@ -65,11 +65,11 @@ impl Frames {
         let is_at_rest = bodies
             .iter()
             .zip(&ends)
-            .all(|(body, end)| body.mesh.vertices() == end.mesh.vertices());
+            .all(|(body, end)| body.vertices().eq(end.vertices()));
         let frames = Self {
             request,
             bodies,
-            ends: ends.into_iter().map(|end| end.mesh).collect(),
+            ends,
             files,
             step: Arc::new(step),
             kinds,
@@ -103,7 +103,7 @@ impl Frames {
 
     /// The number of vertices of all bodies.
     pub(super) fn vertices(&self) -> usize {
-        self.ends.iter().map(|end| end.vertices().len()).sum()
+        self.ends.iter().map(|end| end.unplaced().vertices().len()).sum()
     }
 
     /// What a report repeats.
@@ -139,7 +139,7 @@ impl Frames {
         };
         let (a, b) = kind.features();
         for feature in [a, b] {
-            if self.bodies.iter().all(|body| feature.count(&body.mesh) == 0) {
+            if self.bodies.iter().all(|body| body.count(feature) == 0) {
                 bail!(
                     "there are no {kind} pairs to look for, since no mesh has any {}: choose other features by --pairs",
                     feature.plural()
@@ -195,18 +195,19 @@ fn check_topology(from: &NamedBody, to: &NamedBody) -> anyhow::Result<()> {
             (mesh.edges().len(), "edges"),
         ]
     };
-    for ((m, what), (n, _)) in counts(&from.mesh).into_iter().zip(counts(&to.mesh)) {
+    let [one, two] = [from, to].map(NamedBody::unplaced);
+    for ((m, what), (n, _)) in counts(one).into_iter().zip(counts(two)) {
         if m != n {
             return wrong(format!("{m} and {n} {what}"));
         }
     }
-    let triangles = from.mesh.triangles().iter().zip(to.mesh.triangles());
+    let triangles = one.triangles().iter().zip(two.triangles());
     for (number, (p, q)) in triangles.enumerate() {
         if p != q {
             return wrong(format!("triangle {number} joins the vertices {p:?} and {q:?}"));
         }
     }
-    let edges = from.mesh.edges().iter().zip(to.mesh.edges());
+    let edges = one.edges().iter().zip(two.edges());
     for (number, (p, q)) in edges.enumerate() {
         if p != q {
             return wrong(format!("edge {number} joins the vertices {p:?} and {q:?}"));

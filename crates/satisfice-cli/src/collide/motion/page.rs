@@ -26,7 +26,7 @@ pub(super) fn html(
     }
     page.method(&head.engine);
     for body in &frames.bodies {
-        let mesh = &body.mesh;
+        let mesh = body.placed()?;
         page.body(&body.name, mesh.vertices(), mesh.triangles(), mesh.lines());
     }
     page.fact("Completeness", summary::completeness(report));
@@ -58,7 +58,7 @@ pub(super) fn html(
         let time = f64::from(part) / f64::from(PARTS);
         page.frame(format!("{time:.2} of the step"));
         for (number, (body, end)) in frames.bodies.iter().zip(&frames.ends).enumerate() {
-            let ends = body.mesh.vertices().iter().zip(end.vertices());
+            let ends = body.vertices().zip(end.vertices());
             let now = ends.map(|(from, to)| std::array::from_fn(|k| (1.0 - time) * from[k] + time * to[k]));
             page.move_body(number, &now.collect::<Vec<_>>())?;
         }

@@ -158,7 +158,7 @@ impl<'a> MotionReport<'a> {
     fn side(&self, feature: FeatureOf, kind: FeatureKind) -> Side {
         let body = feature.body as usize;
         let ends = || {
-            let mesh = &self.frames.bodies.get(body)?.mesh;
+            let mesh = self.frames.bodies.get(body)?.unplaced();
             mesh.edges().get(feature.index as usize).copied()
         };
         Side {

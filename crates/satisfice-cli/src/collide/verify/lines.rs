@@ -8,7 +8,7 @@ use super::checks::Checks;
 use super::referee::Referee;
 use super::{ROUNDING, witness};
 use crate::collide::arguments::Find;
-use crate::collide::inputs::NamedBody;
+use crate::collide::body::NamedBody;
 use crate::collide::pairs::{Line, Side};
 use crate::collide::report::Head;
 use crate::collide::scene::{Pair, World};
@@ -119,7 +119,7 @@ pub(in super::super) fn check_ends(
     checks: &mut Checks,
 ) {
     for (side, kind, part) in [(sides[0], kinds.0, "a"), (sides[1], kinds.1, "b")] {
-        let mesh = bodies.get(side.body).map(|body| &*body.mesh);
+        let mesh = bodies.get(side.body).map(NamedBody::unplaced);
         let place = format!("{place}.{part}.vertices");
         checks.that(
             has_its_ends(side, kind, mesh),

@@ -27,7 +27,7 @@ impl<'a> Referee<'a> {
         let boxes = || (0..bodies).map(|_| OnceCell::new()).collect();
         Self {
             world,
-            bounds: world.bodies.iter().map(|body| body.mesh.bounds()).collect(),
+            bounds: world.bodies.iter().map(|body| body.bounds()).collect(),
             boxes: [boxes(), boxes()],
             rings: (0..bodies).map(|_| OnceCell::new()).collect(),
         }
@@ -47,7 +47,7 @@ impl<'a> Referee<'a> {
         let [kind_a, kind_b] = self.kinds();
         let exists = |Feature { body, feature }: Feature, kind: FeatureKind| {
             let body = self.world.bodies.get(body as usize);
-            body.is_some_and(|body| (feature as usize) < kind.count(&body.mesh))
+            body.is_some_and(|body| (feature as usize) < body.count(kind))
         };
         exists(pair.a, kind_a)
             && exists(pair.b, kind_b)
@@ -58,7 +58,7 @@ impl<'a> Referee<'a> {
     /// Whether two features that one body has are a pair: the lesser first, and not joined.
     fn is_pair_within(&self, pair: &Pair) -> bool {
         let body = pair.a.body as usize;
-        let mesh = &self.world.bodies[body].mesh;
+        let mesh = self.world.bodies[body].unplaced();
         let [kind_a, kind_b] = self.kinds();
         let rings = self.rings[body].get_or_init(|| mesh.adjacency().rings(self.world.ring_width()));
         let corners = |kind, feature| mesh.features(kind).corners(feature);
@@ -75,8 +75,7 @@ impl<'a> Referee<'a> {
     }
 
     fn shape(&self, Feature { body, feature }: Feature, kind: FeatureKind) -> Shape {
-        let mesh = &self.world.bodies[body as usize].mesh;
-        mesh.features(kind).shape(feature, |v| mesh.vertex(v))
+        self.world.bodies[body as usize].shape(kind, feature)
     }
 
     /// Calls `visit` with each pair closer than `below`. If it returns `false`, the other pairs of these two bodies are left out.
@@ -156,7 +155,7 @@ impl<'a> Referee<'a> {
                 let body = body as u32;
                 self.shape(Feature { body, feature }, kinds[side]).bounds()
             };
-            (0..kinds[side].count(&self.world.bodies[body].mesh) as u32)
+            (0..self.world.bodies[body].count(kinds[side]) as u32)
                 .map(shape)
                 .collect()
         })

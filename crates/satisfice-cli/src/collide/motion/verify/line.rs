@@ -87,8 +87,8 @@ fn shapes(kind: PairKind, contact: &MovingContact, frames: &Frames, time: f64) -
     let (kind_a, kind_b) = kind.features();
     [(contact.a, kind_a), (contact.b, kind_b)].map(|(feature, kind)| {
         let body = feature.body as usize;
-        let (from, to) = (&frames.bodies[body].mesh, &frames.ends[body]);
-        from.features(kind).shape(feature.index, |v| {
+        let (from, to) = (&frames.bodies[body], &frames.ends[body]);
+        from.unplaced().features(kind).shape(feature.index, |v| {
             let (from, to) = (from.vertex(v), to.vertex(v));
             std::array::from_fn(|k| from[k] * (1.0 - time) + to[k] * time)
         })
