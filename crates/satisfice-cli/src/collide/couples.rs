@@ -33,7 +33,10 @@ impl PairProblem {
         // The closest pairs at any distance have an infinite one.
         let threshold = world.request.threshold.min(f64::MAX);
         let (kind_a, kind_b) = kind.features();
-        let order = |body: usize, kind| OrderedFeatures::new(&*world.bodies[body].placed()?, kind);
+        let order = |body: usize, kind| {
+            let mesh = world.bodies[body].placed()?;
+            OrderedFeatures::new(&mesh, kind)
+        };
         let a = first.map_or_else(|| order(bodies[0], kind_a), Ok)?;
         let is_same = bodies[0] == bodies[1] && kind_a == kind_b;
         let b = second.or_else(|| is_same.then(|| a.clone()));
@@ -129,8 +132,9 @@ impl<'w> Problems<'w> {
             features: [vec![None; bodies], vec![None; bodies]],
         };
         for couple in couples {
-            for side in 0..2 {
-                problems.uses[problems.list(side)][couple[side]] += 1;
+            for (side, &body) in couple.iter().enumerate() {
+                let list = problems.list(side);
+                problems.uses[list][body] += 1;
             }
         }
         problems

@@ -107,10 +107,11 @@ impl CoupleSearch<'_> {
         let mut problems = Problems::new(self.world, couples);
         let parts = couples.len() as u64;
         for (part, &bodies) in (0..).zip(couples) {
-            let Some(evaluations) = self.evaluations(parts - part) else {
+            let evaluations = self.evaluations(parts - part);
+            if evaluations == Some(0) {
                 self.report.stop_reason = StopReason::Evaluations;
                 return Ok(false);
-            };
+            }
             let job = match self.limit.is_reached() {
                 true => None,
                 false => problems.next(bodies, self.limit)?,
@@ -143,13 +144,11 @@ impl CoupleSearch<'_> {
         Ok(true)
     }
 
-    /// The share of the next one of so many couples: `None` inside where there is no limit, outside where nothing is left.
-    fn evaluations(&self, couples: u64) -> Option<Option<u64>> {
-        let Some(total) = self.spec.budget.evaluations else {
-            return Some(None);
-        };
+    /// The share of the next one of so many couples, 0 where nothing is left; `None` where evaluations are not limited.
+    fn evaluations(&self, couples: u64) -> Option<u64> {
+        let total = self.spec.budget.evaluations?;
         let left = total.saturating_sub(self.report.counts.evaluations);
-        (left > 0).then(|| Some(left.div_ceil(couples)))
+        Some(left.div_ceil(couples))
     }
 
     /// Adds what was found by a run that began at this time.

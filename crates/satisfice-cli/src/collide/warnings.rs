@@ -135,7 +135,8 @@ fn seams(world: &World) -> Vec<String> {
         return Vec::new();
     }
     let said = world.bodies.iter().filter_map(|body| {
-        let (count, distance) = weld::seams(&*body.placed().ok()?).ok()?;
+        let mesh = body.placed().ok()?;
+        let (count, distance) = weld::seams(&mesh).ok()?;
         (count > 0).then(|| {
             format!(
                 "{} has {} vertices that lie on others, as at seams: the features on both sides make pairs; --weld {} joins them",
