@@ -22,6 +22,7 @@
 //! ```
 
 mod advance;
+mod body_order;
 mod conditions;
 mod cubic;
 mod deadline;

@@ -6,6 +6,7 @@
 //!
 //! Boxes are in single precision, rounded outwards, in a frame centred on the scene and scaled to its size.
 
+use super::body_order::by_place;
 use crate::broad::{fold, greater, lesser, order_by_median};
 use crate::distance::Point;
 use crate::simd::Eight;
@@ -246,23 +247,25 @@ impl MovingGroup {
 
 impl MovingTree {
     /// The tree over so many features with these `corners`. `bodies` are where those of each body begin, and the body if it is rigid or
-    /// [`MIXED`]. Features of a body stay together.
+    /// [`MIXED`]. Features of a body stay together, and so do those of bodies near each other.
     pub(super) fn new<const N: usize>(
         frame: &BoxFrame,
         count: usize,
         corners: impl Fn(u32) -> [u32; N],
         bodies: &[(usize, u32)],
     ) -> Self {
+        let middles: Vec<_> = (0..count)
+            .map(|feature| frame.middle(corners(feature as u32)))
+            .collect();
         let mut order = Vec::with_capacity(count);
         let mut owners = Vec::new();
         let has_rigid = bodies.iter().any(|&(_, rigid)| rigid != MIXED);
-        for (number, &(first, rigid)) in bodies.iter().enumerate() {
-            let end = bodies.get(number + 1).map_or(count, |&(next, _)| next);
-            let middles = (first..end).map(|feature| frame.middle(corners(feature as u32)));
-            let within = order_by_median(middles, false);
-            order.extend(within.into_iter().map(|feature| feature + first as u32));
+        for (features, rigid) in by_place(&middles, bodies) {
+            let first = features.start as u32;
+            let within = order_by_median(middles[features].iter().copied(), false);
+            order.extend(within.into_iter().map(|feature| feature + first));
             if has_rigid {
-                owners.resize(end, rigid);
+                owners.resize(order.len(), rigid);
             }
         }
         let number = count.div_ceil(LANES).max(1);
