@@ -71,7 +71,6 @@ fn work_grows_like_n_log_n_with_the_number_of_bodies() {
     for scene in [Scene::Random, Scene::Apart] {
         let counts = [125, 1_000, 4_096];
         let works = counts.map(|count| work(count, scene));
-        println!("{scene:?} {works:?}");
         for i in 1..counts.len() {
             let [before, now] = [i - 1, i].map(|i| counts[i] as f64 * (counts[i] as f64).ln());
             assert!(

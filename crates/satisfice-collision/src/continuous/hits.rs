@@ -206,12 +206,11 @@ impl PairSearch<'_> {
 
     /// How many pairs of features the rows from this one on have.
     fn pairs_from(&self, row: u32) -> u64 {
-        let [m, n] = self.trees.map(|tree| tree.order.len() as u64);
-        let rest = m - (u64::from(row) * LANES as u64).min(m);
+        let rest = self.trees[0].features_from(row as usize * LANES) as u64;
         if self.is_one_list() {
             rest * rest.saturating_sub(1) / 2
         } else {
-            rest * n
+            rest * self.trees[1].features_from(0) as u64
         }
     }
 

@@ -5,6 +5,7 @@ use satisfice::{Axis, Bounds, Region, SatisficingProblem, Space};
 
 use super::Separation;
 use super::advance::Goal;
+use super::body_order::filled;
 use super::step::{FeatureList, MovingContact, Step};
 use super::tree::MovingBox;
 use crate::Error;
@@ -51,7 +52,8 @@ pub struct MovingPairs<'s> {
     separation: Separation,
     margin: f32,
     space: Space<f64>,
-    positions: [u32; 2],
+    /// The lane of the feature at each position.
+    lanes: [Vec<u32>; 2],
 }
 
 impl<'s> MovingPairs<'s> {
@@ -61,11 +63,14 @@ impl<'s> MovingPairs<'s> {
     /// [`Error::Parameter`] for kinds that [`Step::hits`] refuses, and if the step has no features of the kind.
     pub fn new(step: &'s Step, kind: PairKind, separation: Separation) -> Result<Self, Error> {
         let lists = Step::lists(kind)?;
-        let positions = lists.map(|list| step.tree(list).order.len() as u32);
-        if positions.contains(&0) {
+        let lanes = lists.map(|list| {
+            let features = filled(&step.tree(list).order);
+            features.map(|(lane, _)| lane as u32).collect::<Vec<_>>()
+        });
+        if lanes.iter().any(Vec::is_empty) {
             return Err(Error::EmptyMesh);
         }
-        let axes = positions.map(|count| Axis::integer(0, i64::from(count) - 1));
+        let axes = [0, 1].map(|side| Axis::integer(0, lanes[side].len() as i64 - 1));
         let space = Space::new(axes).map_err(|error| {
             Error::parameter(
                 "features",
@@ -80,25 +85,26 @@ impl<'s> MovingPairs<'s> {
             separation,
             margin: step.margin(separation.get()),
             space,
-            positions,
+            lanes,
         })
     }
 
     /// The number of positions on each axis.
     #[must_use]
     pub fn positions(&self) -> [u32; 2] {
-        self.positions
+        [0, 1].map(|side| self.lanes[side].len() as u32)
     }
 
     fn feature(&self, side: usize, position: f64) -> u32 {
-        self.step.tree(self.lists[side]).order[position as usize]
+        let lane = self.lanes[side][position as usize];
+        self.step.tree(self.lists[side]).order[lane as usize]
     }
 
     /// The box around the features at positions on an axis.
     fn around(&self, side: usize, from: f64, to: f64) -> MovingBox {
         self.step
             .tree(self.lists[side])
-            .box_of_range(from as u32, to as u32)
+            .box_of_range(self.lanes[side][from as usize], self.lanes[side][to as usize])
     }
 }
 
@@ -153,8 +159,8 @@ impl SatisficingProblem for MovingPairs<'_> {
             name: format!("moving-{}-pairs", self.kind),
             parameters: vec![
                 ("delta".to_owned(), self.separation.to_string()),
-                ("features-a".to_owned(), self.positions[0].to_string()),
-                ("features-b".to_owned(), self.positions[1].to_string()),
+                ("features-a".to_owned(), self.lanes[0].len().to_string()),
+                ("features-b".to_owned(), self.lanes[1].len().to_string()),
             ],
         }
     }

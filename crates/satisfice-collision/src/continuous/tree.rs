@@ -6,8 +6,8 @@
 //!
 //! Boxes are in single precision, rounded outwards, in a frame centred on the scene and scaled to its size.
 
-use super::body_order::by_place;
-use crate::broad::{fold, greater, lesser, order_by_median};
+use super::body_order::{filled, order_of};
+use crate::broad::{fold, greater, lesser};
 use crate::distance::Point;
 use crate::simd::Eight;
 
@@ -41,7 +41,7 @@ pub(super) struct MovingGroup {
 /// The boxes of a list of features.
 #[derive(Debug)]
 pub(super) struct MovingTree {
-    /// The features in the order of the lowest level's lanes.
+    /// The features in the order of the lowest level's lanes, and [`HOLE`](super::body_order::HOLE) in lanes without one.
     pub(super) order: Vec<u32>,
     /// The vertices of the features of each group, a lane each: as many arrays a group as a feature has vertices.
     corners: Vec<[u32; LANES]>,
@@ -247,7 +247,7 @@ impl MovingGroup {
 
 impl MovingTree {
     /// The tree over so many features with these `corners`. `bodies` are where those of each body begin, and the body if it is rigid or
-    /// [`MIXED`]. Features of a body stay together, and so do those of bodies near each other.
+    /// [`MIXED`].
     pub(super) fn new<const N: usize>(
         frame: &BoxFrame,
         count: usize,
@@ -257,21 +257,12 @@ impl MovingTree {
         let middles: Vec<_> = (0..count)
             .map(|feature| frame.middle(corners(feature as u32)))
             .collect();
-        let mut order = Vec::with_capacity(count);
-        let mut owners = Vec::new();
         let has_rigid = bodies.iter().any(|&(_, rigid)| rigid != MIXED);
-        for (features, rigid) in by_place(&middles, bodies) {
-            let first = features.start as u32;
-            let within = order_by_median(middles[features].iter().copied(), false);
-            order.extend(within.into_iter().map(|feature| feature + first));
-            if has_rigid {
-                owners.resize(order.len(), rigid);
-            }
-        }
-        let number = count.div_ceil(LANES).max(1);
+        let (order, owners) = order_of(&middles, bodies);
+        let number = order.len().div_ceil(LANES).max(1);
         let mut in_lanes = vec![[u32::MAX; LANES]; number * N];
         for (in_lanes, features) in in_lanes.chunks_exact_mut(N).zip(order.chunks(LANES)) {
-            for (lane, &feature) in features.iter().enumerate() {
+            for (lane, feature) in filled(features) {
                 for (lanes, corner) in in_lanes.iter_mut().zip(corners(feature)) {
                     lanes[lane] = corner;
                 }
@@ -312,9 +303,8 @@ impl MovingTree {
     /// Sets all boxes.
     fn fit<const N: usize>(&mut self, frame: &BoxFrame) {
         let lanes = self.levels[0].iter_mut().zip(self.corners.chunks_exact(N));
-        for (number, (group, in_lanes)) in lanes.enumerate() {
-            let features = self.order.len().saturating_sub(number * LANES).min(LANES);
-            for lane in (0..LANES).take(features) {
+        for ((group, in_lanes), features) in lanes.zip(self.order.chunks(LANES)) {
+            for (lane, _) in filled(features) {
                 let corners = std::array::from_fn::<_, N, _>(|k| in_lanes[k][lane]);
                 group.set_around(lane, &frame.extent(corners));
             }
@@ -333,6 +323,11 @@ impl MovingTree {
     fn extent(&self, frame: &BoxFrame) -> f64 {
         let groups = self.levels[1..].iter().flatten();
         groups.map(MovingGroup::extent).sum::<f64>() / frame.scale
+    }
+
+    /// How many features the lanes from this one on have.
+    pub(super) fn features_from(&self, lane: usize) -> usize {
+        filled(self.order.get(lane..).unwrap_or_default()).count()
     }
 
     /// The vertices of the features of a group, a lane each.
