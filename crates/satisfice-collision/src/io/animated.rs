@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::faces::UncutFaces;
 use super::scene::{PlacedMesh, make_names_unique};
 use super::source::{self, Folder};
 use super::{Format, frames};
@@ -28,6 +29,7 @@ use crate::error::Error;
 pub struct AnimatedScene {
     frames: Box<dyn Frames>,
     files: Vec<PathBuf>,
+    uncut: Vec<UncutFaces>,
 }
 
 /// The bodies of a file at any time.
@@ -137,14 +139,28 @@ impl AnimatedScene {
         play: Play<'_>,
     ) -> Result<Self, Error> {
         let frames = frames(format, bytes, &folder, name, play)?;
-        let files = folder.into_read();
-        Ok(Self { frames, files })
+        let (files, uncut) = folder.into_notes();
+        Ok(Self { frames, files, uncut })
     }
 
     /// Every file that was read for it: its own, unless it came from a stream, and those that it names.
     #[must_use]
     pub fn files(&self) -> &[PathBuf] {
         &self.files
+    }
+
+    /// The faces of its files that stay fans of triangles which do not cover them, where there are any.
+    ///
+    /// ```
+    /// use satisfice_collision::io::{AnimatedScene, Format};
+    /// let bow_tie = &b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.5 0\nf 1 2 3 4"[..];
+    /// let scene = AnimatedScene::read_resting_from(bow_tie, Format::named("obj")?, "bow", ".")?;
+    /// assert_eq!(scene.uncut_faces()[0].faces, 1);
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    #[must_use]
+    pub fn uncut_faces(&self) -> &[UncutFaces] {
+        &self.uncut
     }
 
     /// The names of all animations of the file, those that are not played included, in the order of the file.

@@ -6,30 +6,60 @@
 //! convex polygon. For others ears are cut off: corners whose triangle is turned the right way and has no other corner in it. A simple
 //! polygon always has one (Meisters 1975). Turns are decided exactly.
 
+use std::collections::BTreeSet;
+
+use super::hollows::{Hollows, Left};
 use crate::broad::{exponent, power_of_two};
 use crate::distance::Point;
 use crate::distance::orientation::side_of_line;
 
-/// Polygons of more corners stay fans: the time for ears grows with the square of their number.
-const MOST_CORNERS: usize = 1 << 14;
+/// A polygon whose ears take more looks at corners, and at boxes of corners, stays a fan.
+const MOST_LOOKS: u64 = 1 << 28;
 /// How often corners without a turn, such as repeated ones, are cut off because no ear is left.
 const MOST_PASSES: usize = 4;
 
-/// The triangles that cover a concave polygon, two fewer than it has corners; `None` if the fan about its first corner is to be kept: because
-/// it covers the polygon, or because nothing does, as where the polygon crosses itself.
-pub(super) fn triangles_of(corners: &[u32], vertices: &[Point]) -> Option<Vec<[u32; 3]>> {
-    let points = seen_along_normal(corners, vertices)?;
+/// The triangles of a polygon, two fewer than it has corners.
+pub(super) enum Cut {
+    /// The fan about its first corner covers it.
+    Fan,
+    /// These do.
+    Ears(Vec<[u32; 3]>),
+    /// None were found that do, as where the polygon crosses itself.
+    Nothing,
+}
+
+/// How a polygon is to be cut.
+pub(super) fn cut(corners: &[u32], vertices: &[Point]) -> Cut {
+    let Some(points) = seen_along_normal(corners, vertices) else {
+        return if are_on_a_line(corners, vertices) {
+            Cut::Fan
+        } else {
+            Cut::Nothing
+        };
+    };
     let fan = (2..points.len()).map(|k| turn(&points, [0, k - 1, k]));
     let (mut left, mut right) = (false, false);
     for turn in fan {
         left |= turn > 0;
         right |= turn < 0;
     }
-    if !(left && right) || points.len() > MOST_CORNERS {
-        return None;
+    if !(left && right) {
+        return Cut::Fan;
     }
-    let ears = Ring::new(&points)?.cut()?;
-    Some(ears.into_iter().map(|ear| ear.map(|k| corners[k])).collect())
+    match Ring::new(&points).and_then(Ring::cut) {
+        Some(ears) => Cut::Ears(ears.into_iter().map(|ear| ear.map(|k| corners[k])).collect()),
+        None => Cut::Nothing,
+    }
+}
+
+/// Whether all corners lie on one line.
+fn are_on_a_line(corners: &[u32], vertices: &[Point]) -> bool {
+    let points = || corners.iter().map(|&v| vertices[v as usize]);
+    let first = vertices[corners[0] as usize];
+    let Some(other) = points().find(|&p| p != first) else {
+        return true;
+    };
+    points().all(|p| (0..3).all(|k| side_of_line(first, other, p, k) == 0))
 }
 
 /// The corners projected along the Newell normal onto a plane of two axes; `None` without a normal. Those in a plane of two axes keep their
@@ -84,7 +114,10 @@ struct Ring<'p> {
     next: Vec<usize>,
     /// Of each corner how its triangle turns: 1 as the polygon does.
     turns: Vec<i32>,
-    is_ear: Vec<bool>,
+    /// Those that are left and do not turn as the polygon does.
+    hollows: Hollows,
+    /// Those whose triangles can be cut off.
+    ears: BTreeSet<usize>,
     left: usize,
     /// A corner that is left.
     at: usize,
@@ -101,7 +134,8 @@ impl<'p> Ring<'p> {
             previous: (0..count).map(|k| (k + count - 1) % count).collect(),
             next: (0..count).map(|k| (k + 1) % count).collect(),
             turns: vec![0; count],
-            is_ear: vec![false; count],
+            hollows: Hollows::new(points),
+            ears: BTreeSet::new(),
             left: count,
             at: 0,
             triangles: Vec::with_capacity(count - 2),
@@ -131,10 +165,13 @@ impl<'p> Ring<'p> {
         Some(turn(points, [before, outermost, after])).filter(|&way| way != 0)
     }
 
-    /// Cuts off ears until a triangle is left; `None` if there is a polygon without an ear.
+    /// Cuts off ears until a triangle is left; `None` if there is a polygon without an ear, or if it takes too long.
     fn cut(mut self) -> Option<Vec<[usize; 3]>> {
         let mut passes = 0;
         while self.left > 3 {
+            if self.hollows.looks > MOST_LOOKS {
+                return None;
+            }
             if self.find_ear() {
                 let [before, after] = self.cut_off(self.at);
                 self.look(before);
@@ -158,13 +195,12 @@ impl<'p> Ring<'p> {
 
     /// Goes on to the next ear.
     fn find_ear(&mut self) -> bool {
-        for _ in 0..self.left {
-            if self.is_ear[self.at] {
-                return true;
-            }
-            self.at = self.next[self.at];
-        }
-        false
+        let behind = self.ears.range(self.at..).next();
+        let Some(&ear) = behind.or(self.ears.first()) else {
+            return false;
+        };
+        self.at = ear;
+        true
     }
 
     fn triangle(&self, corner: usize) -> [usize; 3] {
@@ -177,6 +213,8 @@ impl<'p> Ring<'p> {
         self.triangles.push(triangle);
         self.next[before] = after;
         self.previous[after] = before;
+        self.hollows.mark(corner, false);
+        self.ears.remove(&corner);
         self.left -= 1;
         self.at = after;
         [before, after]
@@ -197,48 +235,50 @@ impl<'p> Ring<'p> {
 
     fn look_at_all(&mut self) {
         for _ in 0..self.left {
-            self.turns[self.at] = self.way * turn(self.points, self.triangle(self.at));
+            self.look_at_turn(self.at);
             self.at = self.next[self.at];
         }
         for _ in 0..self.left {
-            self.is_ear[self.at] = self.is_ear_now(self.at);
+            self.look_for_ear(self.at);
             self.at = self.next[self.at];
         }
     }
 
     fn look(&mut self, corner: usize) {
+        self.look_at_turn(corner);
+        self.look_for_ear(corner);
+    }
+
+    fn look_at_turn(&mut self, corner: usize) {
         self.turns[corner] = self.way * turn(self.points, self.triangle(corner));
-        self.is_ear[corner] = self.is_ear_now(corner);
+        self.hollows.mark(corner, self.turns[corner] <= 0);
+    }
+
+    fn look_for_ear(&mut self, corner: usize) {
+        if self.is_ear_now(corner) {
+            self.ears.insert(corner);
+        } else {
+            self.ears.remove(&corner);
+        }
     }
 
     /// Whether the triangle of a corner is turned as the polygon is, and has no other corner in it. If any is in it, so is one that turns
     /// the other way or not at all.
-    fn is_ear_now(&self, corner: usize) -> bool {
-        if self.turns[corner] <= 0 {
+    fn is_ear_now(&mut self, corner: usize) -> bool {
+        if self.turns[corner] <= 0 || self.hollows.looks > MOST_LOOKS {
             return false;
         }
-        let [a, _, c] = self.triangle(corner);
-        let own = [a, corner, c].map(|k| self.points[k]);
-        let bounds = [0, 1].map(|k| {
-            let [x, y, z] = own.map(|p| p[k]);
-            [x.min(y).min(z), x.max(y).max(z)]
-        });
-        let mut other = self.next[c];
-        while other != a {
-            let point = self.points[other];
-            let may_be_inside = self.turns[other] <= 0
-                && (0..2).all(|k| bounds[k][0] <= point[k] && point[k] <= bounds[k][1]);
-            if may_be_inside && !own.contains(&point) && self.is_inside(own, point) {
-                return false;
-            }
-            other = self.next[other];
+        let mut own = self.triangle(corner).map(|k| self.points[k]);
+        if self.way < 0 {
+            own.swap(0, 2);
         }
-        true
-    }
-
-    fn is_inside(&self, [a, b, c]: [Point; 3], point: Point) -> bool {
-        [[a, b], [b, c], [c, a]]
-            .iter()
-            .all(|&[from, to]| self.way * side_of_line(from, to, point, 0) >= 0)
+        let points = self.points;
+        let is_inside = |other: usize| {
+            let point = points[other];
+            let [a, b, c] = own;
+            let is_left_of = |[from, to]: [Point; 2]| side_of_line(from, to, point, 0) >= 0;
+            !own.contains(&point) && [[a, b], [b, c], [c, a]].into_iter().all(is_left_of)
+        };
+        !self.hollows.any_in(Left(own), is_inside)
     }
 }

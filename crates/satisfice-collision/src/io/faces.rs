@@ -1,6 +1,8 @@
 //! Faces of a file cut into triangles, and the check of their vertex numbers.
 
-use super::ears::triangles_of;
+use std::path::PathBuf;
+
+use super::ears::{Cut, cut};
 use crate::Mesh;
 use crate::error::{Element, Error};
 use crate::mesh::Point;
@@ -16,6 +18,23 @@ pub(super) struct Faces {
     polygons: Vec<[usize; 2]>,
 }
 
+/// A mesh as it was read.
+pub(super) struct ReadMesh {
+    pub(super) mesh: Mesh,
+    /// How many of its faces stay fans that do not cover them.
+    pub(super) uncut: usize,
+}
+
+/// Faces of a file that could not be cut into triangles that cover them: those that cross themselves, seen along their normal, and
+/// those of very many corners that take too long. Each stays a fan about its first corner, which covers other points than the face.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UncutFaces {
+    /// The file; `-` for a stream.
+    pub file: PathBuf,
+    /// How many there are.
+    pub faces: usize,
+}
+
 impl Faces {
     pub(super) fn add(&mut self, corners: &[u32]) {
         match *corners {
@@ -29,23 +48,30 @@ impl Faces {
         }
     }
 
-    /// The mesh of these faces and vertices, polygons cut as [`triangles_of`] does.
+    /// The mesh of these faces and vertices, polygons cut as [`cut`] does.
     ///
     /// # Errors
     /// Those of [`Mesh::new`].
-    pub(super) fn mesh(mut self, vertices: Vec<Point>) -> Result<Mesh, Error> {
+    pub(super) fn mesh(mut self, vertices: Vec<Point>) -> Result<ReadMesh, Error> {
         let mut corners = Vec::new();
+        let mut uncut = 0;
         for [first, count] in self.polygons {
             let fan = &mut self.triangles[first..first + count];
             corners.clear();
             corners.extend_from_slice(&fan[0][..2]);
             corners.extend(fan.iter().map(|triangle| triangle[2]));
             let is_known = corners.iter().all(|&v| (v as usize) < vertices.len());
-            if is_known && let Some(ears) = triangles_of(&corners, &vertices) {
-                fan.copy_from_slice(&ears);
+            if !is_known {
+                continue;
+            }
+            match cut(&corners, &vertices) {
+                Cut::Fan => {}
+                Cut::Ears(ears) => fan.copy_from_slice(&ears),
+                Cut::Nothing => uncut += 1,
             }
         }
-        Mesh::new(vertices, self.lines, self.triangles)
+        let mesh = Mesh::new(vertices, self.lines, self.triangles)?;
+        Ok(ReadMesh { mesh, uncut })
     }
 }
 

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::animated::{Frames, Play};
+use super::faces::ReadMesh;
 use super::source::Folder;
 use crate::error::Error;
-use crate::mesh::Mesh;
 
 /// A file format of meshes or scenes.
 ///
@@ -30,7 +30,7 @@ type SceneReader = fn(&[u8], &Folder, Play<'_>) -> Result<Box<dyn Frames>, Error
 #[derive(Clone, Copy)]
 pub(super) enum Reader {
     /// One body.
-    Mesh(fn(&[u8]) -> Result<Mesh, Error>),
+    Mesh(fn(&[u8]) -> Result<ReadMesh, Error>),
     /// Several bodies, which may name further files in the folder, and animations.
     Scene(SceneReader),
 }

@@ -83,6 +83,7 @@ fn files(list: MeshList, folder: &Folder, play: Play<'_>) -> Result<Box<dyn Fram
             None => {
                 let scene = scene(&path, play)?;
                 folder.note(scene.files().iter().cloned());
+                folder.note_uncut(scene.uncut_faces().iter().cloned());
                 known.insert(path.clone(), files.len());
                 files.push((path, scene));
                 files.len() - 1

@@ -5,13 +5,15 @@
 //! Files may be compressed by gzip. Coordinates are `f64`. A new format is a file here and a line in `registry.rs`.
 //!
 //! Faces of more than three corners become triangles: a fan about the first corner where this covers the polygon, as for every convex one, or else
-//! triangles that do, seen along the normal of the face. A face that crosses itself, or has more than 16,384 corners, stays a fan.
+//! triangles that do, seen along the normal of the face. A face that crosses itself, or has so many corners that this takes too long, stays a
+//! fan; [`AnimatedScene::uncut_faces`] counts them.
 
 mod animated;
 mod ears;
 mod faces;
 mod format;
 mod gltf;
+mod hollows;
 mod list;
 mod obj;
 mod off;
@@ -29,6 +31,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use animated::AnimatedScene;
+pub use faces::UncutFaces;
 pub use format::Format;
 pub use scene::PlacedMesh;
 pub use write::{save_obj, write_obj};
@@ -118,7 +121,7 @@ pub fn parse(format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
 
 fn mesh(format: Format, bytes: &[u8], folder: Folder) -> Result<Mesh, Error> {
     if let Reader::Mesh(parse) = format.reader {
-        return parse(bytes);
+        return parse(bytes).map(|read| read.mesh);
     }
     let scene = AnimatedScene::of(format, bytes, folder, "", Play::Nothing)?;
     match scene.at_rest()?.as_slice() {
@@ -138,11 +141,15 @@ fn frames(
     play: Play<'_>,
 ) -> Result<Box<dyn Frames>, Error> {
     match format.reader {
-        Reader::Mesh(parse) => Ok(Box::new(PlacedMesh {
-            name: name.to_owned(),
-            mesh: Arc::new(parse(bytes)?),
-            placement: Placement::IDENTITY,
-        })),
+        Reader::Mesh(parse) => {
+            let read = parse(bytes)?;
+            folder.note_own_uncut(read.uncut);
+            Ok(Box::new(PlacedMesh {
+                name: name.to_owned(),
+                mesh: Arc::new(read.mesh),
+                placement: Placement::IDENTITY,
+            }))
+        }
         Reader::Scene(parse) => parse(bytes, folder, play),
     }
 }

@@ -3,11 +3,11 @@
 //! The reader is our own, since the kept ones serve renderers: `tobj` drops vertices without a face, renumbers the
 //! others and names no line in its errors.
 
-use super::faces::{Faces, checked_index};
+use super::faces::{Faces, ReadMesh, checked_index};
 use super::format::{Format, Reader};
 use super::text::{Lines, Words, as_written, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
-use crate::mesh::{Mesh, finite};
+use crate::mesh::finite;
 
 const NAME: &str = "OBJ";
 
@@ -18,7 +18,7 @@ pub(super) const FORMAT: Format = Format {
     reader: Reader::Mesh(parse),
 };
 
-fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
+fn parse(bytes: &[u8]) -> Result<ReadMesh, Error> {
     let mut file = Contents::default();
     let mut lines = Lines::after(0, without_mark(NAME, bytes)?);
     let mut joined = Vec::new();
@@ -197,7 +197,7 @@ impl Contents {
         Ok(vertex as u32)
     }
 
-    fn mesh(self) -> Result<Mesh, Error> {
+    fn mesh(self) -> Result<ReadMesh, Error> {
         for r in &self.forward {
             checked_index(r.element, r.index, r.vertex, self.vertices.len())
                 .map_err(|error| counted_from_1(error).at_line(r.line))?;

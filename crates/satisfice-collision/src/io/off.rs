@@ -1,10 +1,10 @@
 //! OFF: a line of counts, then a line for each vertex and each face.
 
-use super::faces::{Faces, checked_index};
+use super::faces::{Faces, ReadMesh, checked_index};
 use super::format::{Format, Reader};
 use super::text::{Lines, Words, as_written, quoted, real, whole, without_comment, without_mark};
 use crate::error::{Element, Error};
-use crate::mesh::{Mesh, finite};
+use crate::mesh::finite;
 
 const NAME: &str = "OFF";
 
@@ -19,7 +19,7 @@ fn malformed(reason: impl std::fmt::Display) -> Error {
     Error::malformed(NAME, reason)
 }
 
-fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
+fn parse(bytes: &[u8]) -> Result<ReadMesh, Error> {
     let mut file = File {
         lines: Lines::after(0, without_mark(NAME, bytes)?),
         vertices: Vec::new(),

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
+use super::faces::UncutFaces;
 use crate::error::Error;
 
 /// Streams and compressed files do not say how long they are; more than this is refused rather than filling the memory.
@@ -69,23 +70,32 @@ fn limited(stream: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The folder that the names inside a file are relative to, and which files were read for these names.
+/// The folder that the names inside a file are relative to, which files were read for these names, and what could not be cut.
 pub(super) struct Folder {
     path: PathBuf,
+    /// The file itself.
+    own: PathBuf,
     read: RefCell<Vec<PathBuf>>,
+    uncut: RefCell<Vec<UncutFaces>>,
 }
 
 impl Folder {
+    /// The folder for a stream.
     pub(super) fn new(path: impl Into<PathBuf>) -> Self {
         Self {
             path: path.into(),
+            own: "-".into(),
             read: RefCell::default(),
+            uncut: RefCell::default(),
         }
     }
 
     /// The folder of a file.
     pub(super) fn of(path: &Path) -> Self {
-        Self::new(path.parent().map(Path::to_owned).unwrap_or_default())
+        Self {
+            own: path.to_owned(),
+            ..Self::new(path.parent().map(Path::to_owned).unwrap_or_default())
+        }
     }
 
     pub(super) fn join(&self, name: &str) -> PathBuf {
@@ -105,9 +115,22 @@ impl Folder {
         self.read.borrow_mut().extend(files);
     }
 
-    /// The files that were read.
-    pub(super) fn into_read(self) -> Vec<PathBuf> {
-        self.read.into_inner()
+    /// Notes so many faces of the file itself that could not be cut.
+    pub(super) fn note_own_uncut(&self, faces: usize) {
+        if faces > 0 {
+            let file = self.own.clone();
+            self.note_uncut([UncutFaces { file, faces }]);
+        }
+    }
+
+    /// Notes faces of further files that could not be cut.
+    pub(super) fn note_uncut(&self, faces: impl IntoIterator<Item = UncutFaces>) {
+        self.uncut.borrow_mut().extend(faces);
+    }
+
+    /// The files that were read, and the faces that could not be cut.
+    pub(super) fn into_notes(self) -> (Vec<PathBuf>, Vec<UncutFaces>) {
+        (self.read.into_inner(), self.uncut.into_inner())
     }
 }
 

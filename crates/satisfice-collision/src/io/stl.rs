@@ -1,10 +1,10 @@
 //! STL, ASCII or binary. The format has no vertex numbers: corners with equal coordinates become one vertex.
 
-use super::faces::Faces;
+use super::faces::{Faces, ReadMesh};
 use super::format::{Format, Reader};
 use super::text::{Lines, Words, quoted, real, without_mark};
 use crate::error::Error;
-use crate::mesh::{Mesh, finite, weld};
+use crate::mesh::{finite, weld};
 
 const NAME: &str = "STL";
 const HEADER: usize = 84;
@@ -18,7 +18,7 @@ pub(super) const FORMAT: Format = Format {
     reader: Reader::Mesh(parse),
 };
 
-fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
+fn parse(bytes: &[u8]) -> Result<ReadMesh, Error> {
     let corners = if is_ascii(bytes) {
         ascii(without_mark(NAME, bytes)?)?
     } else {

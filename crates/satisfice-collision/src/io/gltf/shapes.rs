@@ -45,7 +45,7 @@ pub(super) fn body(mesh: &document::MeshObject, buffers: &mut Buffers<'_>) -> Re
     if vertices.is_empty() {
         return Ok(None);
     }
-    faces.mesh(vertices).map(Some)
+    faces.mesh(vertices).map(|read| Some(read.mesh))
 }
 
 /// Adds the lines or triangles that the corners form in this mode.

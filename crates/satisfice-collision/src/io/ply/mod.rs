@@ -11,11 +11,11 @@ use at_once::{PointShape, TriangleShape};
 use header::{Definition, Encoding, Header, Kind, Number};
 use numbers::{Ascii, Binary, Numbers};
 
-use super::faces::{Faces, checked_index};
+use super::faces::{Faces, ReadMesh, checked_index};
 use super::format::{Format, Reader};
 use super::text::without_mark;
 use crate::error::{Element, Error};
-use crate::mesh::{Mesh, finite};
+use crate::mesh::finite;
 
 const NAME: &str = "PLY";
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -29,7 +29,7 @@ pub(super) const FORMAT: Format = Format {
     reader: Reader::Mesh(parse),
 };
 
-fn parse(bytes: &[u8]) -> Result<Mesh, Error> {
+fn parse(bytes: &[u8]) -> Result<ReadMesh, Error> {
     let (header, body) = header::parse(without_mark(NAME, bytes)?)?;
     let elements = elements(&header)?;
     match header.encoding {
@@ -164,7 +164,7 @@ fn step(element: &str, name: &str, kind: Kind) -> PropertyStep {
     }
 }
 
-fn read(elements: &[ElementPlan<'_>], numbers: impl Numbers) -> Result<Mesh, Error> {
+fn read(elements: &[ElementPlan<'_>], numbers: impl Numbers) -> Result<ReadMesh, Error> {
     let mut body = MeshContents {
         numbers,
         vertex_count: elements

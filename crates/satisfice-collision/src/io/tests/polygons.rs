@@ -4,7 +4,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 use super::{OBJ, OFF, PLY};
-use crate::io::parse;
+use crate::io::{AnimatedScene, UncutFaces, parse};
 
 type Corner = [i64; 2];
 
@@ -202,18 +202,55 @@ fn repeated_corners_and_a_hole_on_a_bridge_are_covered() {
     }
 }
 
+/// A comb with teeth of so many corners.
+fn comb(teeth: i64) -> Vec<Corner> {
+    let tips = (0..teeth).flat_map(|k| [[2 * k, 9], [2 * k + 1, 1]]).rev();
+    [[-1, 0], [2 * teeth, 0]].into_iter().chain(tips).collect()
+}
+
 #[test]
-fn a_comb_is_cut_unless_it_is_huge() {
-    let comb = |teeth: i64| {
-        let tips = (0..teeth).flat_map(|k| [[2 * k, 9], [2 * k + 1, 1]]).rev();
-        [[-1, 0], [2 * teeth, 0]]
-            .into_iter()
-            .chain(tips)
-            .collect::<Vec<Corner>>()
-    };
-    assert_covered(&comb(500), &triangles(&comb(500)));
-    let huge = comb(1 << 13);
-    assert_eq!(triangles(&huge), fan(huge.len()));
+fn combs_and_spirals_of_very_many_corners_are_covered() {
+    for corners in [comb(500), comb(1 << 14), spiral(1 << 10)] {
+        let cut = triangles(&corners);
+        assert_covered(&corners, &cut);
+        assert_ne!(cut, fan(corners.len()));
+    }
+}
+
+/// How many faces a scene of this OBJ file leaves uncut.
+fn uncut(text: &str) -> usize {
+    let scene = AnimatedScene::read_resting_from(text.as_bytes(), OBJ, "polygon", ".").unwrap();
+    scene.uncut_faces().iter().map(|file| file.faces).sum()
+}
+
+#[test]
+fn faces_that_cross_themselves_are_counted() {
+    let vertices = "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 3 0\nv 1 1 0\nv 9 9 9\n";
+    for (faces, count) in [
+        ("f 1 2 3 4\n", 1),
+        // a bow tie without a normal
+        ("f 1 2 3 4\nf 1 3 2 4\nv 0 4 0\nf 1 2 3 7\n", 2),
+        ("f 1 3 2 4\nf 1 2 3\nf 1 2\n", 0),
+        // on a line, and at one place
+        ("f 1 2 5 2\nf 6 6 6 6\n", 0),
+    ] {
+        assert_eq!(uncut(&format!("{vertices}{faces}")), count, "{faces}");
+    }
+}
+
+#[test]
+fn files_of_a_list_tell_which_faces_were_not_cut() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("bow.obj", "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 3 0\nf 1 2 3 4\n");
+    write("flat.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n");
+    write(
+        "list.toml",
+        "bodies = [{ mesh = 'flat.obj' }, { mesh = 'bow.obj' }, { mesh = 'bow.obj', at = [9, 0, 0] }]",
+    );
+    let scene = AnimatedScene::read_resting(folder.path().join("list.toml")).unwrap();
+    let file = folder.path().join("bow.obj");
+    assert_eq!(scene.uncut_faces(), [UncutFaces { file, faces: 1 }]);
 }
 
 fn side(a: Corner, b: Corner, c: Corner) -> i64 {
