@@ -15,13 +15,14 @@ const SLIVER: f64 = 1e-6;
 
 /// Of a mesh with one connected part.
 pub(super) fn is_convex(mesh: &Mesh) -> bool {
-    let Some(unit) = Unit::of(mesh.vertices().iter().copied()).filter(|_| is_oriented(mesh)) else {
+    let Some((unit, triangles)) = Unit::of(mesh.vertices().iter().copied()).zip(oriented(mesh.triangles()))
+    else {
         return false;
     };
     let points: Vec<Point> = mesh.vertices().iter().map(|&p| unit.place(p)).collect();
     let adjacency = mesh.adjacency();
     let mut side = 0.0;
-    for corners in mesh.triangles() {
+    for corners in &triangles {
         let [a, b, c] = corners.map(|v| points[v as usize]);
         let normal = cross(sub(b, a), sub(c, a));
         let double = dot(normal, normal).sqrt();
@@ -43,17 +44,41 @@ pub(super) fn is_convex(mesh: &Mesh) -> bool {
     side != 0.0
 }
 
-/// Whether each edge belongs to two triangles that run along it in opposite directions.
-fn is_oriented(mesh: &Mesh) -> bool {
-    let sides = mesh
-        .triangles()
+/// The triangles turned so that the two at each edge run along it in opposite directions; `None` if there are not two at each edge, if
+/// edges do not join all of them, or if the surface has one side only.
+fn oriented(triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+    let sides_of = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    let both_ways = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut sides: Vec<([u32; 2], usize)> = triangles
         .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut sides: Vec<[u32; 2]> = sides.collect();
+        .enumerate()
+        .flat_map(|(index, &triangle)| sides_of(triangle).map(|side| (both_ways(side), index)))
+        .collect();
     sides.sort_unstable();
-    let is_once = sides.windows(2).all(|two| two[0] != two[1]);
-    is_once
-        && sides
-            .iter()
-            .all(|&[a, b]| a != b && sides.binary_search(&[b, a]).is_ok())
+    let are_two = |same: &[([u32; 2], usize)]| same.len() == 2 && same[0].0[0] != same[0].0[1];
+    if !sides.chunk_by(|one, two| one.0 == two.0).all(are_two) {
+        return None;
+    }
+    let mut turned: Vec<Option<[u32; 3]>> = vec![None; triangles.len()];
+    *turned.first_mut()? = Some(triangles[0]);
+    let mut left = vec![0];
+    while let Some(index) = left.pop() {
+        for side in sides_of(turned[index]?) {
+            let first = sides.partition_point(|(other, _)| *other < both_ways(side));
+            let [(_, one), (_, two)] = [sides[first], sides[first + 1]];
+            let other = if one == index { two } else { one };
+            let runs_along = |triangle: [u32; 3]| sides_of(triangle).contains(&side);
+            match turned[other] {
+                Some(there) if runs_along(there) => return None,
+                Some(_) => {}
+                None => {
+                    let [a, b, c] = triangles[other];
+                    let is_against = !runs_along([a, b, c]);
+                    turned[other] = Some(if is_against { [a, b, c] } else { [a, c, b] });
+                    left.push(other);
+                }
+            }
+        }
+    }
+    turned.into_iter().collect()
 }

@@ -105,8 +105,7 @@ impl Solid {
         parity::is_inside(&self.tree, &self.bounds, point)
     }
 
-    /// Whether the solid is convex but for rounding. A surface with slivers, or whose triangles are not all turned the same way, is not
-    /// recognised.
+    /// Whether the solid is convex but for rounding, whichever way its triangles are turned. A surface with slivers is not recognised.
     #[must_use]
     pub fn is_convex(&self) -> bool {
         self.is_convex

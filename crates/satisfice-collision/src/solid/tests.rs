@@ -340,6 +340,57 @@ fn convex_depths_are_exact() {
     assert!(overlapping > 15, "{overlapping}");
 }
 
+/// The mesh with some triangles turned over.
+fn mixed(mesh: &Mesh, rng: &mut Xoshiro256PlusPlus) -> Mesh {
+    let triangles = mesh.triangles().iter();
+    let turned = triangles.map(|&[a, b, c]| if rng.random() { [a, b, c] } else { [a, c, b] });
+    Mesh::new(mesh.vertices().to_vec(), Vec::new(), turned.collect()).unwrap()
+}
+
+#[test]
+fn convex_depths_are_exact_whichever_way_triangles_are_turned() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(4);
+    let tetrahedron = Mesh::new(
+        vec![
+            [1.0, 3.0, 3.0],
+            [3.0, -3.0, -1.0],
+            [-3.0, 0.0, 3.0],
+            [0.0, 0.0, 2.0],
+        ],
+        Vec::new(),
+        vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+    );
+    let ball = generate::icosphere(0.5, 1).unwrap();
+    let shapes = [tetrahedron.unwrap(), block([1.0, 0.7, 0.4], 2), ball];
+    for shape in &shapes {
+        let expected = shallowest(shape, shape);
+        for _ in 0..8 {
+            let (a, b) = (mixed(shape, &mut rng), mixed(shape, &mut rng));
+            assert!(solid(&a).is_convex());
+            let depth = overlap_of(&a, &b).unwrap().depth;
+            let is_near = |bound: f64| (bound - expected).abs() < 1e-10;
+            assert!(
+                is_near(depth.at_least) && is_near(depth.at_most),
+                "{depth:?} {expected}"
+            );
+        }
+    }
+    // Two surfaces that touch at a vertex, and one with a dent, are not convex however they are turned.
+    let [ball, opposite] = [1.0, -1.0].map(|sign| {
+        let ball = generate::icosphere(1.0, 1).unwrap();
+        let top = ball.vertex(0);
+        let vertices = ball.vertices().iter().map(|&p| sub(p, top).map(|c| sign * c));
+        ball.with_vertices(vertices.collect()).unwrap()
+    });
+    let mut dented = ball.vertices().to_vec();
+    dented[7] = [0, 1, 2].map(|k| 0.7 * dented[7][k] + 0.3 * dented[0][k]);
+    for shape in [both(&ball, &opposite), ball.with_vertices(dented).unwrap()] {
+        for _ in 0..8 {
+            assert!(!solid(&mixed(&shape, &mut rng)).is_convex());
+        }
+    }
+}
+
 #[test]
 fn other_depths_are_bounded() {
     let ring = generate::torus(2.0, 0.5, 60, 30).unwrap();
