@@ -219,6 +219,55 @@ fn seams_are_warned_of_and_can_be_welded() {
 }
 
 #[test]
+fn faces_that_cannot_be_cut_are_warned_of_once_a_file() {
+    let folder = folder();
+    let bow = "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 3 0\nf 1 2 3 4\n";
+    fs::write(folder.path().join("bow.obj"), bow).unwrap();
+    fs::write(folder.path().join("bows.obj"), format!("{bow}f 1 2 3 4\n")).unwrap();
+    let done = satisfice_in(
+        folder.path(),
+        "collide bow.obj bow.obj bows.obj triangle.obj --threshold 1 --pairs triangle-triangle",
+    );
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert_eq!(
+        done.stderr,
+        "warning: bow.obj has 1 face that crosses itself, seen along the normal, or so many corners that cutting takes too long: \
+         it stays a fan of triangles about the first corner, whose pairs may not be those of the face\n\
+         warning: bows.obj has 2 faces that cross themselves, seen along the normal, or so many corners that cutting takes too long: \
+         they stay fans of triangles about the first corner, whose pairs may not be those of the face\n"
+    );
+}
+
+#[test]
+fn a_comb_of_very_many_corners_is_not_met_between_its_teeth() {
+    let folder = folder();
+    let teeth = 5000;
+    let tooth = |k: i64| {
+        format!(
+            "v {} 0 0\nv {} 0 0\nv {} 10 0\nv {} 10 0\n",
+            2 * k + 2,
+            2 * k + 1,
+            2 * k + 1,
+            2 * k
+        )
+    };
+    let top: String = (0..teeth).rev().map(tooth).collect();
+    let face: String = (1..=4 * teeth + 2).map(|corner| format!(" {corner}")).collect();
+    let comb = format!("v 0 -1 0\nv {} -1 0\n{top}f{face}\n", 2 * teeth);
+    fs::write(folder.path().join("comb.obj"), comb).unwrap();
+    let probe = |k: i64| {
+        let x = 2 * k + 1;
+        format!("v {x}.5 5 -0.05\nv {x}.6 5 -0.05\nv {x}.5 5.1 0.05\nf -3 -2 -1\n")
+    };
+    let probes: String = (0..teeth - 1).map(probe).collect();
+    fs::write(folder.path().join("probes.obj"), probes).unwrap();
+    let call = "collide comb.obj probes.obj --pairs triangle-triangle --threshold";
+    // each is half its width from the teeth
+    assert_eq!(json_of(folder.path(), &format!("{call} 0.3"))["hits"], 0);
+    assert!(json_of(folder.path(), &format!("{call} 0.45"))["hits"].as_u64() >= Some(4999));
+}
+
+#[test]
 fn the_teapot_of_patches_has_no_pairs_once_it_is_welded() {
     let folder = folder();
     let teapot = generate::teapot(4).unwrap();

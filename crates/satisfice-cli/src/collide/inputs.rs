@@ -1,10 +1,11 @@
 //! The bodies named on the command line: files, scenes, standard input, their placements, and welding.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::StdinLock;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use satisfice_catalogue::quantity::shown;
 use satisfice_collision::io::{AnimatedScene, Format, PlacedMesh};
 use satisfice_collision::{Error, Placement};
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::body::{Meshes, NamedBody};
 use super::names::Names;
 use super::weld;
+use crate::message;
 
 /// What a mesh from standard input is called.
 const STDIN: &str = "stdin";
@@ -129,6 +131,7 @@ impl Inputs {
             };
             files.push((path.clone(), read));
         }
+        warn_of_uncut_faces(&files);
         Ok(files)
     }
 
@@ -197,6 +200,26 @@ pub(super) fn files(scenes: &[(PathBuf, AnimatedScene)]) -> Vec<PathBuf> {
         .flat_map(|(_, scene)| scene.files())
         .cloned()
         .collect()
+}
+
+/// Says once of each file which of its faces stay fans that do not cover them.
+fn warn_of_uncut_faces(scenes: &[(PathBuf, AnimatedScene)]) {
+    let all = scenes.iter().flat_map(|(_, scene)| scene.uncut_faces());
+    let files: BTreeMap<&Path, usize> = all.map(|uncut| (&*uncut.file, uncut.faces)).collect();
+    for (file, faces) in files {
+        let (faces, they) = match faces {
+            1 => ("1 face that crosses itself".to_owned(), "it stays a fan"),
+            many => (
+                format!("{} faces that cross themselves", shown::count(many as u64)),
+                "they stay fans",
+            ),
+        };
+        message::say(format_args!(
+            "warning: {} has {faces}, seen along the normal, or so many corners that cutting takes too long: {they} of triangles \
+             about the first corner, whose pairs may not be those of the face",
+            file.display()
+        ));
+    }
 }
 
 #[cfg(test)]
