@@ -219,6 +219,39 @@ fn seams_are_warned_of_and_can_be_welded() {
 }
 
 #[test]
+fn a_file_without_a_body_is_refused_by_its_name() {
+    let folder = folder();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let empty = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{}]}"#;
+    write("empty.gltf", empty);
+    write("none.toml", "bodies = []\n");
+    write(
+        "list.toml",
+        "[[bodies]]\nmesh = 'triangle.obj'\n[[bodies]]\nmesh = 'empty.gltf'\n",
+    );
+    for name in ["empty.gltf", "none.toml"] {
+        let expected =
+            format!("error: {name}: the file has no body: leave it out, or name the file that was meant");
+        for call in [
+            format!("collide {name} --self --threshold 1"),
+            format!("collide triangle.obj {name} --threshold 1"),
+            format!("collide triangle.obj above.obj {name} --threshold 1 --pairs triangle-triangle"),
+        ] {
+            assert_eq!(error_in(folder.path(), &call), expected, "{call}");
+        }
+        let motion =
+            format!("collide --from triangle.obj {name} --to triangle.obj {name} --self --threshold 0");
+        let error = error_in(folder.path(), &motion);
+        assert!(error.contains(name) && error.contains("no body"), "{error}");
+    }
+    let error = error_in(folder.path(), "collide list.toml triangle.obj --threshold 1");
+    assert!(
+        error.contains("list.toml") && error.contains("empty.gltf") && error.contains("no body"),
+        "{error}"
+    );
+}
+
+#[test]
 fn faces_that_cannot_be_cut_are_warned_of_once_a_file() {
     let folder = folder();
     let bow = "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 3 0\nf 1 2 3 4\n";

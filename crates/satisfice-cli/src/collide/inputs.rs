@@ -137,6 +137,12 @@ impl Inputs {
 
     /// The bodies of all files in their places.
     fn bodies(&self, files: Vec<(PathBuf, Vec<PlacedMesh>)>) -> anyhow::Result<Vec<NamedBody>> {
+        if let Some((path, _)) = files.iter().find(|(_, bodies)| bodies.is_empty()) {
+            bail!(
+                "{}: the file has no body: leave it out, or name the file that was meant",
+                path.display()
+            );
+        }
         let mut files: Vec<(PathBuf, PlacedMesh)> = files
             .into_iter()
             .flat_map(|(path, bodies)| bodies.into_iter().map(move |body| (path.clone(), body)))

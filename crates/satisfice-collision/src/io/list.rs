@@ -126,6 +126,11 @@ impl Frames for Listed {
         let mut bodies = Vec::new();
         for (index, (entry, file)) in self.entries.iter().enumerate() {
             let parts = &files[*file];
+            if parts.is_empty() {
+                let error =
+                    Error::unsupported(NAME, format!("body {index} has no mesh: its file has no body"));
+                return Err(error.in_file(&self.files[*file].0));
+            }
             for part in parts {
                 let body = entry.place(part, parts.len() == 1, &mut instances);
                 bodies.push(body.map_err(|error| error.in_body(format!("body {index}")))?);
