@@ -214,8 +214,34 @@ fn seams_are_warned_of_and_can_be_welded() {
             folder.path(),
             &format!("collide seam.obj --self --threshold 0.1 --weld {weld}"),
         );
-        assert_eq!((done.code, done.stderr.as_str()), (1, ""), "{}", done.stdout);
+        let note = format!("note: --weld {weld} merged 2 of 8 vertices with others\n");
+        assert_eq!((done.code, done.stderr), (1, note), "{}", done.stdout);
     }
+}
+
+#[test]
+fn a_weld_that_turns_triangles_into_points_is_warned_of() {
+    let folder = folder();
+    let call = "collide triangle.obj triangle.obj --at 1:3,0,0 --closest 1 --pairs triangle-triangle";
+    let whole = satisfice_in(folder.path(), call);
+    assert_eq!((whole.code, whole.stderr.as_str()), (0, ""));
+    assert!(whole.stdout.contains(" 2 apart\n"), "{}", whole.stdout);
+    let welded = satisfice_in(folder.path(), &format!("{call} --weld 10"));
+    assert_eq!(
+        welded.stderr,
+        "note: --weld 10 merged 4 of 6 vertices with others\n\
+         warning: --weld 10 turned 2 of 2 triangles into edges or points (most of them, 1, in triangle.obj#0): is the distance in the \
+         unit of the meshes?\n"
+    );
+    // a triangle without area in the file is not one that welding made
+    let flat = format!("{TRIANGLE}f 1 2 2\nv 1 0 0\nf 1 2 4\n");
+    fs::write(folder.path().join("flat.obj"), flat).unwrap();
+    let call = "collide flat.obj triangle.obj --threshold 1 --weld 0.001 --pairs triangle-triangle";
+    let done = satisfice_in(folder.path(), call);
+    assert_eq!(
+        done.stderr,
+        "note: --weld 0.001 merged 1 of 7 vertices with others\n"
+    );
 }
 
 #[test]

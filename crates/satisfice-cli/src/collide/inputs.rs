@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body::{Meshes, NamedBody};
 use super::names::Names;
-use super::weld;
+use super::weld::{self, Welds};
 use crate::message;
 
 /// What a mesh from standard input is called.
@@ -157,8 +157,8 @@ impl Inputs {
             let body = &mut files[number].1;
             *body = body.moved(at.to, at.turn, at.scale)?;
         }
-        let mut meshes = Meshes::default();
-        files
+        let (mut meshes, mut welds) = (Meshes::default(), Welds::default());
+        let bodies = files
             .into_iter()
             .zip(names.into_vec())
             .map(|((file, body), name)| {
@@ -175,15 +175,20 @@ impl Inputs {
                     drop(placed);
                     return Ok(body);
                 };
-                let mesh = weld::welded(&placed, distance)?.into();
+                let welded = weld::welded(&placed, distance)?;
+                welds.note(&body.name, &placed, &welded);
                 drop(placed);
                 Ok(NamedBody {
-                    mesh,
+                    mesh: welded.into(),
                     placement: Placement::IDENTITY,
                     ..body
                 })
             })
-            .collect()
+            .collect();
+        if let Some(distance) = self.weld {
+            welds.say(distance);
+        }
+        bodies
     }
 
     fn check(&self) -> anyhow::Result<()> {

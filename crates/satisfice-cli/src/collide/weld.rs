@@ -1,8 +1,11 @@
 //! Welding: vertices of one body that are equal or near each other become one.
 
+use satisfice_catalogue::quantity::shown;
 use satisfice_collision::broad::PointGrid;
 use satisfice_collision::distance::Threshold;
 use satisfice_collision::{Error, Mesh, mesh};
+
+use crate::message;
 
 /// Vertices closer than this part of the body's size look like the two sides of a seam.
 const SEAM: f64 = 1e-9;
@@ -62,6 +65,60 @@ fn root(first: &mut [u32], mut v: u32) -> u32 {
         v = above;
     }
     v
+}
+
+/// What welding changed in all bodies.
+#[derive(Debug, Default)]
+pub(super) struct Welds {
+    vertices: usize,
+    merged: usize,
+    triangles: usize,
+    flattened: usize,
+    /// The body that lost most triangles, with their number.
+    worst: Option<(usize, String)>,
+}
+
+impl Welds {
+    /// Adds a body as it was and as it is.
+    pub(super) fn note(&mut self, name: &str, before: &Mesh, after: &Mesh) {
+        self.vertices += before.vertices().len();
+        self.merged += before.vertices().len() - after.vertices().len();
+        self.triangles += before.triangles().len();
+        // Corners at one place are one after welding, so that these had no area before.
+        let has_corners = |mesh: &Mesh, triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|v| mesh.vertex(v));
+            a != b && b != c && c != a
+        };
+        let triangles = before.triangles().iter().zip(after.triangles());
+        let flattened = triangles
+            .filter(|(old, new)| has_corners(before, old) && !has_corners(after, new))
+            .count();
+        self.flattened += flattened;
+        if flattened > self.worst.as_ref().map_or(0, |(most, _)| *most) {
+            self.worst = Some((flattened, name.to_owned()));
+        }
+    }
+
+    /// Says how many vertices were merged, and warns of triangles that became edges or points.
+    pub(super) fn say(&self, distance: f64) {
+        let count = |n: usize| shown::count(n as u64);
+        message::say(format_args!(
+            "note: --weld {} merged {} of {} vertices with others",
+            shown::exact(distance),
+            count(self.merged),
+            count(self.vertices)
+        ));
+        if let Some((most, name)) = &self.worst {
+            message::say(format_args!(
+                "warning: --weld {} turned {} of {} triangles into edges or points (most of them, {}, in {name}): is the \
+                 distance in the unit of the meshes?",
+                shown::exact(distance),
+                count(self.flattened),
+                count(self.triangles),
+                count(*most)
+            ));
+        }
+    }
 }
 
 #[cfg(test)]
