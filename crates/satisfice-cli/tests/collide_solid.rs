@@ -109,3 +109,32 @@ fn an_open_mesh_is_no_solid() {
         "{said}"
     );
 }
+
+/// That the sheet is open is not found out within the limit.
+#[test]
+fn solids_are_prepared_within_the_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // so many triangles that another thread prepares them
+    save(folder, "ball.obj", &generate::icosphere(1.0, 6).unwrap(), 0.0);
+    save(
+        folder,
+        "sheet.obj",
+        &generate::cloth(1.0, 1.0, 60, 60).unwrap(),
+        0.0,
+    );
+    let call = "collide ball.obj sheet.obj --threshold 0.1 --pairs triangle-triangle --solid";
+    let said = error_in(folder, call);
+    assert!(
+        said.contains("sheet.obj") && said.contains("not closed"),
+        "{said}"
+    );
+    let done = satisfice_in(folder, &format!("{call} --time 1ns"));
+    assert_eq!(done.code, 1, "{}", done.stderr);
+    assert!(
+        done.stdout
+            .contains("overlap       not known: the time was over before one was found\n"),
+        "{}",
+        done.stdout
+    );
+}

@@ -1,4 +1,4 @@
-//! Building what a search needs, which nothing interrupts: by a thread that is not waited for beyond the limit.
+//! Building what a search needs, such as trees and solids, which nothing interrupts: by a thread that is not waited for beyond the limit.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -23,7 +23,7 @@ pub(super) fn within_limit<T: Send + 'static>(
     }
     let (sender, receiver) = channel();
     std::thread::Builder::new()
-        .name("satisfice-trees".to_owned())
+        .name("satisfice-build".to_owned())
         .spawn(move || {
             // Nobody may wait for it any more.
             let _ = sender.send(build());

@@ -107,7 +107,7 @@ impl Exact<'_> {
         }
     }
 
-    /// The scene with its trees; `None` if the limit is reached before.
+    /// The scene with its trees, and the solids; `None` if the limit is reached before.
     fn built(
         &self,
         world: &Arc<World>,
@@ -119,6 +119,7 @@ impl Exact<'_> {
             world.features(),
             || limit.is_reached(),
             move || -> anyhow::Result<scene::World> {
+                world.solids()?;
                 let mut scene = world.scene(method)?;
                 match &pool {
                     Some(pool) => {
@@ -131,7 +132,7 @@ impl Exact<'_> {
             },
         )?;
         if built.is_none() {
-            building::say_nothing_compared("the trees of the meshes were still being built");
+            building::say_nothing_compared("the meshes were still being prepared");
         }
         built.transpose()
     }
@@ -152,10 +153,15 @@ impl Exact<'_> {
         if pairs.unmeasured() > 0 {
             answer.stop = limit.reason();
         }
-        let overlaps = world.request.solid.then(|| {
-            counting.say("looking into the bodies".to_owned());
-            overlaps::find(&world.solids, &|| limit.is_reached())
-        });
+        let overlaps = match world.request.solid {
+            false => None,
+            // the solids may not be prepared
+            true if limit.is_reached() => Some(Vec::new()),
+            true => {
+                counting.say("looking into the bodies".to_owned());
+                Some(overlaps::find(world.solids()?, &|| limit.is_reached()))
+            }
+        };
         if overlaps.is_some() && limit.is_reached() {
             answer.stop = limit.reason();
             answer.complete = false;
@@ -239,7 +245,7 @@ impl Exact<'_> {
         let has_enough = |found: usize| {
             counting.show(found, limit.start());
             // One more than the list takes shows that there are more.
-            found >= wanted || found > self.most || limit.is_reached() || !room.holds(found)
+            found >= wanted || found > self.most || limit.is_reached_after(found) || !room.holds(found)
         };
         let (listed, completeness, skips) = if matches!(self.method, Method::Auto | Method::Tree) {
             let mut pass = scene.pass();
@@ -266,7 +272,10 @@ impl Exact<'_> {
             is_full,
         };
         let pairs = &mut answer.lists.pairs;
-        pairs.sort_unstable_by_key(Pair::order);
+        match self.threads {
+            1 => pairs.sort_unstable_by_key(Pair::order),
+            _ => pairs.par_sort_unstable_by_key(Pair::order),
+        }
         pairs.truncate(wanted.min(self.most));
         let is_cut = pairs.len() < found;
         if completeness == Completeness::Proved && (!is_cut || found > self.most || is_full) {
@@ -318,16 +327,22 @@ impl Exact<'_> {
         };
         if !answer.known.is_empty() {
             answer.known.drain(..).map(Some).for_each(&mut keep);
-        } else if !found.is_empty() {
+        } else if !found.is_empty() && !limit.is_reached() {
             // By another scene: the first one keeps the pairs for a next frame, which takes memory.
             let measure = &world.measure()?;
             // In blocks, so that no more than the distance is kept of each pair.
-            for block in found.chunks(4096 * MEASURED_AT_ONCE) {
+            let blocks = found.chunks(4096 * MEASURED_AT_ONCE);
+            for block in blocks.take_while(|_| !limit.is_reached()) {
                 self.block(measure, block, limit)?
                     .into_iter()
                     .flatten()
                     .for_each(&mut keep);
             }
+        }
+        // the time was over before the others
+        pairs.distances.resize(found.len(), f64::NAN);
+        if let Some(witnesses) = &mut pairs.witnesses {
+            witnesses.resize(found.len(), None);
         }
         pairs.pairs = found;
         Ok(pairs)

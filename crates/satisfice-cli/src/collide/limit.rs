@@ -4,6 +4,9 @@ use std::time::{Duration, Instant};
 
 use satisfice::{Cancel, StopReason};
 
+/// Nanoseconds that a pair takes after the search: to be listed in order. They are kept back from the limit.
+const LISTING: u64 = 200;
+
 /// A time after the start, and Ctrl-C.
 pub(super) struct Limit<'a> {
     start: Instant,
@@ -48,10 +51,33 @@ impl<'a> Limit<'a> {
         self.cancel.is_cancelled() || self.left() == Some(Duration::ZERO)
     }
 
+    /// Whether no more is left than it takes to list so many pairs.
+    pub(super) fn is_reached_after(&self, found: usize) -> bool {
+        let listing = Duration::from_nanos(LISTING.saturating_mul(found as u64));
+        self.cancel.is_cancelled() || self.left().is_some_and(|left| left <= listing)
+    }
+
     pub(super) fn reason(&self) -> StopReason {
         match self.cancel.is_cancelled() {
             true => StopReason::Cancelled,
             false => StopReason::Time,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_list_brings_the_limit_nearer() {
+        let cancel = Cancel::new();
+        let limit = |time: Option<Duration>| Limit::new(time, &cancel);
+        let day = Duration::from_secs(86_400);
+        let most = usize::MAX;
+        assert!(!limit(Some(day)).is_reached_after(1000) && !limit(None).is_reached_after(most));
+        assert!(limit(Some(day)).is_reached_after(most) && !limit(Some(day)).is_reached());
+        cancel.cancel();
+        assert!(limit(None).is_reached_after(0));
     }
 }

@@ -185,8 +185,10 @@ impl<'a> Report<'a> {
     ) -> Self {
         let reasons = skips.by_reason().into_iter();
         let within = head.threshold.is_finite();
-        let bodies = pairs.pairs.iter().filter(|_| within).map(|pair| {
-            let [a, b] = pair.bodies();
+        // pairs of the same bodies are listed one after another
+        let same_bodies = pairs.pairs.chunk_by(|one, two| one.bodies() == two.bodies());
+        let bodies = same_bodies.filter(|_| within).map(|same| {
+            let [a, b] = same[0].bodies();
             [a.min(b), a.max(b)]
         });
         let overlapping = overlaps.iter().flatten().map(|overlap| [overlap.a, overlap.b]);

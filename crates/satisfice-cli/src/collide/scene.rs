@@ -80,8 +80,7 @@ pub(super) struct World {
     /// Every file that was read for the bodies.
     pub(super) files: Vec<PathBuf>,
     pub(super) threshold: Threshold,
-    /// The bodies as solids, if they are.
-    pub(super) solids: Vec<Solid>,
+    solids: OnceLock<Vec<Solid>>,
 }
 
 impl World {
@@ -95,11 +94,7 @@ impl World {
         }
         let world = Self {
             threshold: Threshold::new(request.threshold.min(f64::MAX))?,
-            solids: if request.solid {
-                overlaps::solids(&bodies)?
-            } else {
-                Vec::new()
-            },
+            solids: OnceLock::new(),
             request,
             bodies,
             files,
@@ -193,6 +188,21 @@ impl World {
             settings.set("solid", true);
         }
         settings
+    }
+
+    /// The bodies as solids, if they are, made when they are first asked for.
+    ///
+    /// # Errors
+    /// If one is not closed.
+    pub(super) fn solids(&self) -> anyhow::Result<&[Solid]> {
+        if !self.request.solid {
+            return Ok(&[]);
+        }
+        if let Some(solids) = self.solids.get() {
+            return Ok(solids);
+        }
+        let solids = overlaps::solids(&self.bodies)?;
+        Ok(self.solids.get_or_init(|| solids))
     }
 
     /// Vertices that so many edges join belong to no pair of one body.

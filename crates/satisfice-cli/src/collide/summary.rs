@@ -71,7 +71,12 @@ pub(super) fn summary(report: &Report<'_>) -> String {
     }
     if let Some(overlaps) = &report.overlaps {
         match overlaps.len() {
-            0 if was_stopped(head) => lines.line("overlap", "none was found until then"),
+            0 if was_stopped(head) => {
+                lines.line(
+                    "overlap",
+                    &format!("not known: {} before one was found", over(head)),
+                );
+            }
             0 => lines.line(
                 "overlap",
                 "none: no surfaces meet and no body lies inside another",

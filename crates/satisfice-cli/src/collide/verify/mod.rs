@@ -75,7 +75,7 @@ pub(crate) fn verify(text: &[u8], counting: &Counting) -> anyhow::Result<Checked
     let measured = lines::check(&head, &lists.pairs, &world, &referee, counting, &mut checks);
     best(&head, &world, &referee, &measured, &mut checks)?;
     counting.say("looking into the bodies".to_owned());
-    solids::check(&head, &lists.overlaps, &world, &mut checks);
+    solids::check(&head, &lists.overlaps, &world, &mut checks)?;
     counting.say("looking for pairs that are not listed".to_owned());
     let looked = missing::check(&head, &world, &measured, &referee, &mut checks);
     Ok(checked(checks, head.hits, looked))

@@ -12,8 +12,13 @@ use crate::collide::overlaps::{self, Overlap};
 use crate::collide::report::Head;
 use crate::collide::scene::World;
 
-pub(super) fn check(head: &Head, listed: &[Overlap], world: &World, checks: &mut Checks) {
-    let found = overlaps::find(&world.solids, &|| false);
+pub(super) fn check(
+    head: &Head,
+    listed: &[Overlap],
+    world: &World,
+    checks: &mut Checks,
+) -> anyhow::Result<()> {
+    let found = overlaps::find(world.solids()?, &|| false);
     let was_stopped = matches!(head.stop_reason, StopReason::Time | StopReason::Cancelled);
     if !was_stopped {
         let all: Vec<String> = found.iter().map(|overlap| overlap.text(&world.bodies)).collect();
@@ -45,6 +50,7 @@ pub(super) fn check(head: &Head, listed: &[Overlap], world: &World, checks: &mut
             expected,
         );
     }
+    Ok(())
 }
 
 fn has_same_depth(given: &Overlap, is: &Overlap) -> bool {
