@@ -71,12 +71,14 @@ use whereabouts::{Room, Whereabouts};
 /// Bodies, a kind of feature pair and a threshold.
 ///
 /// Changes of bodies take effect at the next query: [`World::update`] brings the contacts up to date, and costs nothing for what
-/// did not change.
+/// did not change. Other questions, such as [`World::touching`] and [`World::distance`], take in the changes, too, but do not look for
+/// all contacts: until the next update [`World::contacts`] may then leave out contacts of bodies that changed. Those that it lists are true,
+/// and of two bodies that did not change it lists all.
 ///
 /// ```
-/// use satisfice_collision::scene::{Body, World};
+/// use satisfice_collision::scene::{Body, SharedMesh, World};
 /// use satisfice_collision::{Placement, distance::{PairKind, Threshold}, generate};
-/// let ball = generate::icosphere(1.0, 2)?;
+/// let ball = SharedMesh::from(generate::icosphere(1.0, 2)?);
 /// let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(0.1)?);
 /// world.add(Body::fixed(ball.clone()))?;
 /// let moving = world.add(Body::rigid(ball))?;

@@ -61,7 +61,7 @@ impl World {
     }
 
     /// Places a rigid body in the next frame, turned as it is there already: as [`World::place`] with its rotation and this
-    /// translation, faster.
+    /// translation, faster. The translation is that of its placement, where it will be, and not a step from where it is.
     ///
     /// ```
     /// use satisfice_collision::distance::{PairKind, Threshold};
@@ -69,10 +69,10 @@ impl World {
     /// use satisfice_collision::{Placement, generate};
     /// let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.1)?);
     /// let turned = Placement::from_axis_angle([0.0, 0.0, 1.0], 0.5)?;
-    /// let ball = world.add(Body::rigid(generate::icosphere(1.0, 2)?).at(turned))?;
-    /// world.translate(ball, [0.0, 0.0, 3.0])?;
+    /// let ball = world.add(Body::rigid(generate::icosphere(1.0, 2)?).at(turned.moved([5.0, 0.0, 1.0])?))?;
+    /// world.translate(ball, [5.0, 0.0, 3.0])?; // from z = 1 to z = 3
     /// world.update()?;
-    /// assert_eq!(world.placement(ball)?, turned.moved([0.0, 0.0, 3.0])?);
+    /// assert_eq!(world.placement(ball)?, turned.moved([5.0, 0.0, 3.0])?);
     /// # Ok::<(), satisfice_collision::Error>(())
     /// ```
     ///

@@ -93,13 +93,14 @@ impl World {
         }
     }
 
-    /// The contacts as of the last update, in no particular order of bodies; those of two bodies are sorted.
+    /// The contacts as of the last update, in no particular order of bodies; those of two bodies are sorted. After another question that
+    /// took in changes, some may be missing: see [`World`].
     pub fn contacts(&self) -> impl Iterator<Item = Contact> {
         let shown = self.pairs.iter().filter(|(_, record)| self.is_shown(record));
         shown.flat_map(|(_, record)| record.pairs.iter().map(|&pair| self.contact(record, pair)))
     }
 
-    /// The contacts as of the last update, sorted.
+    /// [`World::contacts`], sorted.
     #[must_use]
     pub fn sorted_contacts(&self) -> Vec<Contact> {
         let shown = self.pairs.iter().map(|(_, record)| record);

@@ -1,7 +1,7 @@
 //! Handles, shared meshes, what is refused, and what a frame costs.
 
-use super::super::{Body, BodyId, SharedMesh, World};
-use super::referee::turn;
+use super::super::{Body, BodyId, Contact, SharedMesh, World};
+use super::referee::{KINDS, PosedMesh, contacts as referee, turn};
 use crate::distance::{PairKind, Threshold};
 use crate::{Error, Mesh, Placement, generate};
 
@@ -250,4 +250,74 @@ fn groups_and_exclusions_can_change() {
     world.remove(ids[1]).unwrap();
     world.add(Body::rigid(ball)).unwrap();
     assert_eq!(touching(&mut world), 3);
+}
+
+/// Whatever question takes in a move: contacts that are listed then are true, those of bodies that did not move are all there, and an
+/// update finds the others.
+#[test]
+fn contacts_after_other_questions_are_true_and_an_update_completes_them() {
+    let ball = generate::icosphere(0.5, 0).unwrap();
+    let questions: [fn(&mut World, [BodyId; 2]); 4] = [
+        |world, _| {
+            world.touching().unwrap();
+        },
+        |world, _| {
+            world.first().unwrap();
+        },
+        |world, [a, b]| {
+            world.distance(a, b).unwrap();
+        },
+        |world, _| {
+            world.nearest(3).unwrap();
+        },
+    ];
+    let mut incomplete = 0;
+    for (kind, question) in KINDS
+        .into_iter()
+        .flat_map(|kind| questions.map(|question| (kind, question)))
+    {
+        let shared = SharedMesh::from(ball.clone());
+        let mut world = World::new(kind, Threshold::new(0.3).unwrap());
+        let mut places: Vec<Placement> = (0..6)
+            .map(|k| turn(0.4, [1.1 * f64::from(k), 0.0, 0.0]))
+            .collect();
+        let ids: Vec<BodyId> = places
+            .iter()
+            .map(|&place| world.add(Body::rigid(shared.clone()).at(place)).unwrap())
+            .collect();
+        world.update().unwrap();
+        for (frame, moved) in [5, 0, 5, 3].into_iter().enumerate() {
+            places[moved] = places[moved].moved([0.02, 0.1, 0.0]).unwrap();
+            let before = world.sorted_contacts();
+            world.place(ids[moved], places[moved]).unwrap();
+            assert_eq!(
+                world.sorted_contacts(),
+                before,
+                "{kind} {frame}: no question was asked"
+            );
+            question(&mut world, [ids[0], ids[5]]);
+            let posed: Vec<PosedMesh> = places
+                .iter()
+                .map(|place| PosedMesh {
+                    mesh: place.place(&ball).unwrap(),
+                    ring: None,
+                })
+                .collect();
+            let all = referee(&posed, kind, 0.3);
+            let listed = world.sorted_contacts();
+            assert!(
+                listed.iter().all(|contact| all.contains(contact)),
+                "{kind} {frame}"
+            );
+            let rests = |contact: &&Contact| contact.body_a != ids[moved] && contact.body_b != ids[moved];
+            assert!(
+                all.iter().filter(rests).eq(listed.iter().filter(rests)),
+                "{kind} {frame}"
+            );
+            incomplete += usize::from(listed.len() < all.len());
+            world.update().unwrap();
+            assert_eq!(world.sorted_contacts(), all, "{kind} {frame}");
+        }
+    }
+    assert!(incomplete > 10, "{incomplete}");
 }
