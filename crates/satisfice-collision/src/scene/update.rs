@@ -126,10 +126,8 @@ impl World {
             self.answers += 1;
         }
         let result = self.look_at(&dirty, &mut done, &mut skips, watch);
-        let looked = dirty
-            .drain(..done)
-            .filter(|&record| !self.pairs[record].apart)
-            .count();
+        let meeting = dirty.iter().filter(|&&record| !self.pairs[record].apart).count();
+        dirty.drain(..done);
         self.dirty = dirty;
         result?;
         self.log.end();
@@ -139,7 +137,7 @@ impl World {
                 false => Completeness::Unknown,
             },
             recomputed: done,
-            skips: self.with_counts(skips, looked),
+            skips: self.with_counts(skips, meeting),
         })
     }
 
@@ -285,8 +283,8 @@ impl World {
         dirty
     }
 
-    /// Adds the work that no record stands for; `looked` records whose boxes meet were examined.
-    pub(super) fn with_counts(&mut self, skips: Skips, looked: usize) -> Skips {
+    /// Adds the work that no record stands for; of so many records whose boxes meet, a body has moved.
+    pub(super) fn with_counts(&mut self, skips: Skips, moved: usize) -> Skips {
         let (filtered, wanted) = self.counts();
         let (kind_a, kind_b) = self.feature_kinds();
         let orders = if kind_a == kind_b { 1 } else { 2 };
@@ -295,7 +293,7 @@ impl World {
             filtered_bodies: filtered,
             rigid_self: self.membership.rigid,
             boxes_apart: orders * wanted - (self.pairs.of_two() - self.pairs.apart()) as u64,
-            unmoved_bodies: meeting.saturating_sub(looked) as u64,
+            unmoved_bodies: meeting.saturating_sub(moved) as u64,
             ..skips
         }
     }

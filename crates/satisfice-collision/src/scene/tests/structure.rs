@@ -1,7 +1,8 @@
 //! Handles, shared meshes, what is refused, and what a frame costs.
 
-use super::super::{Body, BodyId, Contact, SharedMesh, World};
+use super::super::{Body, BodyId, Completeness, Contact, SharedMesh, World};
 use super::referee::{KINDS, PosedMesh, contacts as referee, turn};
+use crate::broad::Method;
 use crate::distance::{PairKind, Threshold};
 use crate::{Error, Mesh, Placement, generate};
 
@@ -320,4 +321,24 @@ fn contacts_after_other_questions_are_true_and_an_update_completes_them() {
         }
     }
     assert!(incomplete > 10, "{incomplete}");
+}
+
+/// A record that was not examined before the stop has moved all the same.
+#[test]
+fn an_update_that_is_stopped_does_not_say_that_bodies_rest() {
+    let ball = generate::icosphere(0.5, 1).unwrap();
+    for method in [Method::BruteForce, Method::Tree, Method::Auto] {
+        let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.3).unwrap()).with_method(method);
+        for k in 0..4 {
+            let at = Placement::from_translation([0.9 * f64::from(k), 0.0, 0.0]).unwrap();
+            world.add(Body::rigid(ball.clone()).at(at)).unwrap();
+        }
+        let stopped = world.update_until(&|_| true).unwrap();
+        assert_eq!(
+            (stopped.completeness, stopped.skips.unmoved_bodies),
+            (Completeness::Unknown, 0)
+        );
+        assert_eq!(world.update().unwrap().skips.unmoved_bodies, 0);
+        assert!(world.update().unwrap().skips.unmoved_bodies > 0);
+    }
 }
