@@ -52,7 +52,7 @@ pub enum Error {
         value: f64,
     },
     /// An element names a vertex that does not exist.
-    #[error("{element} {index} names vertex {}, but the mesh has {vertices} vertices ({first} to {})", vertex.saturating_add_unsigned(u64::from(*first)), vertices.saturating_sub(1) + usize::from(*first))]
+    #[error("{element} {index} names vertex {}, but the mesh has {}", vertex.saturating_add_unsigned(u64::from(*first)), numbered(*vertices, *first))]
     IndexOutOfRange {
         /// The kind of the element.
         element: Element,
@@ -170,6 +170,16 @@ pub enum Error {
 fn counted(count: usize, what: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {what}{plural}")
+}
+
+/// So many vertices, and their numbers.
+fn numbered(vertices: usize, first: u8) -> String {
+    let first = usize::from(first);
+    match vertices {
+        0 => "no vertex".to_owned(),
+        1 => format!("1 vertex ({first})"),
+        many => format!("{many} vertices ({first} to {})", many - 1 + first),
+    }
 }
 
 /// Edges at which an odd number of triangles meet.

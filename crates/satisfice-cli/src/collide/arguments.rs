@@ -46,7 +46,9 @@ Meshes are .obj, .ply, .stl and .off files; scenes are .gltf and .glb files (a b
   at = [0, 0, 2.5]           # also rotate = [degrees about x, then y, then z] and scale = 2
 All may be compressed (.gz). Features are numbered from 0: vertices and triangles as in the file, edges in the order of their lower,
 then their higher vertex. `Touch` means: surfaces closer than the threshold;
-a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.")]
+a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.
+
+Exit codes: 0 a pair was found (with --solid, or bodies that overlap), 1 none was, 2 an error.")]
 pub(crate) struct CollideArguments {
     /// Files of meshes or scenes: .obj, .ply, .stl, .off, .gltf, .glb, .json or .toml; `-` is standard input.
     #[arg(value_name = "MESH", required_unless_present = "from", value_hint = ValueHint::FilePath)]
@@ -89,7 +91,8 @@ pub(crate) struct CollideArguments {
     threshold: Option<f64>,
 
     /// Which features make pairs [default: vertex-vertex; with --from all in which the bodies first meet, which for surfaces are
-    /// vertex-triangle and edge-edge].
+    /// vertex-triangle and edge-edge]. With --from not edge-triangle and triangle-triangle: surfaces first meet in pairs of the other
+    /// kinds.
     #[arg(long, value_name = "KIND")]
     pub(crate) pairs: Option<PairKind>,
 
@@ -131,7 +134,8 @@ pub(crate) struct CollideArguments {
     #[arg(long)]
     pub(crate) witnesses: bool,
 
-    /// Write the report as JSON; `-` is stdout and replaces the summary.
+    /// Write the report as JSON; `-` is stdout and replaces the summary. Its `answer` says whether what was asked for is proved,
+    /// `completeness` whether all pairs are listed.
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub(crate) json: Option<PathBuf>,
 
@@ -181,7 +185,7 @@ pub(crate) enum Axis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Args)]
 #[group(multiple = false)]
 pub(crate) struct FindArguments {
-    /// Only which bodies touch (have surfaces closer than the threshold): stop at the first pair of each two bodies.
+    /// Only which bodies touch (have surfaces closer than the threshold): stop at the first pair of each two bodies. Not with --from.
     #[arg(long)]
     touching: bool,
 
@@ -189,7 +193,7 @@ pub(crate) struct FindArguments {
     #[arg(long)]
     first: bool,
 
-    /// Only the K closest pairs, nearest first; at any distance, unless --threshold limits it.
+    /// Only the K closest pairs, nearest first; at any distance, unless --threshold limits it. Not with --from.
     #[arg(long, value_name = "K", value_parser = quantity::count, allow_hyphen_values = true)]
     closest: Option<u64>,
 }

@@ -156,8 +156,8 @@ fn by_exact_method(
     let found = how.find(world)?;
     if found.pairs.len() == how.most && !found.complete && hits.is_none() {
         message::say(format_args!(
-            "warning: the list ends after {} pairs; --max-pairs N lists more, in about 40 bytes of memory each",
-            how.most
+            "warning: the list ends after {}; --max-pairs N lists more, in about 40 bytes of memory each",
+            summary::pairs_in_words(how.most)
         ));
     }
     Ok(Answer {

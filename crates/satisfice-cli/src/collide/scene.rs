@@ -1,6 +1,7 @@
 //! The scene of the command: bodies, and which of them can have pairs with which.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use satisfice_catalogue::Settings;
@@ -101,17 +102,18 @@ impl World {
         };
         if world.couples().next().is_none() {
             let (a, b) = world.kinds();
-            let lacks = |kind: FeatureKind| world.bodies.iter().all(|body| body.count(kind) == 0);
-            let missing = if lacks(a) { a } else { b };
+            let having = |kind: FeatureKind| world.bodies.iter().filter(move |body| body.count(kind) > 0);
+            let missing = if having(a).next().is_none() { a } else { b };
             let plural = missing.plural();
+            let lacking: Vec<usize> = world.without(missing).collect();
+            let why = match (having(missing).next(), &lacking[..]) {
+                (None, _) => format!("no mesh has any {plural}"),
+                (Some(_), &[one]) => format!("{} has no {plural}", world.bodies[one].name),
+                (Some(only), _) => format!("only {} has {plural}", only.name),
+            };
             bail!(
-                "there are no {} pairs to look for, since {} {plural}: choose other features by --pairs",
-                world.request.kind,
-                if lacks(missing) {
-                    "no mesh has any"
-                } else {
-                    "no other mesh has"
-                }
+                "there are no {} pairs to look for, since {why}: choose other features by --pairs",
+                world.request.kind
             );
         }
         Ok(world)

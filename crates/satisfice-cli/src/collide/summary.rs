@@ -57,7 +57,11 @@ pub(super) fn summary(report: &Report<'_>) -> String {
         };
         lines.line(
             "distances",
-            &format!("{} to {}{unmeasured}", digits(least), digits(most)),
+            &format!(
+                "{} to {}{unmeasured}",
+                below(least, head.threshold),
+                below(most, head.threshold)
+            ),
         );
     } else if head.unmeasured > 0 {
         lines.line("distances", &format!("not measured, {}", over(head)));
@@ -222,12 +226,30 @@ pub(super) fn body_names(bodies: &[NamedBody], touching: &BTreeSet<[usize; 2]>) 
     text.join(", ")
 }
 
+/// So many pairs, in words.
+pub(super) fn pairs_in_words(count: usize) -> String {
+    match count {
+        1 => "1 pair".to_owned(),
+        many => format!("{many} pairs"),
+    }
+}
+
+/// A distance below the threshold, which its digits must not reach by rounding.
+fn below(distance: f64, threshold: f64) -> String {
+    let text = digits(distance);
+    let is_rounded_up = distance < threshold && text.parse::<f64>().is_ok_and(|shown| shown >= threshold);
+    match is_rounded_up {
+        true => format!("just below {}", shown::exact(threshold)),
+        false => text,
+    }
+}
+
 fn pair(report: &Report<'_>, index: usize) -> String {
     let (kind_a, kind_b) = report.world.kinds();
     let line = report.pairs.line(index, report.world);
     let apart = line.distance.map_or_else(
         || "not measured".to_owned(),
-        |distance| format!("{} apart", digits(distance)),
+        |distance| format!("{} apart", below(distance, report.head.threshold)),
     );
     let places = line.witness.map_or_else(String::new, |near| {
         let [a, b] = [near.point_a, near.point_b].map(|point| point.map(digits).join(" "));

@@ -9,6 +9,8 @@ use super::weld;
 
 /// A file in single precision leaves fewer than 3 digits inside a body that lies so many sizes from the origin.
 const FAR: f64 = 1e4;
+/// Numbers of single precision have 29 bits fewer than those of double precision.
+const SINGLE: f64 = (1_u32 << 29) as f64;
 /// Bodies of one scene seldom differ so much in size: a thousand is metres against millimetres.
 const UNLIKE: f64 = 999.0;
 
@@ -77,7 +79,7 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
             .iter()
             .chain(&bounds.max)
             .fold(0.0_f64, |most, c| most.max(c.abs()));
-        let step = f64::EPSILON * reach;
+        let step = reach - reach.next_down();
         if step > threshold {
             // Moving helps only what lies away from the origin.
             let advice = if reach > 2.0 * bounds.size() {
@@ -98,7 +100,7 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
                 body.name,
                 readable(reach),
                 readable(reach / bounds.size().max(threshold)),
-                readable(f64::from(f32::EPSILON) * reach)
+                readable(SINGLE * step)
             ));
         }
     }
@@ -139,9 +141,12 @@ fn seams(world: &World) -> Vec<String> {
         let (count, distance) = weld::seams(&mesh).ok()?;
         (count > 0).then(|| {
             format!(
-                "{} has {} vertices that lie on others, as at seams: the features on both sides make pairs; --weld {} joins them",
+                "{} has {} others, as at seams: the features on both sides make pairs; --weld {} joins them",
                 body.name,
-                readable(count as f64),
+                match count {
+                    1 => "1 vertex that lies on".to_owned(),
+                    many => format!("{} vertices that lie on", readable(many as f64)),
+                },
                 readable(distance)
             )
         })

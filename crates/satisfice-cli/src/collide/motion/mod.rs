@@ -16,6 +16,7 @@ use satisfice_catalogue::json;
 
 use super::arguments::{CollideArguments, Find};
 use super::files::Files;
+use super::summary::pairs_in_words;
 use crate::output::{self, Steps};
 use crate::{interrupt, message};
 use answer::Search;
@@ -55,8 +56,8 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
     let report = MotionReport::new(search.run(&frames)?, &search, &frames);
     if report.is_cut() {
         message::say(format_args!(
-            "warning: the list ends after {} pairs; --max-pairs N lists more, in 40 bytes of memory each",
-            search.most
+            "warning: the list ends after {}; --max-pairs N lists more, in 40 bytes of memory each",
+            pairs_in_words(search.most)
         ));
     }
     let mut steps = Steps::default();
