@@ -6,6 +6,7 @@ use std::cell::OnceCell;
 use satisfice_collision::distance::{self, PairKind, Threshold};
 use satisfice_collision::{Aabb, Adjacency, FeatureKind, Shape};
 
+use super::super::body::NamedBody;
 use super::super::scene::{Feature, Pair, World};
 use super::sweep::{Effort, SweepEnd, are_near, sweep};
 
@@ -27,7 +28,7 @@ impl<'a> Referee<'a> {
         let boxes = || (0..bodies).map(|_| OnceCell::new()).collect();
         Self {
             world,
-            bounds: world.bodies.iter().map(|body| body.bounds()).collect(),
+            bounds: world.bodies.iter().map(NamedBody::bounds).collect(),
             boxes: [boxes(), boxes()],
             rings: (0..bodies).map(|_| OnceCell::new()).collect(),
         }
