@@ -28,7 +28,7 @@ fn balls(count: usize, scene: Scene, seed: u64) -> Vec<(Mesh, Vec<Point>)> {
     }
     let ball = |cell: usize| {
         let radius = 0.15 + 0.1 * number();
-        let ball = generate::icosphere(radius, if cell % 7 == 0 { 2 } else { 1 }).unwrap();
+        let ball = generate::icosphere(radius, if cell.is_multiple_of(7) { 2 } else { 1 }).unwrap();
         let at = match scene {
             Scene::Random => [0; 3].map(|_| number() * across),
             Scene::Apart => [cell % cells, cell / cells % cells, cell / cells / cells].map(|c| c as f64),
