@@ -13,7 +13,7 @@ mod weights;
 use core::ops::Range;
 
 use first_hit::Ground;
-pub(super) use first_hit::{Expectation, Seeker, Seekers};
+pub(super) use first_hit::{Expectation, Seekers};
 use flood_alone::FloodAlone;
 use member::Member;
 use share::Share;

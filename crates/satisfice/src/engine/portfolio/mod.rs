@@ -98,8 +98,8 @@ engine_settings! {
     ///
     /// - **In general** it is drawn by Thompson sampling on what each has yielded lately: hits for each evaluation, or, where time alone is limited,
     ///   for the time of an evaluation, the source's own thinking included.
-    /// - **Before the first hit** descents and CMA-ES have the larger share. Beside a model one source leads and has nine of ten choices; the model,
-    ///   descents by quadratic models and other descents share the rest. On continuous axes the model leads, and has the first 50 evaluations, or a
+    /// - **Before the first hit** descents and CMA-ES have the larger share. Beside a model one source leads and has nine of ten choices of the first 250
+    ///   evaluations; the model, descents by quadratic models and other descents share the rest, and all later ones equally. On continuous axes the model leads, and has the first 50 evaluations, or a
     ///   quarter of up to 1,000 planned ones, alone. Where the problem names neighbours, or all axes are places of a permutation, descents along
     ///   neighbours and exchanges lead. The model comes first whenever it takes a hit to be more probable than not.
     /// - **After it** a source without a hit takes at most 4 % of the evaluations. Excepted are descents on a lattice, and on continuous axes

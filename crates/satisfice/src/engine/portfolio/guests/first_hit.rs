@@ -2,6 +2,7 @@
 
 use super::{GuestKind, Guests, MODELLED, Member};
 use crate::context::Context;
+use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::Credit;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -12,8 +13,10 @@ const MODEL_FIRST: u64 = 50;
 const MODEL_FIRST_SHARE: f64 = 0.25;
 /// The model comes before descents if it takes a hit to be more probable than this, as far as its word can be trusted.
 const CREDIBLE: f64 = 0.5;
-/// Share of the choices of the one that leads the search; the others have equal shares of the rest.
+/// Share of the choices of the one that leads the search, up to so many evaluations; the others have equal shares of the rest. Later, all
+/// have equal shares: what has not led to a hit by then is not the way for sure.
 const LEAD: f64 = 0.9;
+const LED: u64 = 250;
 
 /// What leads down to a first hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -50,9 +53,11 @@ pub(in crate::engine::portfolio) struct Seekers {
     leader: Seeker,
     /// Evaluations that are the model's, if it leads: none where the problem tells the components of F.
     alone: u64,
-    pub(in crate::engine::portfolio) model: usize,
-    /// Descents by quadratic models; the model, where there are none, or all of them await answers.
-    pub(in crate::engine::portfolio) quadratic: usize,
+    model: usize,
+    /// Descents by quadratic models; none where there are none, or all of them await answers.
+    quadratic: Option<usize>,
+    /// Whether there are descents without a model.
+    direct: bool,
 }
 
 impl<S: Real> Guests<S> {
@@ -85,12 +90,14 @@ impl<S: Real> Guests<S> {
             let mut guests = self.guests.iter();
             guests.position(|guest| guest.kind == kind && guest.is_ready())
         };
-        let model = find(GuestKind::Model)?;
+        let (model, quadratic) = (find(GuestKind::Model)?, find(GuestKind::Quadratic));
+        let direct = self.without != Omitted::Descents;
         Some(Seekers {
             leader,
             alone: if self.components { 0 } else { alone(most) },
             model,
-            quadratic: find(GuestKind::Quadratic).unwrap_or(model),
+            quadratic,
+            direct,
         })
     }
 
@@ -124,6 +131,23 @@ impl<S: Real> Guests<S> {
 }
 
 impl Seekers {
+    /// The index of the engine that looks; none for descents without a model.
+    pub(in crate::engine::portfolio) fn guest(self, seeker: Seeker) -> Option<usize> {
+        match seeker {
+            Seeker::Model => Some(self.model),
+            Seeker::Quadratic => self.quadratic,
+            Seeker::Direct => None,
+        }
+    }
+
+    fn has(self, seeker: Seeker) -> bool {
+        match seeker {
+            Seeker::Model => true,
+            Seeker::Quadratic => self.quadratic.is_some(),
+            Seeker::Direct => self.direct,
+        }
+    }
+
     /// Whose turn it is after so many evaluations.
     pub(in crate::engine::portfolio) fn draw(
         self,
@@ -135,13 +159,20 @@ impl Seekers {
         if is_early || expectation.is_some_and(|expectation| expectation.hit > CREDIBLE) {
             return Seeker::Model;
         }
-        if rng.uniform() < LEAD {
-            return self.leader;
+        let leader = if self.has(self.leader) {
+            self.leader
+        } else {
+            Seeker::Model
+        };
+        let leads = evaluations < LED;
+        if leads && rng.uniform() < LEAD {
+            return leader;
         }
-        let mut others = [Seeker::Model, Seeker::Quadratic, Seeker::Direct]
-            .into_iter()
-            .filter(|&seeker| seeker != self.leader);
-        others.nth(rng.below(2)).unwrap_or(self.leader)
+        let others = || {
+            let all = [Seeker::Model, Seeker::Quadratic, Seeker::Direct].into_iter();
+            all.filter(|&seeker| self.has(seeker) && !(leads && seeker == leader))
+        };
+        others().nth(rng.below(others().count().max(1))).unwrap_or(leader)
     }
 }
 
@@ -161,11 +192,16 @@ mod tests {
 
     /// How often each is drawn, of 3,000 times.
     fn drawn(leader: Seeker, evaluations: u64, hit: Option<f64>) -> [u32; 3] {
+        drawn_of(leader, Some(4), evaluations, hit)
+    }
+
+    fn drawn_of(leader: Seeker, quadratic: Option<usize>, evaluations: u64, hit: Option<f64>) -> [u32; 3] {
         let seekers = Seekers {
             leader,
             alone: 50,
             model: 3,
-            quadratic: 4,
+            quadratic,
+            direct: true,
         };
         let expectation = hit.map(|hit| Expectation { index: 3, hit });
         let (mut rng, mut counts) = (SearchRng::new(3), [0; 3]);
@@ -192,6 +228,21 @@ mod tests {
                 assert!(count.abs_diff(expected) < 60, "{leader:?} {counts:?}");
             }
         }
+    }
+
+    #[test]
+    fn later_all_have_equal_shares() {
+        for leader in [Seeker::Model, Seeker::Quadratic, Seeker::Direct] {
+            let counts = drawn(leader, LED, None);
+            assert!(
+                counts.iter().all(|count| count.abs_diff(1000) < 100),
+                "{counts:?}"
+            );
+        }
+        let [model, quadratic, direct] = drawn_of(Seeker::Direct, None, LED - 1, None);
+        assert!(quadratic == 0 && direct.abs_diff(2700) < 60, "{model} {direct}");
+        let [model, quadratic, direct] = drawn_of(Seeker::Direct, None, LED, None);
+        assert!(quadratic == 0 && direct.abs_diff(1500) < 100, "{model} {direct}");
     }
 
     #[test]

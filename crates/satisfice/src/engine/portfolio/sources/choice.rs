@@ -4,7 +4,7 @@ use super::Sources;
 use crate::context::Context;
 use crate::engine::portfolio::Omitted;
 use crate::engine::portfolio::credit::{Trial, draw};
-use crate::engine::portfolio::guests::{Expectation, Seeker, Seekers};
+use crate::engine::portfolio::guests::{Expectation, Seekers};
 use crate::engine::portfolio::source::{Role, Source, Tag};
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -73,10 +73,10 @@ impl<S: Real> Sources<S> {
         let is_lattice = self.visited.is_some();
         let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
         if let Some(seekers) = seekers {
-            return match seekers.draw(all.evaluations(), expectation, rng) {
-                Seeker::Direct if uses(Omitted::Descents) => (Source::Descent, 0),
-                Seeker::Model | Seeker::Direct => (Source::Guest, seekers.model),
-                Seeker::Quadratic => (Source::Guest, seekers.quadratic),
+            let seeker = seekers.draw(all.evaluations(), expectation, rng);
+            return match seekers.guest(seeker) {
+                Some(guest) => (Source::Guest, guest),
+                None => (Source::Descent, 0),
             };
         }
         if self.drought.is_long(self.position.len(), self.hit_count())
