@@ -344,7 +344,7 @@ fn a_search_for_some_hits_finds_the_same_again() {
 }
 
 /// From 21 places on, the orders of a permutation cannot be numbered in 64 bits. A search for a first hit goes by descents all the same, also
-/// where F has few values.
+/// where F has few values: nine of ten choices of the first 250 are theirs.
 #[test]
 fn permutations_are_searched_in_one_way_however_many_places_there_are() {
     for places in [20_u32, 21, 60] {
@@ -355,10 +355,10 @@ fn permutations_are_searched_in_one_way_however_many_places_there_are() {
         });
         let report = Search::new()
             .seed(3)
-            .run(&jumps, &Budget::evaluations(400))
+            .run(&jumps, &Budget::evaluations(250))
             .unwrap();
         let of = |name: &str| report.sources.names.iter().position(|known| known == name);
         let proposed = report.sources.rows.last().unwrap().proposed[of("descents").unwrap()];
-        assert!(proposed > 300, "{places} places: {proposed}");
+        assert!(proposed > 190, "{places} places: {proposed}");
     }
 }
