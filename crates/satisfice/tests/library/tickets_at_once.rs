@@ -4,7 +4,7 @@
 
 use std::collections::VecDeque;
 
-use satisfice::{Budget, SatisficingProblem, Search, Space, Tickets, from_fn};
+use satisfice::{Budget, Completeness, SatisficingProblem, Search, Space, Tickets, from_fn};
 
 /// Twelve valleys on a slope. 32 evaluations go on at once, and end in the order in which they began.
 fn found(budget: &Budget) -> (Vec<(Vec<f64>, u64)>, u64) {
@@ -41,5 +41,31 @@ fn it_need_not_be_said_how_many_tickets_are_out() {
         assert_eq!(made, evaluations);
         assert!(hits.len() > 10, "{}", hits.len());
         assert_eq!(found(&budget.with_parallel(32)), (hits, made));
+    }
+}
+
+/// A lattice of 6,400 points, for which the budget has little more room. Once the rest is enumerated, the points that are out take their part
+/// of what is left: 1,000 evaluations go on at once.
+#[test]
+fn an_enumeration_leaves_room_for_the_tickets_that_are_out() {
+    let sums = || {
+        from_fn(Space::<f64>::lattice(2, 80).unwrap(), 5.0, |x: &[f64]| {
+            x[0] + x[1]
+        })
+    };
+    for (evaluations, is_proved) in [(8_600, true), (6_000, false)] {
+        let budget = Budget::evaluations(evaluations);
+        let search = Search::new().seed(5).set("without", "model").unwrap();
+        let mut tickets = Tickets::eager(search, sums(), &budget).unwrap();
+        let (elsewhere, mut out) = (sums(), VecDeque::new());
+        loop {
+            out.extend(tickets.ask(1_000 - out.len()));
+            let Some(asked) = out.pop_front() else { break };
+            let value = elsewhere.fitness(&asked.solution);
+            tickets.tell(asked.ticket, value).unwrap();
+        }
+        let report = tickets.finish();
+        let found = report.completeness == Completeness::Proved;
+        assert_eq!((found, report.hit_count()), (is_proved, 15), "{report}");
     }
 }

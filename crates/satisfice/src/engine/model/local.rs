@@ -85,6 +85,8 @@ pub(super) struct PendingPoint {
     pub(super) x: Vec<f64>,
     /// How probable the model takes a hit to be; 0 where it has not said.
     pub(super) probability: f64,
+    /// Whether it will not be told.
+    pub(super) is_lost: bool,
 }
 
 /// What is proposed.

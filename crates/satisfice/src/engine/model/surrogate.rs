@@ -80,6 +80,8 @@ impl Surrogate {
     }
 }
 
+/// So many points that are awaited, the latest, count as told with the values expected: each takes as long as a point that is known.
+const MOST_BELIEVED: usize = 32;
 /// Uniform points that are tried where no candidate is left.
 const TRIES: usize = 64;
 /// Spaces of at most so many points are searched to the last one.
@@ -231,7 +233,8 @@ impl<S: Real> ModelledSearch<S> {
         model.follow(&self.record, &self.units, &mut self.skill);
         model.refresh(&mut given, rng);
         let known = model.process.len();
-        for pending in &self.pending {
+        let first = self.pending.len().saturating_sub(MOST_BELIEVED);
+        for pending in &self.pending[first..] {
             model.process.believe(&pending.x);
         }
         let chosen = model.choose(&mut given, &self.pending, rng);
@@ -332,21 +335,32 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
             self.pending.push(PendingPoint {
                 x: rounded,
                 probability,
+                is_lost: false,
             });
         }
         if out.is_empty() { Ask::Exhausted } else { Ask::More }
     }
 
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
-        self.prepared = None;
         let is_own = matches!(origin, Origin::Engine | Origin::Single { .. });
         let mut x = Vec::new();
         let mut components = vec![S::nan(); context.component_count()];
         for (point, outcome) in batch.points().zip(outcomes) {
             self.units.of_position(context.space(), point, &mut x);
-            if let Some(place) = self.pending.iter().position(|pending| pending.x == x) {
+            let place = self.pending.iter().position(|pending| pending.x == x);
+            if *outcome == Outcome::NotEvaluated {
+                // Somebody else may have proposed it: until more is known it would be the next proposal again.
+                if let Some(place) = place {
+                    self.pending[place].is_lost = true;
+                    self.prepared = None;
+                }
+                continue;
+            }
+            if let Some(place) = place {
                 self.pending.remove(place);
             }
+            self.pending.retain(|pending| !pending.is_lost);
+            self.prepared = None;
             match *outcome {
                 Outcome::Hit(f) => {
                     self.record.add(&x, f.f64(), PointKind::Hit);
@@ -361,7 +375,7 @@ impl<S: Real> Engine<S> for ModelledSearch<S> {
                 Outcome::Known(f) => self.record.add(&x, f.f64(), PointKind::Duplicate),
                 Outcome::Deleted => self.record.add(&x, f64::NAN, PointKind::Duplicate),
                 Outcome::NonFinite => self.record.add(&x, f64::NAN, PointKind::Miss),
-                Outcome::NotEvaluated => continue,
+                Outcome::NotEvaluated => {}
             }
             if !components.is_empty() {
                 context.components(point, &mut components);

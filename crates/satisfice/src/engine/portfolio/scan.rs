@@ -66,14 +66,15 @@ impl Scan {
 
     /// Whether points of the lattice are to be enumerated now: all of the rest, with nothing beside from now on, or a sample. The rest has to
     /// fit into what the budget has left, of which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace
-    /// so far, less what the thinking of the sources took, by what they all have cost. And it has to be due: the lattice is small, or
+    /// so far, less what the thinking of the sources took, by what they all have cost. Of the budget, `awaited` points that were proposed and
+    /// not answered take their part. And it has to be due: the lattice is small, or
     /// mostly visited, or the search finds no more than the enumeration would. Under a limit of evaluations it is also due as soon as it
     /// would no longer fit later. Where time is limited that is not known well enough to leave a search that finds more.
     pub(super) fn goes_on<S: Real>(
         &mut self,
         context: &dyn Context<S>,
         visited: &Visited,
-        reserve: f64,
+        (reserve, awaited): (f64, usize),
         batch: usize,
         all: &Credit,
     ) -> bool {
@@ -89,11 +90,7 @@ impl Scan {
         let (made, used) = (context.evaluations(), context.elapsed_share());
         let due = self.points <= SMALL || visited.is_dense() || self.search_is_stale(made, context.hits());
         self.alone = if let Some(planned) = context.evaluations_planned() {
-            let room = if self.unprobed {
-                planned as f64
-            } else {
-                planned as f64 * (1.0 - reserve) - 1.0
-            };
+            let room = self.room(planned, reserve, awaited);
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
             let (takes, left) = (rest * used / all.mean_cost(), (1.0 - used) * made as f64);
@@ -103,6 +100,16 @@ impl Scan {
         };
         self.samples &= !self.alone;
         self.alone || self.samples
+    }
+
+    /// How many more points the budget has room for.
+    fn room(&self, planned: u64, reserve: f64, awaited: usize) -> f64 {
+        let ours = if self.unprobed {
+            planned as f64
+        } else {
+            planned as f64 * (1.0 - reserve) - 1.0
+        };
+        ours - awaited as f64
     }
 
     /// Whether the samples have surely found more hits for their cost than the search lately; if not, it may be time for the next sample. The
@@ -181,6 +188,13 @@ mod tests {
             }
             assert!(scan.is_over() && visited.is_all() && passed == left);
         }
+    }
+
+    #[test]
+    fn probes_and_points_that_are_out_leave_less_room() {
+        let space = Space::<f64>::lattice(2, 30).unwrap();
+        assert_eq!(Scan::new(&space, false).room(1000, 0.25, 32), 717.0);
+        assert_eq!(Scan::new(&space, true).room(1000, 0.25, 32), 968.0);
     }
 
     #[test]

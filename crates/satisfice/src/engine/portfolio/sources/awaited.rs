@@ -46,6 +46,10 @@ impl<S: Real> PointsAwaited<S> {
         Some(tag)
     }
 
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
     pub(super) fn tags(&self) -> impl Iterator<Item = Tag> {
         self.points.values().map(|&(tag, _)| tag)
     }

@@ -64,10 +64,11 @@ impl<S: Real> Sources<S> {
         self.grow_descents(self.block);
         self.guests.look_at_price(context);
         self.guests.grow(context);
+        let taken = (PROBES, self.awaited.len());
         if let Some(visited) = &self.visited
             && self
                 .scan
-                .goes_on(context, visited, PROBES, SCANNED, &self.credits.whole)
+                .goes_on(context, visited, taken, SCANNED, &self.credits.whole)
         {
             return self.enumerate(context, rng, out);
         }
