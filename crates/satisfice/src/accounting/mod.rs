@@ -224,17 +224,22 @@ impl<T> Ledger<T> {
         }
     }
 
-    /// Ends the slice because whoever evaluates has given up: for want of time if that is over, even before the alarm has said so.
+    /// Why the slice has ended; if it has not, why it would if whoever evaluates gave up now: for want of time if that is over, even before
+    /// the alarm has said so.
+    pub(crate) fn stopped_by(&self) -> StopReason {
+        self.stop.unwrap_or_else(|| {
+            let limit = self.budget.time;
+            if limit.is_some_and(|limit| self.clock.elapsed() >= limit) {
+                StopReason::Time
+            } else {
+                StopReason::Cancelled
+            }
+        })
+    }
+
+    /// Ends the slice because whoever evaluates has given up.
     pub(crate) fn give_up(&mut self) {
-        let out_of_time = self
-            .budget
-            .time
-            .is_some_and(|limit| self.clock.elapsed() >= limit);
-        self.stop.get_or_insert(if out_of_time {
-            StopReason::Time
-        } else {
-            StopReason::Cancelled
-        });
+        self.stop = Some(self.stopped_by());
     }
 
     /// Checks the limits after evaluations that happened elsewhere.

@@ -49,7 +49,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         slice: &Slice<S, T>,
         (elapsed, overshoot): (Duration, Duration),
     ) -> Report<T> {
-        let stop_reason = slice.ledger.stop.unwrap_or(StopReason::Cancelled);
+        let stop_reason = slice.ledger.stopped_by();
         let counts = slice.counts();
         // A hit that only a probe found contradicts an engine that says it has covered everything; so does a bound above F.
         let calls = counts.bound_calls;

@@ -450,6 +450,7 @@ fn tickets_that_end_after_their_time_say_so() {
                 let mut tickets = order(search, problem("square"), &Budget::time(limit)).unwrap();
                 assert!(!tickets.ask(2).is_empty());
                 std::thread::sleep(time);
+                assert_eq!(tickets.report().stop_reason, reason, "{islands} islands");
                 assert_eq!(tickets.finish().stop_reason, reason, "{islands} islands");
             }
         }

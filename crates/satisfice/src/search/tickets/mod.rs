@@ -412,7 +412,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         Ok(())
     }
 
-    /// The report as it is now; not over, the slice counts as cancelled. Cost: a copy of the hits.
+    /// The report as it is now. A slice that is not over counts as cancelled, or as out of time if its time is over. Cost: a copy of the hits.
     #[must_use]
     pub fn report(&self) -> Report<P::Solution> {
         let slice = self.slice();
