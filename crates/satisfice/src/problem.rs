@@ -1,10 +1,12 @@
 //! Problems: what a candidate means, how good it is, and when it is good enough.
 
+mod bounds;
 mod neighbours;
 mod reference;
 
 use std::sync::Arc;
 
+use bounds::FnBounds;
 use neighbours::FnNeighbours;
 pub(crate) use reference::AnyProblem;
 
@@ -132,6 +134,7 @@ pub struct FnProblem<S, F> {
     fitness: F,
     components: Option<FnComponents<S>>,
     neighbours: Option<FnNeighbours<S>>,
+    bounds: Option<FnBounds<S>>,
     description: Description,
 }
 
@@ -171,8 +174,8 @@ pub type BoxedFn<'a, S> = Box<dyn Fn(&[S]) -> S + Send + Sync + 'a>;
 /// otherwise. Different values on an integer axis are different answers anyway. On a logarithmic axis distances are those
 /// of the logarithms; on a periodic one they go around the circle.
 ///
-/// A closure may also name [neighbours](FnProblem::neighbours) and [components](FnProblem::components). Bounds and
-/// representatives need the [trait](SatisficingProblem).
+/// A closure may also name [neighbours](FnProblem::neighbours), [components](FnProblem::components) and [bounds](FnProblem::bounds).
+/// Representatives need the [trait](SatisficingProblem).
 ///
 /// ```
 /// use satisfice::{engine, from_fn, Budget, Search, Space};
@@ -197,6 +200,7 @@ pub fn from_fn<S: Real, F: Fn(&[S]) -> S + Sync>(
         fitness,
         components: None,
         neighbours: None,
+        bounds: None,
         description: Description {
             name: "closure".to_owned(),
             ..Description::default()
@@ -286,6 +290,7 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> FnProblem<S, F> {
             fitness: Box::new(self.fitness),
             components: self.components,
             neighbours: self.neighbours,
+            bounds: self.bounds,
             description: self.description,
         }
     }
@@ -413,6 +418,9 @@ impl<S: Real, F: Fn(&[S]) -> S + Sync> SatisficingProblem for FnProblem<S, F> {
     }
     fn components(&self) -> Option<&dyn Components<S, Located<S>>> {
         self.components.as_ref().map(|components| components as _)
+    }
+    fn bounds(&self) -> Option<&dyn Bounds<S>> {
+        self.bounds.as_ref().map(|bounds| bounds as _)
     }
     fn description(&self) -> Description {
         self.description.clone()
