@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use satisfice_catalogue::Catalogue;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -20,6 +22,7 @@ fn links_between_the_documents_lead_somewhere() {
         "docs/engines.md",
         "docs/glossary.md",
         "docs/guide.md",
+        "docs/problems.md",
         "docs/completeness.md",
         "docs/reproducibility.md",
         "docs/results/generalisation.md",
@@ -81,4 +84,55 @@ fn the_examples_are_all_listed() {
             );
         }
     }
+}
+
+/// `docs/problems.md`, from the catalogue.
+fn page_of_problems() -> String {
+    let catalogue = Catalogue::bundled();
+    let cell = |text: &str| text.replace('|', "\\|");
+    let mut page = "# Problems\n\nEvery bundled problem, in the order of `satisfice list`. A test keeps this page like the catalogue; after a change run\n\
+        `UPDATE=1 cargo test -p satisfice-bench --test documents`. Run one by `satisfice run NAME --set PARAMETER=VALUE`; write your own by\n\
+        [adding-a-problem.md](adding-a-problem.md).\n\n| problem | the answers | source |\n|---|---|---|\n"
+        .to_owned();
+    for spec in catalogue.problems() {
+        page += &format!(
+            "| `{}` | {} | {} |\n",
+            spec.name,
+            cell(spec.summary),
+            cell(spec.source)
+        );
+    }
+    for spec in catalogue
+        .problems()
+        .iter()
+        .filter(|spec| !spec.parameters.is_empty())
+    {
+        page += &format!(
+            "\n## {}\n\n| parameter | default | allowed | meaning |\n|---|---|---|---|\n",
+            spec.name
+        );
+        for parameter in spec.parameters {
+            let (default, allowed) = (parameter.default_text(), cell(&parameter.allowed()));
+            page += &format!(
+                "| `{}` | {default} | {allowed} | {} |\n",
+                parameter.name,
+                cell(parameter.summary)
+            );
+        }
+    }
+    page
+}
+
+#[test]
+fn the_page_of_problems_is_that_of_the_catalogue() {
+    let (path, page) = (root().join("docs/problems.md"), page_of_problems());
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(&path, &page).expect("the page is written");
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        found == page,
+        "docs/problems.md is not that of the catalogue: set UPDATE=1 to write it"
+    );
+    assert!(!page.contains("](crate::") && !page.contains("](super::"));
 }

@@ -100,7 +100,7 @@ pub struct Report<T> {
     pub scalar: String,
     /// The seed.
     pub seed: u64,
-    /// The number of lanes.
+    /// The number of islands.
     pub islands: usize,
     /// Which slice of the search this was, from 0.
     pub slice: u64,

@@ -144,9 +144,9 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// The number of threads that evaluate, 1 by default, 0 for as many as there are cores. **Needs the feature `rayon`:**
     /// without it one thread works, whatever the number, and no error says so. Reports under a budget of evaluations do not depend on it.
     ///
-    /// With one lane, threads share each batch that is worth it. [`Budget::with_parallel`] tells the engine how large batches have to
+    /// With one island, threads share each batch that is worth it. [`Budget::with_parallel`] tells the engine how large batches have to
     /// be; under a limit of time alone, it is the number of threads. An engine that proposes one point at a time keeps one of them
-    /// busy. With several [islands](Search::islands), threads share the lanes.
+    /// busy. With several [islands](Search::islands), threads share the islands.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.kept.threads = threads;
@@ -154,7 +154,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
         self
     }
 
-    /// How many calls of the fitness in the slice that ended last were in batches that several threads shared. With one lane
+    /// How many calls of the fitness in the slice that ended last were in batches that several threads shared. With one island
     /// and several threads, few of them mean that the engine's batches are too small, or the fitness too cheap: then
     /// [islands](Search::islands) keep the threads busy. It is no part of a report, which does not depend on threads.
     #[must_use]
@@ -163,23 +163,23 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     }
 
     /// How many points of the slice that ended last were proposed at least as many at a time as [`Budget::with_parallel`] says, with
-    /// one lane. Few of them mean that the engine does not follow it. Like the calls above, it is no part of a report; of eager tickets it is
+    /// one island. Few of them mean that the engine does not follow it. Like the calls above, it is no part of a report; of eager tickets it is
     /// not known.
     #[must_use]
     pub fn in_full_batches(&self) -> u64 {
         self.kept.in_full_batches
     }
 
-    /// The number of lanes, from 1 (the default) to 65,536: engines side by side, each with an equal share of the
+    /// The number of islands, from 1 (the default) to 65,536: engines side by side, each with an equal share of the
     /// evaluations, which share the hits they find. For a fitness so cheap that one engine cannot keep several threads busy.
     ///
-    /// The number of lanes is part of the search, like a seed. A hit is listed when the lanes exchange: after 256
+    /// The number of islands is part of the search, like a seed. A hit is listed when the islands exchange: after 256
     /// evaluations of each, then 512, then every 1,024. It carries the evaluation count and the time of the exchange. Each
-    /// lane has an archive of its own, so memory grows with their number. Where points within a separation are one answer, two lanes may find
-    /// two such points between two exchanges, and one is listed: that of the lane that comes first. Every hit that was evaluated is the same as a
-    /// listed one, unless a limit ends the slice at an exchange. A lane that has covered a part of the space by a hit that is not listed
-    /// proves nothing from then on; the first lane always can. Random numbers are streams of one seed; the first
-    /// lane's is that of a search with one lane. Uniform probes come at the end, after the engines.
+    /// island has an archive of its own, so memory grows with their number. Where points within a separation are one answer, two islands may find
+    /// two such points between two exchanges, and one is listed: that of the island that comes first. Every hit that was evaluated is the same as a
+    /// listed one, unless a limit ends the slice at an exchange. An island that has covered a part of the space by a hit that is not listed
+    /// proves nothing from then on; the first island always can. Random numbers are streams of one seed; the first
+    /// island's is that of a search with one island. Uniform probes come at the end, after the engines.
     ///
     /// ```
     /// use satisfice::{from_fn, Budget, Search, Space};

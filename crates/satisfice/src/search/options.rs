@@ -63,7 +63,7 @@ impl<'a, T> RunOptions<'a, T> {
         Self::default()
     }
 
-    /// Tells this observer of hits and of progress. With several lanes, hits are told when the lanes exchange them.
+    /// Tells this observer of hits and of progress. With several islands, hits are told when the islands exchange them.
     #[must_use]
     pub fn observer(mut self, observer: &'a mut dyn Observer<T>) -> Self {
         self.observer = Some(observer);
