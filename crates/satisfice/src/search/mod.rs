@@ -2,6 +2,8 @@
 
 mod checkpoint;
 mod contradiction;
+#[cfg(test)]
+mod crafted_tests;
 mod driven;
 mod kept;
 mod lane;

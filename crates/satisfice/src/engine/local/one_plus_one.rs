@@ -79,6 +79,19 @@ impl Mutation {
         }
     }
 
+    /// Whether restored parts are of so many dimensions.
+    pub(in crate::engine) fn fits(&self, dimension: usize) -> bool {
+        let (factor, inverse) = if dimension > FULL {
+            (dimension, 0)
+        } else {
+            (dimension * dimension, dimension * dimension)
+        };
+        let vectors = [&self.path, &self.draw, &self.step];
+        self.dimension == dimension
+            && vectors.iter().all(|vector| vector.len() == dimension)
+            && (self.factor.len(), self.inverse.len()) == (factor, inverse)
+    }
+
     fn is_diagonal(&self) -> bool {
         self.dimension > FULL
     }
@@ -172,6 +185,17 @@ mod tests {
             }
         }
         panic!("not converged: {best}")
+    }
+
+    #[test]
+    fn restored_parts_fit_their_dimensions() {
+        for dimension in [2, FULL, FULL + 1] {
+            let mut mutation = Mutation::default();
+            mutation.reset(dimension, 0.3);
+            assert!(mutation.fits(dimension) && !mutation.fits(dimension + 1));
+            mutation.dimension = 0;
+            assert!(!mutation.fits(dimension));
+        }
     }
 
     #[test]

@@ -243,7 +243,9 @@ impl<S: Real> Engine<S> for Searches<S> {
         let searches = self.climbs.len();
         Part::restore(self, from)?;
         let dimension = self.recombined.dimension();
-        let of_space = |climb: &Climb<S>| !climb.running || climb.position.len() == dimension;
+        let of_space = |climb: &Climb<S>| {
+            !climb.running || climb.position.len() == dimension && climb.mutation.fits(dimension)
+        };
         let fits = self.climbs.len() == searches
             && self.recombined.fit(dimension)
             && self.climbs.iter().all(of_space);

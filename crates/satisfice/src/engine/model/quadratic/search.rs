@@ -288,7 +288,7 @@ impl QuadraticSearch {
             *length = if shape.is_nan() {
                 1.0
             } else {
-                shape.clamp(1.0, self.stretch.min(longest))
+                shape.min(self.stretch).min(longest).max(1.0)
             };
         }
         memory.slopes.clear();
