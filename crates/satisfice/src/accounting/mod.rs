@@ -15,7 +15,7 @@ pub(crate) use self::unlisted::Unlisted;
 use crate::archive::Archive;
 use crate::best::BestSoFar;
 use crate::budget::{Budget, StopReason};
-use crate::clock::{Alarm, Clock};
+use crate::clock::{Alarm, Clock, Stopwatch};
 use crate::observer::Observer;
 use crate::report::{Counts, TracePoint};
 
@@ -37,6 +37,8 @@ pub(crate) struct Ledger<T> {
     fitness_cost: Option<u64>,
     /// What a call of the fitness costs, where only time is limited.
     price: Price,
+    /// Since when a batch is out, where only time is limited.
+    out_since: Option<Stopwatch>,
     /// Whether the last batch was shared among threads.
     shared: bool,
     /// Calls of the fitness in batches that were.
@@ -110,6 +112,7 @@ impl<T> Ledger<T> {
             #[cfg(feature = "rayon")]
             fitness_cost: None,
             price: Price::default(),
+            out_since: None,
             shared: false,
             shared_calls: 0,
             in_full_batches: 0,
@@ -165,16 +168,14 @@ impl<T> Ledger<T> {
         self.stop.is_some() || self.interrupted()
     }
 
-    /// Seconds that a call of the fitness takes, if that is known; where the fitness is computed elsewhere, the time of the slice by its
+    /// Seconds that a call of the fitness takes, if that is known; where answers come one by one, in any order, the time of the slice by its
     /// evaluations.
     pub(crate) fn seconds_an_evaluation(&self) -> Option<f64> {
-        let made = self.counts.evaluations;
-        let pace = self.clock.seen().as_secs_f64() / made as f64;
-        if made > 0 {
-            self.price.seconds_or(pace)
-        } else {
-            None
+        if !self.in_any_order {
+            return self.price.seconds();
         }
+        let made = self.counts.evaluations;
+        (made > 0).then(|| self.clock.seen().as_secs_f64() / made as f64)
     }
 
     /// Share of the budget used, as of the last look at the clock.
@@ -242,8 +243,19 @@ impl<T> Ledger<T> {
         self.stop = Some(self.stopped_by());
     }
 
+    /// Notes that a batch goes out, to be evaluated elsewhere.
+    pub(crate) fn goes_out(&mut self) {
+        self.out_since = self.budget.is_timed().then(Stopwatch::start);
+    }
+
     /// Checks the limits after evaluations that happened elsewhere.
     pub(crate) fn evaluated_elsewhere(&mut self, evaluations: usize) {
+        if let Some(stopwatch) = self.out_since.take()
+            && evaluations > 0
+        {
+            let nanoseconds = stopwatch.stop();
+            self.price.note(nanoseconds, evaluations, self.counts.evaluations);
+        }
         self.pass(evaluations);
         let _ = self.interrupted();
     }

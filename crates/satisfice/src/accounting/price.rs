@@ -28,12 +28,9 @@ impl Price {
         self.next = evaluations + APART.min(evaluations);
     }
 
-    /// Seconds a call; `None` before two samples, and `fallback` before the first.
-    pub(super) fn seconds_or(&self, fallback: f64) -> Option<f64> {
-        match self.latest {
-            Some(_) => self.seconds,
-            None => Some(fallback),
-        }
+    /// Seconds a call; `None` before two samples.
+    pub(super) fn seconds(&self) -> Option<f64> {
+        self.seconds
     }
 }
 
@@ -44,16 +41,15 @@ mod tests {
     #[test]
     fn one_slow_call_is_not_the_price() {
         let mut price = Price::default();
-        assert_eq!(price.seconds_or(7.0), Some(7.0));
         price.note(5_000_000, 1, 1);
-        assert_eq!(price.seconds_or(7.0), None);
+        assert_eq!(price.seconds(), None);
         price.note(3_000, 3, 10);
-        assert_eq!(price.seconds_or(7.0), Some(1e-6));
+        assert_eq!(price.seconds(), Some(1e-6));
         price.note(9_000_000, 1, 1000);
-        assert_eq!(price.seconds_or(7.0), Some(1e-6));
+        assert_eq!(price.seconds(), Some(1e-6));
         // What stays slow is believed.
         price.note(8_000_000, 1, 2000);
-        assert_eq!(price.seconds_or(7.0), Some(8e-3));
+        assert_eq!(price.seconds(), Some(8e-3));
     }
 
     #[test]

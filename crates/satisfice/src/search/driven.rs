@@ -52,6 +52,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Driven<'_, S, T> {
                 Some(slice) if !slice.candidates.live().is_empty() => {
                     if let Stage::Settle(from) = slice.stage {
                         slice.stage = Stage::Asked(from);
+                        slice.ledger.goes_out();
                     }
                     self.turn = turn;
                     break;

@@ -168,3 +168,35 @@ fn the_hits_of_the_slice_before_are_verified_once() {
         .unwrap();
     assert!(third.hit_count() * 10 >= first.hit_count() * 9);
 }
+
+/// What F costs is the time that a batch is out, not that of the other islands' turns: a cheap F wakes no model of it.
+#[test]
+fn islands_that_are_evaluated_by_hand_know_what_a_cheap_f_costs() {
+    let ring = from_fn(Space::<f64>::cube(2, -2.0, 2.0).unwrap(), 1e-3, |x: &[f64]| {
+        (x[0].hypot(x[1]) - 1.0).powi(2)
+    })
+    .separation(0.02);
+    for islands in [1, 4] {
+        let budget = Budget::time(core::time::Duration::from_secs(3600));
+        let mut search = Search::new().islands(islands).seed(1);
+        let mut slice = search.start(&ring, &budget).unwrap();
+        let mut told = 0;
+        while told < 12_000 {
+            let values: Vec<f64> = slice.ask().unwrap().iter().map(|x| ring.fitness(x)).collect();
+            told += values.len();
+            slice.tell(&values).unwrap();
+            if told < 100 {
+                // Somebody else has the time: all the islands together are slow.
+                std::thread::sleep(core::time::Duration::from_millis(5));
+            }
+        }
+        let report = slice.finish();
+        let of_model = report.sources.names.iter().position(|name| name == "model");
+        let last = report.sources.rows.last().unwrap();
+        assert!(
+            of_model.is_none_or(|model| last.proposed[model] == 0),
+            "{islands}: {:?} {last:?}",
+            report.sources.names
+        );
+    }
+}

@@ -149,6 +149,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         if live == 0 {
             self.running.settle(turn, problem, previous, &mut ());
         } else {
+            slice.ledger.goes_out();
             self.out.push(Out {
                 turn,
                 tickets: Vec::new(),
