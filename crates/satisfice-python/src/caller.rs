@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyTuple};
 
 use crate::told::ToldComponents;
 
@@ -204,7 +204,10 @@ fn kind(value: &Bound<'_, PyAny>) -> String {
 
 /// One value of the function.
 fn number(value: &Bound<'_, PyAny>, point: &Bound<'_, PyAny>) -> PyResult<f64> {
-    value.extract::<f64>().map_err(|_| {
+    // A complex number of numpy would be taken by its real part.
+    let is_real = value.is_instance_of::<PyFloat>() || !is_complex(value)?;
+    let number = is_real.then(|| value.extract::<f64>().ok()).flatten();
+    number.ok_or_else(|| {
         let kind = kind(value);
         PyTypeError::new_err(format!(
             "f returned {value} of type {kind} at x = {point}: it must return one real number (for all points at once, pass vectorized=True)"
@@ -212,8 +215,24 @@ fn number(value: &Bound<'_, PyAny>, point: &Bound<'_, PyAny>) -> PyResult<f64> {
     })
 }
 
+fn is_complex(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let numpy = value.py().import("numpy")?;
+    numpy.call_method1("iscomplexobj", (value,))?.extract()
+}
+
+/// An array with NaN where it is masked.
+fn filled<'py>(found: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let masked = found.py().import("numpy")?.getattr("ma")?;
+    if masked.call_method1("isMaskedArray", (found,))?.extract()? {
+        found.call_method1("filled", (f64::NAN,))
+    } else {
+        Ok(found.clone())
+    }
+}
+
 /// The values at all points of a batch, of any real type and layout.
 fn numbers(found: &Bound<'_, PyAny>, count: usize, values: &mut Vec<f64>) -> PyResult<()> {
+    let found = &filled(found)?;
     if let Ok(array) = found.extract::<PyReadonlyArray1<'_, f64>>()
         && let Ok(slice) = array.as_slice()
         && slice.len() == count

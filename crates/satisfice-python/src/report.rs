@@ -132,7 +132,7 @@ impl Report {
         })?;
         let columns = PyDict::new(py);
         if let Some(points) = self.points() {
-            let dimension = points.first().map_or(0, Vec::len);
+            let dimension = points.first().map_or_else(|| self.dimension(), Vec::len);
             for axis in 0..dimension {
                 let column: Vec<f64> = points.iter().map(|point| point[axis]).collect();
                 columns.set_item(format!("x{axis}"), column.into_pyarray(py))?;

@@ -2,6 +2,7 @@
 
 import math
 from fractions import Fraction
+from multiprocessing.pool import ThreadPool
 
 import numpy as np
 import pytest
@@ -165,3 +166,31 @@ def test_as_many_points_as_there_are_numbers_can_be_asked():
     assert len(batch) == 65_536 and len(endless.ask(10**8)) == 0
     endless.tell(batch.tickets, np.ones(len(batch)))
     assert len(endless.ask(1)) == 1
+
+
+def test_what_is_no_real_number_is_no_value():
+    square = [(-1, 1)] * 2
+    limits = {"delta": 1, "separation": 0.1, "evaluations": 20, "seed": 1}
+    for wrong in ["0.5", np.complex64(0.5j), np.complex128(0.5), 0.5j]:
+        for workers in [1, map]:
+            with pytest.raises(TypeError, match="one real number"):
+                satisfice.find(lambda x: wrong, square, **limits, workers=workers)  # noqa: B023
+    masked = satisfice.find(lambda x: np.ma.masked_array(np.zeros(len(x)), mask=True), square, **limits, vectorized=True)
+    assert masked.hits == 0 and masked.non_finite > 0
+
+
+def test_a_function_that_raises_stop_iteration_is_told():
+    search = satisfice.Search([(-1, 1)] * 2, delta=1, evaluations=20)
+    with pytest.raises(RuntimeError, match="raised StopIteration"):
+        search.run(lambda x: next(iter([])))
+
+
+def test_values_in_any_order_are_refused():
+    with ThreadPool(2) as pool, pytest.raises(ValueError, match="pool.map"):
+        satisfice.find(np.sum, [(-1, 1)] * 2, delta=1, evaluations=20, workers=pool.imap_unordered)
+
+
+def test_a_table_without_hits_has_its_columns():
+    pytest.importorskip("pandas")
+    report = satisfice.find(lambda x: 1.0, [(-1, 1)] * 2, delta=0.5, evaluations=20)
+    assert list(report.to_pandas().columns) == ["x0", "x1", "fun", "evaluation", "time"]

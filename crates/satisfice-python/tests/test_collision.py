@@ -468,3 +468,9 @@ def test_a_sheet_that_folds_onto_itself():
         collision.impacts(vertices, folded, faces, pairs="triangle-triangle")
     with pytest.raises(ValueError, match="as many"):
         collision.impacts(vertices, folded[1:], faces)
+
+
+def test_a_deforming_body_has_no_transform():
+    world = collision.World(threshold=0.1)
+    with pytest.raises(ValueError, match="where its vertices are"):
+        world.add(A, "deforming", transform=[0, 0, 5])

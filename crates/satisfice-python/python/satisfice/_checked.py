@@ -82,6 +82,8 @@ def workers_of(value: Any) -> Any:
         return processes("workers", value)
     if not (callable(value) or hasattr(value, "submit")):
         raise TypeError(f"workers must be a number of processes, a function such as pool.map, or an executor, not {value!r}")
+    if getattr(value, "__name__", "") == "imap_unordered":
+        raise ValueError("workers=pool.imap_unordered gives values in another order than that of the points: pass pool.imap or pool.map")
     return value
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _satisfice
+from ._checked import reals
 from ._files import Keeper
 from ._processes import Own
 from ._workers import LOOK_EVERY, MOST_LOSSES, Given, Guarded, Sent, check_pickle, is_killed, pair, shaped
@@ -114,7 +115,7 @@ def _evaluate(
         except catch:
             return np.full(len(points), np.nan), len(points)
         values = pair(found, components)[0] if components else found
-        return np.asarray(values, dtype=np.float64).reshape(len(points)), 0
+        return reals("values of f", np.ma.filled(values, math.nan)).reshape(len(points)), 0
     guarded = Guarded(f, catch, components)
     known, lost = np.full(len(points), math.nan), 0
     for index, x in enumerate(points):

@@ -114,7 +114,7 @@ class Best:
         """Its value."""
     @property
     def evaluation(self) -> int:
-        """The evaluation that found it, counted from 1."""
+        """The evaluation that found it, counted from 1; 0 if `inform` told it."""
 
 @final
 class Report:
@@ -164,7 +164,7 @@ class Report:
         """Values of the hits, shape (n,)."""
     @property
     def evaluation(self) -> NDArray[np.uint64]:
-        """The evaluation that found each hit, counted from 1, shape (n,)."""
+        """The evaluation that found each hit, counted from 1, shape (n,); 0 for those that `inform` told."""
     @property
     def time(self) -> NDArray[np.float64]:
         """When each hit was found, in seconds from the start, shape (n,)."""
@@ -182,7 +182,8 @@ class Report:
         """The number of distinct hits."""
     @property
     def evaluations(self) -> int:
-        """Candidates that used up the budget, those that were known included."""
+        """Candidates that used up the budget, those that were known included. Bounds of a problem of the catalogue use it up, too: `to_dict` has
+        them as ``bound_calls``."""
     @property
     def nfev(self) -> int:
         """Calls of the function, a point each."""
@@ -213,14 +214,14 @@ class Report:
         """Wall time in seconds."""
     @property
     def stop_reason(self) -> str:
-        """Why the search ended: ``"Time"``, ``"Evaluations"``, ``"Hits"``, ``"Patience"``, ``"Cancelled"`` (a signal, an exception),
+        """Why the search ended: ``"Time"``, ``"Evaluations"``, ``"Hits"``, ``"Patience"``, ``"Cancelled"`` (a signal, an exception; or it goes on),
         ``"Observer"`` (the callback), ``"Exhausted"`` (the engine has no more to propose), ``"Covered"`` (the whole space)."""
     @property
     def completeness(self) -> str:
         """``"Proved"`` if all hits are known to be listed, else ``"Unknown"``."""
     @property
     def unseen_estimate(self) -> float | None:
-        """The estimated number of hits not seen; ``None`` without `probes`."""
+        """The estimated number of hits not seen, by uniform probes: without `probes` the engine's own few, or ``None``. See `unseen_interval`."""
     @property
     def unseen_interval(self) -> tuple[float, float | None] | None:
         """The interval of `unseen_estimate`; no upper end where nothing bounds it."""

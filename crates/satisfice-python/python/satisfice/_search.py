@@ -241,7 +241,7 @@ class Search:
             `mpi4py.futures.MPIPoolExecutor`, ...
         workers : int or map-like, default 1
             Without `executor`: the number of processes, 1 for none but this one; one that dies is replaced, and what it had is evaluated again. Or a
-            function such as ``pool.map``, which is given one batch after the other.
+            function such as ``pool.map`` or ``pool.imap``, which is given one batch after the other, and gives its values in the same order.
         in_flight : int, optional
             The number of points out at a time. By default the number of workers; with a number of processes, twice as many if
             evaluations take less than 0.1 s. The executors of `concurrent.futures`, the pools of `multiprocessing`, loky, mpi4py and

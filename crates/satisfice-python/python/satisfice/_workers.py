@@ -41,6 +41,9 @@ class Guarded:
             value = self.f(x)
         except self.catch:
             return None
+        except StopIteration as error:
+            # It would end the iteration of whoever calls this.
+            raise RuntimeError(f"f raised StopIteration at x = {x}") from error
         if self.components == 0:
             return _number(value, x)
         value, components = pair(value, self.components)
@@ -102,11 +105,14 @@ def pair(value: Any, components: int) -> tuple[Any, Any]:
 
 
 def _number(value: Any, x: NDArray[np.float64]) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        kind = type(value).__name__
-        raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number") from None
+    # `float` takes text, and the real part of complex numbers of numpy.
+    if not (isinstance(value, (str, bytes, bytearray)) or np.iscomplexobj(value)):
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            pass
+    kind = type(value).__name__
+    raise TypeError(f"f returned {value!r} of type {kind} at x = {x}: it must return one real number")
 
 
 def check_pickle(f: Callable[[Any], Any]) -> None:

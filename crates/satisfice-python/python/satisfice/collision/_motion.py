@@ -112,7 +112,7 @@ class Step:
             In the unit of the vertices.
         pairs : str, default "vertex-triangle"
             ``"vertex-vertex"``, ``"vertex-edge"``, ``"vertex-triangle"`` or ``"edge-edge"``. Surfaces that meet do so in a pair
-            of one of the last two kinds.
+            of one of the last two kinds: ask for both, or, for the first impact, `earliest`, which looks at both.
         tolerance : float, default 1e-6
             The greatest distance of the two bounds of a time, at least 1e-12.
         time : float, optional
@@ -127,7 +127,11 @@ class Step:
 
     def free_step(self, *, threshold: float = 0.0, time: float | None = None) -> float:
         """A time up to which the step is proved free of impacts; 1 if the whole step is. After `time` seconds it is what is
-        proved until then: the step is free up to it, and may be for longer."""
+        proved until then: the step is free up to it, and may be for longer.
+
+        An impact is a vertex that meets a triangle, or an edge that meets an edge. Surfaces that do not intersect at the start do not
+        before the first impact. Those that intersect at the start may go on to do so without one: see that they do not, by
+        ``any_closer(a, b, threshold=1e-12, pairs="triangle-triangle")``, or of one mesh by ``close_pairs`` with `ring` 1."""
         return self._step.free_step(real("threshold", threshold), seconds(time))
 
     def earliest(
@@ -175,8 +179,9 @@ def free_step(
 ) -> float:
     """The part of a step, from 0 to 1, that a mesh can move without an impact with itself; several bodies go into a `Step`.
 
-    It is proved: up to that time no two features touch (for a threshold: come nearer than it). After `time` seconds it is what
-    is proved until then.
+    It is proved: up to that time no vertex touches a triangle, and no edge an edge (for a threshold: comes nearer than it). That the mesh
+    does not intersect itself at the start is for you to see, as for `Step.free_step`. After `time` seconds it is what is proved until
+    then.
     """
     step = Step()
     step.add(start, end, faces, self_collision=True)

@@ -121,7 +121,7 @@ class World:
         motion : {"rigid", "fixed", "deforming"}
             How it may move: by `place` and `translate`, not at all, or by `deform`. Only a deforming body collides with itself.
         transform : array, shape (4, 4) or (3,), optional
-            Where it is first, unless it deforms.
+            Where it is first; a deforming body is where its vertices are.
         groups, mask : int
             Two bodies collide if the mask of each has a bit of the other's groups; 32 bits.
         self_collision : bool
@@ -134,6 +134,8 @@ class World:
         Body
             Its handle, valid until it is removed.
         """
+        if motion == "deforming" and transform is not None:
+            raise ValueError("transform does not apply to a deforming body: it is where its vertices are")
         return self._world.add(
             mesh(mesh_), motion, pose_of(transform), _bits(groups, mask), bool(self_collision), whole("ring", ring, least=0)
         )
