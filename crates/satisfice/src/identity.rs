@@ -192,10 +192,15 @@ impl<S: Real> Located<S> {
             }
             Separation::Radius(_) => return 0,
             Separation::Axes(axes) => {
+                let mut has_exact = false;
                 for (&x, axis) in self.coordinates.iter().zip(axes.iter()) {
                     if axis.is_hashed_exactly() {
+                        has_exact = true;
                         hasher.write_u64((x + S::zero()).to_word());
                     }
+                }
+                if !has_exact {
+                    return 0;
                 }
             }
         }

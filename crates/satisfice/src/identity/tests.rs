@@ -251,3 +251,29 @@ fn a_region_is_covered_where_its_farthest_point_is_the_same() {
     }
     assert!(counts.iter().all(|&count| count > 2000), "{counts:?}");
 }
+
+/// Points that are alike on all axes but one have keys of their own: a table of them is no list.
+#[test]
+fn every_axis_with_a_radius_counts_in_the_key() {
+    for axes in 1..=HASHED {
+        for separation in [
+            Separation::Radius(0.01),
+            Separation::axes((0..axes).map(|_| AxisSeparation::within(0.01))),
+            Separation::axes((0..axes).map(|_| AxisSeparation::within(0.01).logarithmic())),
+        ] {
+            for axis in 0..axes {
+                let key = |x: f64| {
+                    let mut values = vec![1.0; axes];
+                    values[axis] = x;
+                    Located::new(&values, separation.clone()).key()
+                };
+                let keys: std::collections::BTreeSet<u64> = (1..=100).map(|i| key(f64::from(i))).collect();
+                assert!(
+                    keys.len() > 50,
+                    "{separation:?}, axis {axis}: {} keys",
+                    keys.len()
+                );
+            }
+        }
+    }
+}
