@@ -67,6 +67,11 @@ pub trait Context<S: Real> {
         None
     }
 
+    /// How many [islands](crate::Search::islands) the search has, of which each has such a plan.
+    fn islands(&self) -> usize {
+        1
+    }
+
     /// How many evaluations can go on at once: what the [budget says](crate::Budget::with_parallel); where tickets are answered in
     /// any order, at least as many as are out or asked for; the number of threads where only the clock limits the slice. 1 where nothing
     /// is known.

@@ -289,6 +289,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Context<S> for View<'_, S, T> {
         let spent = self.ledger.counts.evaluations + self.calls.bounds.get();
         horizon.or(*evaluations).map(|limit| limit.saturating_sub(spent))
     }
+    fn islands(&self) -> usize {
+        self.ledger.islands
+    }
     fn parallel(&self) -> usize {
         self.ledger.budget.parallel.unwrap_or(1).max(self.ledger.at_once)
     }

@@ -50,6 +50,8 @@ pub(crate) struct Ledger<T> {
     pub(crate) hold: Option<Duration>,
     /// How many evaluations go on at once as far as the search knows, beside what the budget says.
     pub(crate) at_once: usize,
+    /// How many islands share the evaluations that the search has planned.
+    pub(crate) islands: usize,
     /// Whether the engine is told one answer at a time, in any order.
     pub(crate) in_any_order: bool,
     /// When the next points of the trace are due, by evaluations and by time.
@@ -119,6 +121,7 @@ impl<T> Ledger<T> {
             alarm: budget.time.map(|time| Alarm::set(time.saturating_sub(elapsed))),
             hold: None,
             at_once: 1,
+            islands: 1,
             in_any_order: false,
             next_count: next,
             stale_at,

@@ -323,6 +323,10 @@ impl Model {
         best: &mut (Score, Vec<f64>),
     ) {
         for _ in 0..self.effort(NEWTON) {
+            // With hundreds of axes a step takes a tenth of a second.
+            if given.context.is_out_of_time() {
+                return;
+            }
             let block = self
                 .pool
                 .refine(steps(&self.process, given.units, &self.pool.limits, &at));

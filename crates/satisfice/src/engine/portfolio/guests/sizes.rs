@@ -44,7 +44,11 @@ impl Sizes {
         let (planned, components) = (context.evaluations_planned(), context.component_count());
         let sizes = Self::of(context.parallel(), planned);
         let proposals = planned.map_or(MOST_PROPOSALS, |planned| {
-            proposals(planned, components, context.seconds_planned())
+            proposals(
+                (planned, context.islands()),
+                components,
+                context.seconds_planned(),
+            )
         });
         if context.is_in_any_order() {
             // Each search is an [engine of its own](super::side_by_side).
@@ -97,11 +101,11 @@ pub(super) fn searches(parallel: usize) -> usize {
     parallel.div_ceil(4).clamp(1, MOST_SEARCHES)
 }
 
-/// How many proposals the model may make where so many evaluations are planned, in so many seconds, if time is limited, too: none if they
-/// would take longer.
-fn proposals(planned: u64, components: usize, seconds: Option<f64>) -> u64 {
+/// How many proposals the model may make where so many evaluations are planned, by each of so many islands, in so many seconds, if time is
+/// limited, too: none if they would take longer.
+fn proposals((planned, islands): (u64, usize), components: usize, seconds: Option<f64>) -> u64 {
     let takes = MOST_PROPOSALS.min(planned) as f64 * PROPOSAL;
-    let is_long = planned > MOST_PLANNED && components == 0;
+    let is_long = planned.saturating_mul(islands as u64) > MOST_PLANNED && components == 0;
     if is_long || seconds.is_some_and(|seconds| takes > seconds) {
         0
     } else {
@@ -135,16 +139,21 @@ mod tests {
 
     #[test]
     fn the_model_keeps_out_of_long_searches() {
-        let plain = |planned| proposals(planned, 0, None);
+        let plain = |planned| proposals((planned, 1), 0, None);
         assert_eq!([0, 1, 10_000].map(plain), [1_000; 3]);
         assert_eq!([10_001, u64::MAX].map(plain), [0; 2]);
+        // All islands together are one search.
+        assert_eq!(
+            [1, 2].map(|islands| proposals((10_000, islands), 0, None)),
+            [1_000, 0]
+        );
         // Of components it knows too much to be left out.
-        assert_eq!(proposals(30_000, 3, None), 1_000);
+        assert_eq!(proposals((30_000, 1), 3, None), 1_000);
     }
 
     #[test]
     fn the_model_keeps_out_where_time_is_short() {
-        let within = |planned, components, seconds| proposals(planned, components, Some(seconds));
+        let within = |planned, components, seconds| proposals((planned, 1), components, Some(seconds));
         assert_eq!(within(1_000, 0, 0.51), 1_000);
         assert_eq!(within(50, 0, 0.03), 1_000);
         assert_eq!([within(1_000, 0, 0.49), within(50, 3, 0.02)], [0; 2]);
