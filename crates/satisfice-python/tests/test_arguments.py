@@ -185,6 +185,16 @@ def test_a_function_that_raises_stop_iteration_is_told():
         search.run(lambda x: next(iter([])))
 
 
+def test_shapes_that_do_not_fit_are_told():
+    search = satisfice.Search([(-1, 1)] * 2, delta=1, evaluations=20)
+    with pytest.raises(ValueError, match=r"values have shape \(1, 1\)"):
+        search.tell(search.ask(1).tickets, [[1.0]])
+    with pytest.raises(ValueError, match="a tuple"):
+        collision.mesh(list(TRIANGLE))
+    with pytest.raises(ValueError, match="read a file first"):
+        collision.mesh("bunny.obj")
+
+
 def test_values_in_any_order_are_refused():
     with ThreadPool(2) as pool, pytest.raises(ValueError, match="pool.map"):
         satisfice.find(np.sum, [(-1, 1)] * 2, delta=1, evaluations=20, workers=pool.imap_unordered)

@@ -85,8 +85,8 @@ pub trait Context<S: Real> {
         false
     }
 
-    /// Seconds that a call of the fitness has taken lately; where it is computed elsewhere, the mean time of an evaluation, thinking
-    /// included, as of the last look at the clock. `None` unless [only time is limited](Self::is_timed), so that no other search depends on the clock,
+    /// Seconds that a call of the fitness has taken lately; where it is computed elsewhere, the time that a batch was out by its points, or,
+    /// where answers come in any order, the mean time of an evaluation, thinking included, as of the last look at the clock. `None` unless [only time is limited](Self::is_timed), so that no other search depends on the clock,
     /// and before the first ones.
     fn seconds_an_evaluation(&self) -> Option<f64> {
         None

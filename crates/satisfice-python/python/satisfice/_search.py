@@ -348,7 +348,10 @@ class Search:
 
 
 def _numbers(values: ArrayLike) -> NDArray[np.float64]:
-    return np.atleast_1d(reals("values", values))
+    array = np.atleast_1d(reals("values", values))
+    if array.ndim != 1:
+        raise ValueError(f"values have shape {array.shape}: they need shape (m,), one for each ticket or point")
+    return array
 
 
 def _rows(components: ArrayLike | None) -> NDArray[np.float64] | None:

@@ -43,11 +43,15 @@ def mesh(value: Any, faces: Any = None, edges: Any = None) -> Mesh:
             vertices, faces = value.vertices, value.faces
         elif isinstance(value, tuple) and len(value) == 2:
             vertices, faces = value
+        elif isinstance(value, list) and len(value) == 2 and np.ndim(value[0]) == 2:
+            raise ValueError("a mesh of vertices and faces is a tuple (V, F), not a list of both")
     return Mesh(vertices_of(vertices), indices_of("faces", faces, 3), indices_of("edges", edges, 2))
 
 
 def vertices_of(value: Any) -> NDArray[np.float64]:
-    if not hasattr(value, "__len__") or isinstance(value, (str, bytes)):
+    if isinstance(value, (str, bytes)):
+        raise ValueError(f"no mesh: {value!r} is text; read a file first, for example by trimesh.load(path)")
+    if not hasattr(value, "__len__"):
         raise ValueError(f"no mesh: {type(value).__name__} has no vertices and faces, and is no array of shape (n, 3)")
     array = reals("vertices", value)
     if array.ndim != 2 or array.shape[1] != 3:
