@@ -4,9 +4,25 @@
 
 use std::collections::VecDeque;
 
-use satisfice::{Budget, Completeness, SatisficingProblem, Search, Space, Tickets, from_fn};
+use satisfice::{Budget, Completeness, Report, SatisficingProblem, Search, Space, Tickets, from_fn};
 
-/// Twelve valleys on a slope. 32 evaluations go on at once, and end in the order in which they began.
+/// The report where so many evaluations go on at once, and end in the order in which they began.
+fn answered<P>(mut tickets: Tickets<P>, elsewhere: &P, at_once: usize) -> Report<P::Solution>
+where
+    P: SatisficingProblem<Scalar = f64>,
+{
+    let mut out = VecDeque::new();
+    loop {
+        out.extend(tickets.ask(at_once - out.len()));
+        let Some(asked) = out.pop_front() else { break };
+        tickets
+            .tell(asked.ticket, elsewhere.fitness(&asked.solution))
+            .unwrap();
+    }
+    tickets.finish()
+}
+
+/// Twelve valleys on a slope, of which 32 evaluations go on at once.
 fn found(budget: &Budget) -> (Vec<(Vec<f64>, u64)>, u64) {
     let slope = || {
         from_fn(Space::<f64>::cube(3, -1.0, 1.0).unwrap(), 0.08, |x: &[f64]| {
@@ -16,15 +32,8 @@ fn found(budget: &Budget) -> (Vec<(Vec<f64>, u64)>, u64) {
         .boxed()
         .separation(0.05)
     };
-    let mut tickets = Tickets::eager(Search::new().seed(5), slope(), budget).unwrap();
-    let (elsewhere, mut out) = (slope(), VecDeque::new());
-    loop {
-        out.extend(tickets.ask(32 - out.len()));
-        let Some(asked) = out.pop_front() else { break };
-        let value = elsewhere.fitness(&asked.solution);
-        tickets.tell(asked.ticket, value).unwrap();
-    }
-    let report = tickets.finish();
+    let tickets = Tickets::eager(Search::new().seed(5), slope(), budget).unwrap();
+    let report = answered(tickets, &slope(), 32);
     let hits = report.hits();
     (
         hits.map(|hit| (hit.solution.coordinates.clone(), hit.evaluation))
@@ -56,15 +65,7 @@ fn an_enumeration_leaves_room_for_the_tickets_that_are_out() {
     for (evaluations, is_proved) in [(8_600, true), (6_000, false)] {
         let budget = Budget::evaluations(evaluations);
         let search = Search::new().seed(5).set("without", "model").unwrap();
-        let mut tickets = Tickets::eager(search, sums(), &budget).unwrap();
-        let (elsewhere, mut out) = (sums(), VecDeque::new());
-        loop {
-            out.extend(tickets.ask(1_000 - out.len()));
-            let Some(asked) = out.pop_front() else { break };
-            let value = elsewhere.fitness(&asked.solution);
-            tickets.tell(asked.ticket, value).unwrap();
-        }
-        let report = tickets.finish();
+        let report = answered(Tickets::eager(search, sums(), &budget).unwrap(), &sums(), 1_000);
         let found = report.completeness == Completeness::Proved;
         assert_eq!((found, report.hit_count()), (is_proved, 15), "{report}");
     }
