@@ -1,4 +1,4 @@
-//! The state of an engine with a wrong byte and a right checksum: it is refused, or the search goes on to its end. Which byte of which engine
+//! The state of an engine with a wrong byte, past the checksum of its checkpoint: it is refused, or the search goes on to its end. Which byte of which engine
 //! does harm was looked for with 600 random ones for each engine and space; `TRIALS=600` does so again, in a quarter of an hour.
 
 use super::RunOptions;

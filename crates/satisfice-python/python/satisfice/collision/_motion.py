@@ -131,7 +131,8 @@ class Step:
 
         An impact is a vertex that meets a triangle, or an edge that meets an edge. Surfaces that do not intersect at the start do not
         before the first impact. Those that intersect at the start may go on to do so without one: see that they do not, by
-        ``any_closer(a, b, threshold=1e-12, pairs="triangle-triangle")``, or of one mesh by ``close_pairs`` with `ring` 1."""
+        ``any_closer(a, b, threshold=1e-12, pairs="triangle-triangle")``, or of one mesh by ``close_pairs`` in the same
+        way, which leaves out triangles that share a vertex."""
         return self._step.free_step(real("threshold", threshold), seconds(time))
 
     def earliest(
