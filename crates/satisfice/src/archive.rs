@@ -1,14 +1,15 @@
 //! The archive: the distinct hits, in the order found.
 
 mod as_list;
+mod known;
 mod near;
 pub(crate) mod packed;
 #[cfg(test)]
 mod tests;
-mod truncate;
 
 use hashbrown::HashTable;
 
+pub(crate) use self::known::KnownHits;
 use self::near::NearIndex;
 use crate::identity::Identity;
 
@@ -119,6 +120,11 @@ impl<T> Archive<T> {
             evaluation: *self.evaluations.get(index)?,
             seconds: f64::from(*self.seconds.get(index)?),
         })
+    }
+
+    /// The hit that was found last.
+    pub(crate) fn last(&self) -> Option<Hit<'_, T>> {
+        self.get(self.len().checked_sub(1)?)
     }
 
     /// All hits, in the order found.
@@ -261,6 +267,11 @@ impl<T: Identity> Archive<T> {
                 .map(|&i| &self.solutions[i as usize])
                 .any(|hit| hit.same(solution) && test(hit))
         })
+    }
+
+    /// Whether it holds a hit that stands for `solution`.
+    pub(crate) fn holds(&self, solution: &T) -> bool {
+        self.any_same(solution, |hit| hit.stands_for(solution))
     }
 
     /// Adds a solution with its fitness F, its evaluation and its time in seconds, unless the archive holds one that is the

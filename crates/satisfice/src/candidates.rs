@@ -1,6 +1,6 @@
 //! The candidates of one batch between proposal and outcome.
 
-use crate::archive::{Archive, Mark};
+use crate::archive::{KnownHits, Mark};
 use crate::batch::{Batch, Outcome};
 use crate::error::Error;
 use crate::problem::AnyProblem;
@@ -59,7 +59,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     pub(crate) fn prepare(
         &mut self,
         problem: &AnyProblem<'_, S, T>,
-        archive: &Archive<T>,
+        archive: &KnownHits<T>,
         batch: &mut Batch<S>,
         limit: usize,
         deletes: bool,
@@ -108,7 +108,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     pub(crate) fn prepare_solutions<'a>(
         &mut self,
         solutions: impl ExactSizeIterator<Item = &'a T>,
-        archive: &Archive<T>,
+        archive: &KnownHits<T>,
         limit: usize,
     ) where
         T: 'a,
@@ -126,7 +126,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
     }
 
     #[inline]
-    fn reset(&mut self, deletes: bool, archive: &Archive<T>) {
+    fn reset(&mut self, deletes: bool, archive: &KnownHits<T>) {
         self.deletes = deletes;
         self.absent = deletes.then(|| archive.mark());
         self.live = 0;
@@ -147,7 +147,7 @@ impl<S: Real, T: crate::Identity + Clone + Send + Sync> Candidates<S, T> {
 
     /// Files the solution in slot `live` as the next point.
     #[inline]
-    fn file(&mut self, archive: &Archive<T>) {
+    fn file(&mut self, archive: &KnownHits<T>) {
         let outcome = if self.deletes && archive.contains(&self.solutions[self.live]) {
             Outcome::Deleted
         } else {

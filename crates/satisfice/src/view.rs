@@ -216,7 +216,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Context<S> for View<'_, S, T> {
         self.ledger.counts.evaluations
     }
     fn hits(&self) -> usize {
-        self.ledger.archive.len() - self.ledger.archive.probe_only()
+        self.ledger.archive.seen()
     }
     fn is_deleted(&self, position: &[S]) -> bool {
         !self.ledger.archive.is_empty()

@@ -12,7 +12,7 @@ use core::time::Duration;
 
 use self::price::Price;
 pub(crate) use self::unlisted::Unlisted;
-use crate::archive::Archive;
+use crate::archive::KnownHits;
 use crate::best::BestSoFar;
 use crate::budget::{Budget, StopReason};
 use crate::clock::{Alarm, Clock, Stopwatch};
@@ -27,7 +27,7 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(10);
 pub(crate) struct Ledger<T> {
     pub(crate) budget: Budget,
     pub(crate) counts: Counts,
-    pub(crate) archive: Archive<T>,
+    pub(crate) archive: KnownHits<T>,
     pub(crate) best: BestSoFar<T>,
     pub(crate) trace: Vec<TracePoint>,
     pub(crate) stop: Option<StopReason>,
@@ -74,7 +74,7 @@ pub(crate) struct Ledger<T> {
 #[derive(Debug)]
 pub(crate) struct Reached<T> {
     pub(crate) counts: Counts,
-    pub(crate) archive: Archive<T>,
+    pub(crate) archive: KnownHits<T>,
     pub(crate) best: BestSoFar<T>,
     pub(crate) trace: Vec<TracePoint>,
     pub(crate) stop: Option<StopReason>,
@@ -85,7 +85,7 @@ impl<T> Default for Reached<T> {
     fn default() -> Self {
         Self {
             counts: Counts::default(),
-            archive: Archive::default(),
+            archive: KnownHits::default(),
             best: BestSoFar::default(),
             trace: Vec::new(),
             stop: None,
@@ -370,9 +370,8 @@ pub(crate) fn next_count(count: u64) -> u64 {
 }
 
 /// The evaluation that ends a slice unless there is a new hit before.
-fn stale_at<T>(budget: &Budget, archive: &Archive<T>) -> u64 {
-    let last = archive.len().checked_sub(1).and_then(|index| archive.get(index));
-    let last = last.map_or(0, |hit| hit.evaluation);
+fn stale_at<T>(budget: &Budget, hits: &KnownHits<T>) -> u64 {
+    let last = hits.all().last().map_or(0, |hit| hit.evaluation);
     budget
         .patience
         .map_or(u64::MAX, |evaluations| last.saturating_add(evaluations))

@@ -302,7 +302,7 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
     fn notify_hit(&mut self, observer: &mut dyn Observer<T>) {
         self.stale_at = stale_at(&self.budget, &self.archive);
         let count = self.archive.len();
-        if let Some(hit) = self.archive.get(count - 1)
+        if let Some(hit) = self.archive.all().last()
             && observer.hit(hit, count).is_break()
         {
             self.stop = Some(StopReason::Observer);

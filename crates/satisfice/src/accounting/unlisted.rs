@@ -11,27 +11,14 @@ use crate::scalar::Real;
 /// because of the other one is then near nothing that is listed, and a hit of its own.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Unlisted<T> {
-    /// So many hits of its archive, the first ones, are listed.
-    pub(crate) listed: usize,
     /// Hits, with F, that were evaluated and rejected because of a later one.
     pub(crate) rejected: Vec<(T, f64)>,
 }
 
 impl<T> Unlisted<T> {
-    /// Nothing, after an exchange that left the lane with so many hits.
-    pub(crate) fn after(listed: usize) -> Self {
-        Self {
-            listed,
-            rejected: Vec::new(),
-        }
-    }
-}
-
-impl<T> Ledger<T> {
-    /// How many hits, the first ones, are listed: all of them but in one lane of several.
-    pub(crate) fn listed(&self) -> usize {
-        let unlisted = self.unlisted.as_ref();
-        unlisted.map_or(self.archive.len(), |unlisted| unlisted.listed)
+    /// Nothing, after an exchange.
+    pub(crate) fn nothing() -> Self {
+        Self { rejected: Vec::new() }
     }
 }
 
@@ -45,10 +32,10 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         fitness: S,
         index: usize,
     ) {
-        if index < self.listed() {
+        if self.unlisted.is_none() || index < self.archive.listed_count() {
             return;
         }
-        let hit = self.archive.solutions().get(index);
+        let hit = self.archive.solution(index);
         if hit.is_some_and(|hit| hit.stands_for(solution)) {
             return;
         }
@@ -57,20 +44,6 @@ impl<T: Identity + Clone + Send + Sync> Ledger<T> {
         let noted = other.unwrap_or_else(|| (solution.clone(), fitness));
         if let Some(unlisted) = &mut self.unlisted {
             unlisted.rejected.push((noted.0, noted.1.f64()));
-        }
-    }
-
-    /// After an exchange: keeps of the hits since the one before only those that `common` lists.
-    pub(crate) fn keep_listed(&mut self, common: &crate::archive::Archive<T>) {
-        let listed = self.listed();
-        let own = self.archive.iter().skip(listed);
-        let kept = own.filter(|hit| common.holds(hit.solution));
-        let kept: Vec<_> = kept
-            .map(|hit| (hit.solution.clone(), hit.fitness, hit.evaluation, hit.seconds))
-            .collect();
-        self.archive.truncate(listed);
-        for (solution, fitness, evaluation, seconds) in kept {
-            self.archive.insert(solution, fitness, evaluation, seconds);
         }
     }
 }

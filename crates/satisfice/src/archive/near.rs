@@ -75,16 +75,6 @@ impl NearIndex {
         });
     }
 
-    /// Removes hit `number`. Cost: O(D) for each node on one way down.
-    pub(super) fn remove<T: Identity>(&mut self, solution: &T, number: u32) {
-        with_point(solution, |point| {
-            let tree = self.trees.iter_mut().find(|tree| tree.radii == point.radii);
-            if let Some(tree) = tree {
-                tree.remove(&point.coordinates, number);
-            }
-        });
-    }
-
     /// Whether one of the hits that may be the same as `solution` passes `test`.
     pub(super) fn any<T: Identity>(&self, solution: &T, mut test: impl FnMut(u32) -> bool) -> bool {
         with_point(solution, |point| {
@@ -236,29 +226,6 @@ impl Tree {
         let leaves = 1.0 + self.nodes[0].count as f64 / (LEAF / 2) as f64;
         if self.path.len() as f64 > 2.0 + leaves.ln() / -LOPSIDED.ln() {
             self.balance();
-        }
-    }
-
-    /// Removes a point that was inserted. Boxes stay as large as they are.
-    fn remove(&mut self, point: &[f64], number: u32) {
-        self.around.clear();
-        let dimension = self.dimension();
-        let mut at = 0;
-        loop {
-            let node = &mut self.nodes[at];
-            node.count -= 1;
-            match &mut node.kind {
-                NodeKind::Split { axis, value, first } => {
-                    at = *first + usize::from(point[*axis] >= *value);
-                }
-                NodeKind::Leaf { numbers, points } => {
-                    if let Some(place) = numbers.iter().position(|&other| other == number) {
-                        numbers.remove(place);
-                        points.drain(place * dimension..(place + 1) * dimension);
-                    }
-                    return;
-                }
-            }
         }
     }
 

@@ -128,16 +128,16 @@ fn crowded_solutions_on_mixed_axes_agree_with_all_pairs() {
     }));
 }
 
-/// Hits come and go; each time the archive is compared with a new one of those that are left.
+/// Archives of points within a radius of each other, compared with lists that compare each with each.
 #[test]
-fn hits_taken_back_were_never_there() {
+fn a_hit_near_another_is_known_wherever_it_is_filed() {
     let mut rng = crate::SearchRng::new(10);
     // The last: steps from one place along one of many axes.
     for (dimension, changed, side, radius) in [(1, 1, 1.0, 0.002), (6, 6, 0.3, 0.1), (60, 1, 0.3, 0.1)] {
-        let (mut archive, mut left) = (Archive::default(), Vec::new());
         let mut by_places = 0;
-        for round in 0..200 {
-            for n in 0..60 {
+        for round in 0..40 {
+            let (mut archive, mut left) = (Archive::default(), Vec::new());
+            for n in 0..60 + 10 * round {
                 let mut point = vec![0.0; dimension];
                 let first = rng.below(dimension - changed + 1);
                 for x in &mut point[first..first + changed] {
@@ -154,17 +154,13 @@ fn hits_taken_back_were_never_there() {
             let probe = Located::new(&vec![9.0; dimension], radius);
             assert_eq!(archive.enter(probe, -1.0, 60, 0.0, true), Insertion::New);
             by_places += usize::from(archive.near.is_some());
-            let keep = if round % 20 == 19 {
-                0
-            } else {
-                left.len() - rng.below(left.len() / 2 + 1)
-            };
-            archive.truncate(keep);
-            left.truncate(keep);
-            assert_eq!((archive.solutions(), archive.probe_only()), (&left[..], 0));
+            assert_eq!(
+                (&archive.solutions()[..left.len()], archive.probe_only()),
+                (&left[..], 1)
+            );
             assert!(left.iter().all(|hit| archive.contains(hit) && archive.holds(hit)));
         }
-        assert_eq!(by_places > 100, dimension > 1);
+        assert_eq!(by_places > 20, dimension > 1, "{by_places}");
     }
 }
 

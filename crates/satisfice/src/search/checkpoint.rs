@@ -88,9 +88,12 @@ pub struct Unfinished<T> {
     pub trace: Vec<TracePoint>,
     /// Why it has ended, if it has only to be reported. Never a cancellation: that is what is resumed from.
     pub stop: Option<StopReason>,
-    /// The hits so far.
+    /// The hits so far; of one lane of several, those since the last exchange.
     #[serde(with = "packed")]
     pub archive: Archive<T>,
+    /// Of a lane that is sent by itself, the hits as of the last exchange.
+    #[serde(with = "packed")]
+    pub(super) listed: Arc<Archive<T>>,
     /// The least fitness so far, and where.
     pub best: Option<Best<T>>,
     /// The number of hits, to detect an incomplete list.
@@ -240,6 +243,14 @@ impl<S: Real> super::lane::Lane<S> {
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
+    /// A lane with the hits that all lanes share.
+    pub(super) fn save_alone(&self) -> Unfinished<T> {
+        Unfinished {
+            listed: self.ledger.archive.listed().cloned().unwrap_or_default(),
+            ..self.save()
+        }
+    }
+
     pub(super) fn save(&self) -> Unfinished<T> {
         let mut state = State::default();
         self.last.save(&mut state);
@@ -251,6 +262,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.sources.save(&mut state);
         self.next_row.save(&mut state);
         let ledger = &self.ledger;
+        // Of one lane of several, what it has found since the last exchange.
+        let hits = match ledger.unlisted {
+            Some(_) => ledger.archive.found(),
+            None => ledger.archive.all(),
+        };
         Unfinished {
             budget: Budget {
                 cancel: None,
@@ -260,10 +276,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             counts: self.counts(),
             trace: ledger.trace.clone(),
             stop: ledger.stop.filter(|&stop| stop != StopReason::Cancelled),
-            archive: ledger.archive.clone(),
+            archive: hits.clone(),
             best: ledger.best.get().cloned(),
-            hits: ledger.archive.len() as u64,
-            probe_only: ledger.archive.probe_only_indices(),
+            hits: hits.len() as u64,
+            probe_only: hits.probe_only_indices(),
+            listed: Arc::default(),
             unlisted: ledger.unlisted.clone(),
             state,
         }

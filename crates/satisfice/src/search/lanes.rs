@@ -10,6 +10,7 @@
 
 use core::ops::Range;
 use core::time::Duration;
+use std::sync::Arc;
 
 use super::lane::RunningLane;
 use super::slice::Slice;
@@ -141,13 +142,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         }
         self.progress.until = self.progress.until.saturating_add(self.progress.next_round);
         self.progress.next_round = (2 * self.progress.next_round).min(LONGEST_ROUND);
+        self.share(lanes.iter_mut().map(|lane| &mut lane.slice));
         for lane in lanes {
             lane.slice.pause = self.progress.until;
         }
     }
 
-    /// Moves the lanes' new hits into the common archive, in the order of the lanes, and from there into those of the other
-    /// lanes. Returns whether that was the last exchange, by the common limits or by an observer.
+    /// Moves the lanes' new hits into the common archive, in the order of the lanes. Returns whether that was the last exchange, by the common limits or by an observer.
     fn exchange(&mut self, lanes: &mut [RunningLane<S, T>], observer: &mut dyn Observer<T>) -> bool {
         let (common, progress) = (&mut self.common, &mut self.progress);
         // Hits that two lanes have found at the same time count as found twice.
@@ -161,23 +162,21 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         counts.duplicates += twice;
         common.ledger.sync_counts(counts, observer);
         common.record_sources(lanes.iter().map(|lane| lane.lane.engine.sources()));
-        let known = common.ledger.archive.len();
-        let mut finders = Vec::new();
-        let listed = self.list_found(lanes, &mut finders, observer);
+        // Until they are handed out again, nobody else holds the hits that are listed.
+        for lane in lanes.iter_mut() {
+            lane.slice.ledger.archive.set_listed(None);
+        }
+        common.ledger.archive.take_back();
+        let listed = self.list_found(lanes, observer);
         let Some(forgets) = listed.filter(|_| self.list_rejected(lanes, observer)) else {
             return true;
         };
         let common = &mut self.common.ledger;
         common.stop_if_stale();
         let over = common.stops_before_more();
-        // The engines are not told, but hits of other lanes are deleted for them: the lane that finds a cluster searches it.
-        // When engines were told, each lane searched around the hits of all.
         for (i, lane) in lanes.iter_mut().enumerate() {
             let ledger = &mut lane.slice.ledger;
-            if forgets[i] {
-                self.progress.proves[i] = false;
-                ledger.keep_listed(&common.archive);
-            }
+            self.progress.proves[i] &= !forgets[i];
             if !self.progress.proves[i] && ledger.stop == Some(StopReason::Covered) {
                 ledger.stop = Some(StopReason::Exhausted);
             }
@@ -185,29 +184,29 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
             if !over && ledger.stop == Some(StopReason::Hits) {
                 ledger.stop = None;
             }
-            let (now, seconds) = (ledger.counts.evaluations, ledger.clock.seen().as_secs_f64());
-            // Rejected hits, which come last, are new to all lanes.
-            let finders = finders.iter().copied().map(Some).chain(core::iter::repeat(None));
-            // At the end nobody will read them.
-            let read = if over { 0 } else { usize::MAX };
-            for (hit, finder) in common.archive.iter().skip(known).zip(finders).take(read) {
-                if finder != Some(i) {
-                    ledger
-                        .archive
-                        .insert(hit.solution.clone(), hit.fitness, now, seconds);
-                }
-            }
-            ledger.unlisted = Some(Unlisted::after(ledger.archive.len()));
+            ledger.archive.clear_found();
+            ledger.unlisted = Some(Unlisted::nothing());
         }
         over
     }
 
-    /// Lists what the lanes have found, with the finder of each new hit. Returns which of the lanes have found one that is not listed;
-    /// `None` at the limits.
+    /// Lets the lanes know of all hits that are listed. The engines are not told, but hits of other lanes are deleted for them: the lane
+    /// that finds a cluster searches it. When engines were told, each lane searched around the hits of all.
+    pub(super) fn share<'a>(&mut self, lanes: impl Iterator<Item = &'a mut Slice<S, T>>)
+    where
+        S: 'a,
+        T: 'a,
+    {
+        let listed = self.common.ledger.archive.share();
+        for lane in lanes {
+            lane.ledger.archive.set_listed(Some(Arc::clone(&listed)));
+        }
+    }
+
+    /// Lists what the lanes have found. Returns which of the lanes have found a hit that is not listed; `None` at the limits.
     fn list_found(
         &mut self,
         lanes: &[RunningLane<S, T>],
-        finders: &mut Vec<usize>,
         observer: &mut dyn Observer<T>,
     ) -> Option<Vec<bool>> {
         let common = &mut self.common.ledger;
@@ -217,15 +216,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
             if let Some(best) = ledger.best.get() {
                 common.offer_from_lane(best);
             }
-            for hit in ledger.archive.iter().skip(ledger.listed()) {
+            for hit in ledger.archive.found().iter() {
                 if common.stops_before_more() {
                     return None;
                 }
-                if common.insert_from_lane(hit.solution, hit.fitness, observer) {
-                    finders.push(i);
-                } else {
+                if !common.insert_from_lane(hit.solution, hit.fitness, observer) {
                     common.counts.duplicates += 1;
-                    forgets[i] |= !common.archive.holds(hit.solution);
+                    forgets[i] |= !common.archive.all().holds(hit.solution);
                 }
             }
         }

@@ -35,8 +35,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         self.shared_calls = slice.ledger.shared_calls();
         self.in_full_batches = slice.ledger.in_full_batches;
         let mut report = self.describe(problem, &slice, times);
-        slice.ledger.archive.rest();
-        self.previous = Arc::new(slice.ledger.archive);
+        let mut archive = slice.ledger.archive.into_all();
+        archive.rest();
+        self.previous = Arc::new(archive);
         report.archive = Arc::clone(&self.previous);
         self.slices += 1;
         report
@@ -54,12 +55,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         // A hit that only a probe found contradicts an engine that says it has covered everything; so does a bound above F.
         let calls = counts.bound_calls;
         let proved = stop_reason == StopReason::Covered
-            && slice.ledger.archive.probe_only() == 0
+            && slice.ledger.archive.all().probe_only() == 0
             && !(calls > 0 && is_contradicted(problem, &slice.ledger, calls));
         let unseen = if proved {
             Some(Unseen::nothing(slice.probes.count()))
         } else {
-            slice.probes.estimate(problem, &slice.ledger.archive)
+            slice.probes.estimate(problem, slice.ledger.archive.all())
         };
         Report {
             problem: problem.description(),

@@ -13,6 +13,7 @@ use super::slice::Slice;
 use super::stage::{Pending, Stage};
 use super::stepper::Stepper;
 use crate::accounting::Reached;
+use crate::archive::KnownHits;
 use crate::best::BestSoFar;
 use crate::budget::Cancel;
 use crate::engine::ConfiguredEngine;
@@ -188,7 +189,7 @@ pub(super) fn restore<S: Real, T: Identity + Clone + Send + Sync>(
     let (slices, exchange) = match saved.exchange {
         None => (vec![reported], None),
         Some((slices, progress)) if progress.fits(lanes.len()) => {
-            let slices = slices
+            let mut slices = slices
                 .into_iter()
                 .map(|slice| Slice::restore(slice, dimension, previous))
                 .collect::<Result<Vec<_>, Error>>()?;
@@ -196,7 +197,11 @@ pub(super) fn restore<S: Real, T: Identity + Clone + Send + Sync>(
                 return Err(misfit());
             }
             let common = reported;
-            (slices, Some(Exchange { common, progress }))
+            let mut exchange = Exchange { common, progress };
+            if exchange.is_searching() {
+                exchange.share(slices.iter_mut());
+            }
+            (slices, Some(exchange))
         }
         Some(_) => return Err(misfit()),
     };
@@ -250,16 +255,13 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         {
             return Err(Error::State("its list of hits is not complete".to_owned()));
         }
-        let unlisted = saved.unlisted;
-        if unlisted
-            .as_ref()
-            .is_some_and(|unlisted| unlisted.listed > archive.len())
-        {
-            return Err(Error::State("its list of hits is not complete".to_owned()));
+        let mut hits = KnownHits::from(archive);
+        if saved.unlisted.is_some() {
+            hits.set_listed(Some(saved.listed).filter(|listed| !listed.is_empty()));
         }
         let reached = Reached {
             counts: saved.counts,
-            archive,
+            archive: hits,
             best: BestSoFar::from(saved.best),
             trace: saved.trace,
             stop: saved.stop,
@@ -268,7 +270,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let mut slice = Self::begin(&saved.budget, dimension, probes, from..to, reached);
         slice.last = last;
         slice.starts = starts;
-        slice.ledger.unlisted = unlisted;
+        slice.ledger.unlisted = saved.unlisted;
         (slice.sources, slice.next_row) = (sources, next_row);
         if let Some(pending) = pending {
             slice.stage = Stage::Repeat(pending);

@@ -29,8 +29,8 @@ use crate::scalar::Real;
 /// was lost with its worker is run again from the same data, and gives the same. Under a budget of evaluations the report is
 /// that of [`Search::run`], but for times, wherever the islands run.
 ///
-/// A round is 256 evaluations of each island, then 512, then 1,024. What is sent holds the hits that the island knows and the
-/// state of its engine.
+/// A round is 256 evaluations of each island, then 512, then 1,024. What is sent holds the hits that all islands know and the
+/// state of the island's engine; what is sent back, the hits of the round in their place.
 ///
 /// ```
 /// use satisfice::{engine, from_fn, Budget, IslandRound, Rounds, Search, Space};
@@ -226,7 +226,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
     /// What the islands have to do: those that have not reached the exchange. If all have, they exchange their hits, of which
     /// the observer is told, and begin the next round. None once the islands have ended.
     ///
-    /// Cost: a copy of each island's hits and of its engine's state.
+    /// Cost: a copy of the state of each island's engine, and of its hits since the last exchange.
     pub fn round(&mut self, observer: &mut dyn Observer<P::Solution>) -> Vec<IslandRound<P::Solution>> {
         let Running {
             lanes,
@@ -248,7 +248,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
             let mut state = self.search.kept.save(None);
             state.contents.islands = 1;
             state.contents.lanes = vec![lane.lane.save()];
-            state.contents.unfinished = Some(lane.slice.save());
+            state.contents.unfinished = Some(lane.slice.save_alone());
             let until = lane.slice.pause;
             IslandRound { island, until, state }.at(elapsed)
         })
@@ -270,15 +270,15 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
             return Err(misfit());
         };
         let place = self.running.lanes.get_mut(done.island).ok_or_else(misfit)?;
-        let listed = |lane: &RunningLane<_, _>| lane.slice.ledger.listed();
         let fits = exchange.is_searching()
             && place.slice.pause == done.until
             && exchange.is_due(core::slice::from_ref(&lane))
-            && lane.slice.ledger.archive.len() >= place.slice.ledger.archive.len()
-            && listed(&lane) == listed(place);
+            && lane.slice.ledger.archive.found().len() >= place.slice.ledger.archive.found().len();
         if !fits {
             return Err(misfit());
         }
+        let listed = place.slice.ledger.archive.listed().cloned();
+        lane.slice.ledger.archive.set_listed(listed);
         *place = lane;
         Ok(())
     }

@@ -213,7 +213,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             problem,
             &self.batch,
             &self.candidates.outcomes,
-            &self.ledger.archive,
+            self.ledger.archive.all(),
         );
         self.ledger.counts.probes = self.probes.count();
     }

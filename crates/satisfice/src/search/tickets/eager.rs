@@ -317,7 +317,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 }
             }
             Of::Probe => {
-                let (batch, archive) = (Batch::of_one(position), &self.slice.ledger.archive);
+                let (batch, archive) = (Batch::of_one(position), self.slice.ledger.archive.all());
                 self.slice.probes.take(problem, &batch, &[outcome], archive);
                 self.slice.ledger.counts.probes = self.slice.probes.count();
             }

@@ -349,7 +349,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
     /// The hits so far; ordered, with several lanes, those of their last exchange.
     #[must_use]
     pub fn hits(&self) -> &Archive<P::Solution> {
-        &self.slice().ledger.archive
+        self.slice().ledger.archive.all()
     }
 
     /// What was counted so far.
@@ -435,7 +435,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
                     .record(evaluations, lanes.map(|lane| lane.lane.engine.sources()));
             }
         }
-        let mut archive = slice.ledger.archive.clone();
+        let mut archive = slice.ledger.archive.all().clone();
         archive.rest();
         report.archive = Arc::new(archive);
         report
