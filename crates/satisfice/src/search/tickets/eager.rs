@@ -24,6 +24,7 @@ use crate::seed::SearchRng;
 use crate::view::View;
 
 use super::Told;
+use super::agenda::{Agenda, Next};
 use super::lane::{EagerLane, Of, Open};
 use super::out::PointsOut;
 
@@ -34,6 +35,7 @@ const FRUITLESS: usize = 100;
 pub(super) struct Eager<S, T> {
     pub(super) slice: Slice<S, T>,
     pub(super) lanes: Vec<EagerLane<S>>,
+    pub(super) agenda: Agenda,
     pub(super) open: BTreeMap<u64, Open<S, T>>,
     pub(super) points_out: PointsOut,
     /// Probes that are to be given out, and how many are out.
@@ -64,6 +66,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         let mut eager = Self {
             slice,
             lanes: Vec::new(),
+            agenda: Agenda::default(),
             open: BTreeMap::new(),
             points_out: PointsOut::default(),
             probes: VecDeque::new(),
@@ -86,6 +89,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 .tell(&view, &Batch::of_one(position), &[*outcome], *origin);
         }
         self.lanes.push(EagerLane::new(lane, problem.space().dimension()));
+        self.agenda.note(&self.lanes, self.lanes.len() - 1);
     }
 
     /// Gives out the next solution under a number; `None` if others have to be answered first or the slice is over.
@@ -119,6 +123,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             } else {
                 if let Of::Lane { lane, .. } = of {
                     self.lanes[lane].progress.out += 1;
+                    self.agenda.note(&self.lanes, lane);
                 }
                 self.probes_out += usize::from(matches!(of, Of::Probe));
                 let open = Open {
@@ -143,7 +148,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
 
     /// Why the slice ends when no lane has more to propose and nothing is out.
     fn verdict(&self) -> Option<StopReason> {
-        if self.lanes.iter().any(EagerLane::has_covered) {
+        if self.agenda.first(Next::Covered).is_some() {
             let proved = !self.has_gaps;
             return Some(if proved {
                 StopReason::Covered
@@ -151,8 +156,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 StopReason::Exhausted
             });
         }
-        let ended = self.lanes.iter().all(EagerLane::has_ended);
-        ended.then_some(StopReason::Exhausted)
+        self.agenda.has_ended().then_some(StopReason::Exhausted)
     }
 
     /// The next candidate.
@@ -197,10 +201,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     fn point(&mut self, problem: &AnyProblem<'_, S, T>, kept: &KeptSearch<S, T>) -> Option<(Vec<S>, Of)> {
         let previous = &*kept.previous;
         loop {
-            if self.lanes.iter().any(EagerLane::has_covered) {
+            if self.agenda.first(Next::Covered).is_some() {
                 return None;
             }
-            if let Some(lane) = self.lanes.iter().position(EagerLane::has_points) {
+            if let Some(lane) = self.agenda.first(Next::Point) {
                 let EagerLane { batch, progress, .. } = &mut self.lanes[lane];
                 let place = progress.next;
                 progress.next += 1;
@@ -209,19 +213,20 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                     batch: progress.number,
                     place,
                 };
-                return Some((batch.point(place).to_vec(), of));
+                let position = batch.point(place).to_vec();
+                self.agenda.note(&self.lanes, lane);
+                return Some((position, of));
             }
             if self.slice.ledger.is_over() {
                 return None; // by calls of bounds
             }
-            if let Some(lane) = self.lanes.iter().position(EagerLane::is_ready) {
+            if let Some(lane) = self.agenda.first(Next::Ask) {
                 self.ask(lane, problem, previous);
-            } else if let Some(lane) = self.lanes.iter().position(EagerLane::can_be_closed) {
+            } else if let Some(lane) = self.agenda.first(Next::Tell) {
                 self.tell_batch(lane, problem, previous);
             } else if self.lanes.len() < MOST_LANES
-                && self.lanes.iter().all(|lane| {
-                    lane.progress.last == Ask::More && lane.lane.engine.answers() == Answers::ByBatch
-                })
+                && self.agenda.first(Next::End).is_none()
+                && self.lanes[0].lane.engine.answers() == Answers::ByBatch
                 && let Ok(engine) = kept.engine.build()
             {
                 let rng = SearchRng::stream(kept.seed, self.lanes.len() as u64);
@@ -233,12 +238,12 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
     }
 
     /// Asks a lane for its next batch.
-    fn ask(&mut self, lane: usize, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
+    fn ask(&mut self, number: usize, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let EagerLane {
             lane,
             batch,
             progress,
-        } = &mut self.lanes[lane];
+        } = &mut self.lanes[number];
         let slice = &mut self.slice;
         batch.clear();
         let view = View {
@@ -267,20 +272,22 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         if progress.idle >= EMPTY_ASKS && progress.last == Ask::More {
             progress.last = Ask::Exhausted;
         }
+        self.agenda.note(&self.lanes, number);
     }
 
     /// Tells a lane's engine what is known of its batch.
-    fn tell_batch(&mut self, lane: usize, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
+    fn tell_batch(&mut self, number: usize, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let EagerLane {
             lane,
             batch,
             progress,
-        } = &mut self.lanes[lane];
+        } = &mut self.lanes[number];
         progress.told = true;
         if lane.engine.answers() != Answers::AnyOrder {
             let view = self.slice.view(problem, previous);
             lane.engine.tell(&view, batch, &progress.outcomes, Origin::Engine);
         }
+        self.agenda.note(&self.lanes, number);
         let engines = self.lanes.iter().map(|lane| lane.lane.engine.sources());
         self.slice.record_sources(engines);
     }
@@ -366,6 +373,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             Of::Lane { lane, batch, .. } => {
                 let progress = &mut self.lanes[lane].progress;
                 progress.out -= usize::from(batch == progress.number);
+                self.agenda.note(&self.lanes, lane);
             }
             Of::Verified | Of::Start => {}
         }
@@ -400,19 +408,21 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
 
     /// Whether restored parts fit each other.
     pub(super) fn fits(&self, dimension: usize) -> bool {
-        let of_lane = |number: usize, lane: &EagerLane<S>| {
-            let out = self.open.values().filter(|open| {
-                matches!(open.of, Of::Lane { lane: of, batch, .. } if of == number && batch == lane.progress.number)
-            });
-            out.count() == lane.progress.out
-        };
+        let mut out = vec![0; self.lanes.len()];
+        for open in self.open.values() {
+            if let Of::Lane { lane, batch, .. } = open.of
+                && batch == self.lanes[lane].progress.number
+            {
+                out[lane] += 1;
+            }
+        }
         let probes = self.open.values().filter(|open| matches!(open.of, Of::Probe));
         !self.lanes.is_empty()
             && self
                 .lanes
                 .iter()
-                .enumerate()
-                .all(|(number, lane)| of_lane(number, lane))
+                .zip(out)
+                .all(|(lane, out)| lane.progress.out == out)
             && probes.count() == self.probes_out
             && self
                 .probes

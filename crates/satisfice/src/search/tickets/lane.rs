@@ -5,6 +5,8 @@ use crate::engine::{Answers, Ask};
 use crate::scalar::Real;
 use crate::search::lane::Lane;
 
+use super::agenda::Next;
+
 /// An open ticket.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct Open<S, T> {
@@ -82,32 +84,31 @@ impl<S: Real> EagerLane<S> {
         })
     }
 
-    pub(super) fn has_points(&self) -> bool {
+    fn has_points(&self) -> bool {
         self.progress.next < self.batch.len()
     }
 
-    pub(super) fn has_ended(&self) -> bool {
-        !self.has_points() && self.progress.last != Ask::More
+    /// What it can do next.
+    pub(super) fn next(&self) -> Next {
+        let progress = &self.progress;
+        if self.has_points() {
+            return Next::Point;
+        }
+        match progress.last {
+            Ask::Covered => Next::Covered,
+            Ask::Exhausted => Next::End,
+            Ask::More if progress.told => Next::Ask,
+            Ask::More if self.can_be_told() => Next::Tell,
+            Ask::More => Next::Wait,
+        }
     }
 
-    /// Whether every point of the space has been given out.
-    pub(super) fn has_covered(&self) -> bool {
-        !self.has_points() && self.progress.last == Ask::Covered
-    }
-
-    /// Whether it can be asked for the next batch.
-    pub(super) fn is_ready(&self) -> bool {
-        self.progress.told && !self.has_points() && self.progress.last == Ask::More
-    }
-
-    /// Whether the batch can be told without the answers that are awaited.
-    pub(super) fn can_be_closed(&self) -> bool {
-        let (out, all) = (self.progress.out, self.batch.len());
-        let enough = match self.lane.engine.answers() {
-            Answers::ByBatch => 2 * out <= all,
+    /// Whether the engine can take the batch without the answers that are awaited.
+    fn can_be_told(&self) -> bool {
+        match self.lane.engine.answers() {
+            Answers::ByBatch => 2 * self.progress.out <= self.batch.len(),
             Answers::Alone | Answers::AnyOrder => true,
-        };
-        !self.progress.told && !self.has_points() && self.progress.last == Ask::More && enough
+        }
     }
 }
 

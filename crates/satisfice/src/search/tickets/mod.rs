@@ -1,5 +1,6 @@
 //! A slice whose evaluations happen elsewhere and are answered in any order.
 
+mod agenda;
 mod contents;
 mod eager;
 mod lane;

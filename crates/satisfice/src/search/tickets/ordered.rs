@@ -1,5 +1,7 @@
 //! Answers that reach the engines in the order asked: each lane has a batch out, which is settled when it is complete.
 
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
 use crate::archive::Archive;
 use crate::budget::StopReason;
 use crate::engine::Origin;
@@ -15,7 +17,15 @@ use super::Told;
 /// A slice with its batches that are out.
 pub(super) struct Ordered<S, T> {
     pub(super) running: Running<S, T>,
-    pub(super) out: Vec<Out<S>>,
+    /// Batches that are out, by the order in which they were proposed.
+    out: BTreeMap<u64, Out<S>>,
+    proposed: u64,
+    /// Of which batch each open ticket is.
+    open: BTreeMap<u64, u64>,
+    /// Batches of which not all has been given out.
+    free: VecDeque<u64>,
+    /// Lanes that may have something to propose: they have no batch out, and have not said since the last exchange that they pause.
+    idle: BTreeSet<usize>,
     /// Values from elsewhere that wait for a batch to be settled, with their positions.
     pub(super) informed: Vec<(T, S, Vec<S>)>,
     /// Whether a proposal was forgotten: then nothing is proved.
@@ -44,6 +54,18 @@ pub(super) enum Answer<S> {
 }
 
 impl<S: Real> Out<S> {
+    /// Whether not all of it has been given out.
+    fn has_more(&self) -> bool {
+        self.tickets.len() < self.answers.len()
+    }
+
+    /// Its open tickets.
+    fn open(&self) -> impl Iterator<Item = u64> {
+        let pairs = self.tickets.iter().zip(&self.answers);
+        let open = pairs.filter(|&(_, answer)| *answer == Answer::Awaited);
+        open.map(|(&ticket, _)| ticket)
+    }
+
     fn is_answered(&self) -> bool {
         !self.answers.contains(&Answer::Awaited)
     }
@@ -60,8 +82,12 @@ impl<S: Real> Out<S> {
 impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     pub(super) fn new(running: Running<S, T>) -> Self {
         Self {
+            out: BTreeMap::new(),
+            proposed: 0,
+            open: BTreeMap::new(),
+            free: VecDeque::new(),
+            idle: (0..running.lanes.len()).collect(),
             running,
-            out: Vec::new(),
             informed: Vec::new(),
             has_gaps: false,
             unused: 0,
@@ -76,14 +102,15 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         previous: &Archive<T>,
     ) -> Option<T> {
         loop {
-            let free = self
-                .out
-                .iter_mut()
-                .find(|out| out.tickets.len() < out.answers.len());
-            if let Some(out) = free {
+            while let Some(&batch) = self.free.front() {
+                let Some(out) = self.out.get_mut(&batch).filter(|out| out.has_more()) else {
+                    self.free.pop_front();
+                    continue;
+                };
                 let slice = self.running.slice_at(out.turn)?;
                 let solution = slice.candidates.live().get(out.tickets.len())?.clone();
                 out.tickets.push(number);
+                self.open.insert(number, batch);
                 return Some(solution);
             }
             let proposed = self.propose(problem, previous);
@@ -99,14 +126,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         let Running { lanes, exchange } = &mut self.running;
         let searching = exchange.as_ref().is_none_or(Exchange::is_searching);
         if searching {
-            let out = &self.out;
-            let next = (0..lanes.len()).find(|&lane| {
-                out.iter().all(|out| out.turn != Turn::Lane(lane))
-                    && lanes[lane].propose(problem, previous, None)
-            });
-            if let Some(lane) = next {
-                self.register(Turn::Lane(lane), problem, previous);
-                return true;
+            while let Some(lane) = self.idle.pop_first() {
+                if lanes[lane].propose(problem, previous, None) {
+                    self.register(Turn::Lane(lane), problem, previous);
+                    return true;
+                }
             }
         }
         let (Some(exchange), true) = (exchange, self.out.is_empty()) else {
@@ -114,6 +138,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         };
         if searching {
             exchange.between_rounds(lanes, &mut ());
+            self.idle = (0..lanes.len()).collect();
             return true;
         }
         let probes = exchange.propose_probes(problem);
@@ -148,13 +173,24 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         let live = slice.candidates.live().len();
         if live == 0 {
             self.running.settle(turn, problem, previous, &mut ());
+            self.is_free(turn);
         } else {
             slice.ledger.goes_out();
-            self.out.push(Out {
+            let out = Out {
                 turn,
                 tickets: Vec::new(),
                 answers: vec![Answer::Awaited; live],
-            });
+            };
+            self.out.insert(self.proposed, out);
+            self.free.push_back(self.proposed);
+            self.proposed += 1;
+        }
+    }
+
+    /// Notes that a lane, if it was one, has no batch out any more.
+    fn is_free(&mut self, turn: Turn) {
+        if let Turn::Lane(lane) = turn {
+            self.idle.insert(lane);
         }
     }
 
@@ -176,25 +212,31 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             (Turn::Probes, Some(exchange)) => exchange.propose_probes(problem),
             (Turn::Probes, None) | (Turn::Over, _) => false,
         };
-        let before = self.out.len();
+        let batch = self.proposed;
         if proposed {
+            if let Turn::Lane(lane) = out.turn {
+                self.idle.remove(&lane);
+            }
             self.register(out.turn, problem, previous);
         }
-        let fits = self.out.len() == before + 1
-            && self.out[before].answers.len() == out.answers.len()
+        let Some(registered) = self.out.get_mut(&batch) else {
+            return false;
+        };
+        let fits = registered.answers.len() == out.answers.len()
             && out.tickets.len() <= out.answers.len()
             && out.tickets.is_sorted_by(|a, b| a < b);
         if fits {
-            self.out[before] = out;
+            self.open.extend(out.open().map(|ticket| (ticket, batch)));
+            *registered = out;
         }
         fits
     }
 
-    fn find(&self, number: u64) -> Option<(usize, usize)> {
-        self.out.iter().enumerate().find_map(|(at, out)| {
-            let slot = out.tickets.binary_search(&number).ok()?;
-            (out.answers[slot] == Answer::Awaited).then_some((at, slot))
-        })
+    /// The batch of an open ticket, and its place there.
+    fn find(&self, number: u64) -> Option<(u64, usize)> {
+        let batch = *self.open.get(&number)?;
+        let place = self.out.get(&batch)?.tickets.binary_search(&number);
+        Some((batch, place.ok()?))
     }
 
     /// Takes a value, or forgets a ticket; `None` if it is not open.
@@ -205,11 +247,14 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         problem: &AnyProblem<'_, S, T>,
         previous: &Archive<T>,
     ) -> Option<Told> {
-        let (at, slot) = self.find(number)?;
+        let (batch, place) = self.find(number)?;
+        self.open.remove(&number);
         self.has_gaps |= value.is_none();
-        self.out[at].answers[slot] = value.map_or(Answer::Forgotten, Answer::Value);
-        if self.out[at].is_answered() {
-            let out = self.out.remove(at);
+        let out = self.out.get_mut(&batch)?;
+        out.answers[place] = value.map_or(Answer::Forgotten, Answer::Value);
+        if out.is_answered()
+            && let Some(out) = self.out.remove(&batch)
+        {
             self.settle(&out, problem, previous);
         }
         Some(Told::Taken)
@@ -224,6 +269,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             slice.ledger.evaluated_elsewhere(values);
         }
         self.running.settle(out.turn, problem, previous, &mut ());
+        self.is_free(out.turn);
         self.unused += (before + values as u64).saturating_sub(self.fitness_values(out.turn));
         self.withdraw_proofs();
         self.enter_informed(problem, previous);
@@ -253,7 +299,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     fn enter_informed(&mut self, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) {
         let searching = self.running.exchange.as_ref().is_none_or(Exchange::is_searching);
         let turn = if searching { Turn::Lane(0) } else { Turn::Probes };
-        if self.out.iter().any(|out| out.turn == turn) {
+        if self.informed.is_empty() || self.out.values().any(|out| out.turn == turn) {
             return;
         }
         for (solution, value, position) in core::mem::take(&mut self.informed) {
@@ -275,37 +321,31 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
     }
 
     pub(super) fn open(&self) -> usize {
-        self.out
-            .iter()
-            .flat_map(|out| &out.answers[..out.tickets.len()])
-            .filter(|&answer| *answer == Answer::Awaited)
-            .count()
+        self.open.len()
     }
 
     pub(super) fn pending(&self) -> Vec<u64> {
-        let given = |out: &Out<S>| {
-            let pairs = out.tickets.iter().zip(&out.answers);
-            let open = pairs.filter(|&(_, answer)| *answer == Answer::Awaited);
-            open.map(|(&ticket, _)| ticket).collect::<Vec<_>>()
-        };
-        let mut numbers: Vec<u64> = self.out.iter().flat_map(given).collect();
-        numbers.sort_unstable();
-        numbers
+        self.open.keys().copied().collect()
+    }
+
+    /// The batches that are out, to be saved.
+    pub(super) fn batches(&self) -> Vec<Out<S>> {
+        self.out.values().cloned().collect()
     }
 
     pub(super) fn solution(&self, number: u64) -> Option<&T> {
-        let (at, slot) = self.find(number)?;
-        let slice = match (self.out[at].turn, &self.running.exchange) {
+        let (batch, place) = self.find(number)?;
+        let slice = match (self.out.get(&batch)?.turn, &self.running.exchange) {
             (Turn::Lane(lane), _) => &self.running.lanes.get(lane)?.slice,
             (Turn::Probes, Some(exchange)) => &exchange.common,
             (Turn::Probes, None) | (Turn::Over, _) => return None,
         };
-        slice.candidates.live().get(slot)
+        slice.candidates.live().get(place)
     }
 
     /// Enters the answers of batches that are not complete, and ends the slice.
     pub(super) fn finish(mut self, problem: &AnyProblem<'_, S, T>, previous: &Archive<T>) -> Running<S, T> {
-        for out in core::mem::take(&mut self.out) {
+        for out in core::mem::take(&mut self.out).into_values() {
             self.settle(&out, problem, previous);
         }
         let Running { lanes, exchange } = &mut self.running;

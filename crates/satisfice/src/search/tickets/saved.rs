@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::agenda::Agenda;
 use super::contents::SavedTickets;
 use super::lane::{EagerLane, Open};
 use super::ordered::{Ordered, Out};
@@ -28,7 +29,7 @@ impl<P: SatisficingProblem + ?Sized> Tickets<P> {
         let (mut checkpoint, state) = match &self.state {
             Inner::Ordered(ordered) => {
                 let mut state = State::default();
-                ordered.out.save(&mut state);
+                ordered.batches().save(&mut state);
                 let waiting = ordered.informed.iter();
                 informed
                     .extend(waiting.map(|(solution, value, _)| (solution.clone(), ValueBits::of(*value))));
@@ -190,6 +191,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
         }
         let eager = Self {
             slice,
+            agenda: Agenda::of(&restored),
             lanes: restored,
             open: tickets,
             points_out: super::out::PointsOut::default(),
