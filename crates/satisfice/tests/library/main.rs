@@ -2,6 +2,7 @@
 
 mod axes;
 mod best;
+mod checkpoint;
 mod closures;
 mod equations;
 mod isolated_hits;
