@@ -55,18 +55,22 @@ fn contest<P: Catalogued<Scalar = f64>>(settings: &[(&str, &str)]) -> [f64; 4] {
 /// seed to seed: it is only asked to win over all problems together, by the geometric mean.
 #[test]
 fn latest_hits_lead_where_hits_cluster() {
-    let results = [
-        contest::<Falsification>(&[]),
-        contest::<SallenKey>(&[]),
-        contest::<Arm>(&[]),
-        contest::<Arm>(&[("links", "5")]),
-        contest::<SevenJoints>(&[]),
-        contest::<Islands>(&[]),
-        contest::<Rastrigin>(&[]),
-        contest::<Rastrigin>(&[("dimension", "3")]),
-        contest::<Shell>(&[]),
-        contest::<Queens>(&[]),
+    let contests: [fn() -> [f64; 4]; 10] = [
+        || contest::<Falsification>(&[]),
+        || contest::<SallenKey>(&[]),
+        || contest::<Arm>(&[]),
+        || contest::<Arm>(&[("links", "5")]),
+        || contest::<SevenJoints>(&[]),
+        || contest::<Islands>(&[]),
+        || contest::<Rastrigin>(&[]),
+        || contest::<Rastrigin>(&[("dimension", "3")]),
+        || contest::<Shell>(&[]),
+        || contest::<Queens>(&[]),
     ];
+    let results = std::thread::scope(|scope| {
+        let running = contests.map(|contest| scope.spawn(contest));
+        running.map(|contest| contest.join().unwrap())
+    });
     let (mut over_best, mut over_uniform) = (0.0, 0.0);
     for [paper, family, best, uniform] in results {
         assert!(family > 1.5 * best && family > 1.5 * uniform, "{results:?}");

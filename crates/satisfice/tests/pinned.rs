@@ -214,8 +214,13 @@ fn pinned(name: &str) -> String {
 fn every_engine_proposes_the_points_that_are_written_down() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pinned");
     let mut changed = Vec::new();
-    for spec in engine::all() {
-        let (now, file) = (pinned(spec.name), folder.join(format!("{}.txt", spec.name)));
+    let texts: Vec<String> = std::thread::scope(|scope| {
+        let all = engine::all().iter();
+        let running: Vec<_> = all.map(|spec| scope.spawn(|| pinned(spec.name))).collect();
+        running.into_iter().map(|text| text.join().unwrap()).collect()
+    });
+    for (spec, now) in engine::all().iter().zip(texts) {
+        let file = folder.join(format!("{}.txt", spec.name));
         if std::env::var_os("UPDATE").is_some() {
             std::fs::write(&file, &now).unwrap();
         }
