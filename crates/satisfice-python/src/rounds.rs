@@ -102,6 +102,7 @@ impl Rounds {
     /// Exchanges hits if all islands are there for it; returns those that have to run next.
     fn round(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
         self.with(py, |inner, rounds| {
+            inner.due.clear(); // what they hold of all hits would be copied
             inner.due = rounds.round(&mut ());
             Ok(inner.due.iter().map(IslandRound::island).collect())
         })

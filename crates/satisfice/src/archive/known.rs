@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Archive, Insertion, Mark};
+use super::{Archive, Hit, Insertion, Mark};
 use crate::identity::Identity;
 
 /// The hits that a slice knows. Lanes share what they have listed at their last exchange, so that memory does not grow by the number of
@@ -33,6 +33,12 @@ impl<T> KnownHits<T> {
             Some(listed) if self.found.is_empty() => listed,
             _ => &self.found,
         }
+    }
+
+    /// The hits, those that all lanes share first.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Hit<'_, T>> {
+        let listed = self.listed.iter().flat_map(|listed| listed.iter());
+        listed.chain(self.found.iter())
     }
 
     /// What was found since the last exchange.
@@ -231,6 +237,7 @@ mod tests {
                 (known.listed_count(), known.found().len()),
                 (shared_hits, one.len() - shared_hits)
             );
+            assert!(known.iter().eq(one.iter()));
             assert_eq!(known.into_all().solutions(), one.solutions());
         }
     }

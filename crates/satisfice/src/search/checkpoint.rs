@@ -208,7 +208,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         };
         let exchange = running.and_then(|running| {
             let exchange = running.exchange.as_ref()?;
-            let slices = running.lanes.iter().map(|lane| lane.slice.save());
+            let slices = running.lanes.iter().map(|lane| lane.slice.save_lane());
             Some((slices.collect(), exchange.progress.to_go_on()))
         });
         Checkpoint {
@@ -243,10 +243,10 @@ impl<S: Real> super::lane::Lane<S> {
 }
 
 impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
-    /// A lane with the hits that all lanes share.
-    pub(super) fn save_alone(&self) -> Unfinished<T> {
+    /// One of several lanes, beside the slice that has the hits that all share.
+    fn save_lane(&self) -> Unfinished<T> {
         Unfinished {
-            listed: self.ledger.archive.listed().cloned().unwrap_or_default(),
+            listed: Arc::default(),
             ..self.save()
         }
     }
@@ -262,10 +262,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.sources.save(&mut state);
         self.next_row.save(&mut state);
         let ledger = &self.ledger;
-        // Of one lane of several, what it has found since the last exchange.
-        let hits = match ledger.unlisted {
-            Some(_) => ledger.archive.found(),
-            None => ledger.archive.all(),
+        let is_lane = ledger.unlisted.is_some();
+        let (hits, listed) = match ledger.archive.listed().filter(|_| is_lane) {
+            Some(listed) => (ledger.archive.found(), Arc::clone(listed)),
+            None => (ledger.archive.all(), Arc::default()),
         };
         Unfinished {
             budget: Budget {
@@ -280,7 +280,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
             best: ledger.best.get().cloned(),
             hits: hits.len() as u64,
             probe_only: hits.probe_only_indices(),
-            listed: Arc::default(),
+            listed,
             unlisted: ledger.unlisted.clone(),
             state,
         }

@@ -32,7 +32,7 @@ pub(super) fn is_contradicted<S: Real, T: Identity + Clone + Send + Sync>(
         (excludes_a_hit || is_far, calls < CALLS + made / SHARE)
     };
     let best = ledger.best.get().map(|best| (&best.solution, best.fitness));
-    let hits = ledger.archive.all().iter().map(|hit| (hit.solution, hit.fitness));
+    let hits = ledger.archive.iter().map(|hit| (hit.solution, hit.fitness));
     let mut region = space.region();
     for (solution, fitness) in best.into_iter().chain(hits) {
         let mut values = region.lower.clone();

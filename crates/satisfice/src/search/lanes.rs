@@ -148,7 +148,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Exchange<S, T> {
         }
     }
 
-    /// Moves the lanes' new hits into the common archive, in the order of the lanes. Returns whether that was the last exchange, by the common limits or by an observer.
+    /// Moves the lanes' new hits into the common archive, in the order of the lanes. Returns whether that was the last exchange, by
+    /// the common limits or by an observer.
     fn exchange(&mut self, lanes: &mut [RunningLane<S, T>], observer: &mut dyn Observer<T>) -> bool {
         let (common, progress) = (&mut self.common, &mut self.progress);
         // Hits that two lanes have found at the same time count as found twice.

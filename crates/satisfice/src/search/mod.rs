@@ -177,7 +177,7 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     ///
     /// The number of islands is part of the search, like a seed. A hit is listed when the islands exchange: after 256
     /// evaluations of each, then 512, then every 1,024. It carries the evaluation count and the time of the exchange. Each
-    /// island has an archive of its own, so memory grows with their number. Where points within a separation are one answer, two islands may find
+    /// island has a state of its own; the hits are there once. Where points within a separation are one answer, two islands may find
     /// two such points between two exchanges, and one is listed: that of the island that comes first. Every hit that was evaluated is the same as a
     /// listed one, unless a limit ends the slice at an exchange. An island that has covered a part of the space by a hit that is not listed
     /// proves nothing from then on; the first island always can. Random numbers are streams of one seed; the first

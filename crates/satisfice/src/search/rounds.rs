@@ -140,7 +140,10 @@ impl<T: Identity + Clone + Send + Sync> IslandRound<T> {
                 lane.slice.ledger.stop = Some(StopReason::Time);
             }
         }
-        let state = stepper.checkpoint();
+        let mut state = stepper.checkpoint();
+        if let Some(slice) = &mut state.contents.unfinished {
+            slice.listed = Arc::default(); // whoever takes the round has them
+        }
         Ok(Self { state, ..self })
     }
 
@@ -248,7 +251,7 @@ impl<P: SatisficingProblem + ?Sized> Rounds<P> {
             let mut state = self.search.kept.save(None);
             state.contents.islands = 1;
             state.contents.lanes = vec![lane.lane.save()];
-            state.contents.unfinished = Some(lane.slice.save_alone());
+            state.contents.unfinished = Some(lane.slice.save());
             let until = lane.slice.pause;
             IslandRound { island, until, state }.at(elapsed)
         })

@@ -5,8 +5,8 @@
 use std::time::Duration;
 
 use satisfice::{
-    Budget, Cancel, Error, IslandRound, Located, Report, Rounds, SatisficingProblem, Search, Space,
-    StopReason, engine, from_fn,
+    Budget, Cancel, Error, IslandRound, Located, Report, Rounds, RunOptions, SatisficingProblem, Search,
+    Space, StopReason, engine, from_fn,
 };
 
 type Island = IslandRound<Located<f64>>;
@@ -204,4 +204,28 @@ fn what_does_not_fit_is_refused() {
         "it is of the round before"
     );
     assert!(rounds.tell_probes(&[1.0]).is_err());
+}
+
+/// What one island does is saved by itself and goes on, past its round: it still has the hits that all islands know.
+#[test]
+fn an_island_that_is_saved_keeps_the_hits_of_all() {
+    let problem = disc();
+    let budget = Budget::evaluations(10_000);
+    let mut rounds = Rounds::begin(islands("latest-hit-qpso"), problem.clone(), &budget).unwrap();
+    let engine = || engine::ConfiguredEngine::named("latest-hit-qpso").unwrap();
+    for island in rounds.round(&mut ()) {
+        rounds
+            .take(island.run(engine(), &problem, None).unwrap())
+            .unwrap();
+    }
+    let island = rounds.round(&mut ()).swap_remove(0);
+    let known = usize::try_from(rounds.progress().hits).unwrap();
+    let mut alone = sent(&island).search(engine()).unwrap();
+    let saved = alone.start_resumed(&problem).unwrap().checkpoint();
+    let mut alone = Search::resume(saved, engine()).unwrap();
+    let report = alone.run_resumed(&problem, RunOptions::new()).unwrap();
+    rounds.end(StopReason::Cancelled);
+    let of_all = rounds.finish();
+    assert!(known > 5 && of_all.hit_count() == known && report.hit_count() > known);
+    assert_eq!(&report.archive.solutions()[..known], of_all.archive.solutions());
 }

@@ -126,8 +126,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         let Running { lanes, exchange } = &mut self.running;
         let searching = exchange.as_ref().is_none_or(Exchange::is_searching);
         if searching {
-            while let Some(lane) = self.idle.pop_first() {
-                if lanes[lane].propose(problem, previous, None) {
+            while let Some(&lane) = self.idle.first() {
+                // Where that panics, the lane stays among those that may propose.
+                let proposed = lanes[lane].propose(problem, previous, None);
+                self.idle.remove(&lane);
+                if proposed {
                     self.register(Turn::Lane(lane), problem, previous);
                     return true;
                 }
@@ -172,8 +175,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         }
         let live = slice.candidates.live().len();
         if live == 0 {
-            self.running.settle(turn, problem, previous, &mut ());
             self.is_free(turn);
+            self.running.settle(turn, problem, previous, &mut ());
         } else {
             slice.ledger.goes_out();
             let out = Out {
@@ -224,7 +227,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
         };
         let fits = registered.answers.len() == out.answers.len()
             && out.tickets.len() <= out.answers.len()
-            && out.tickets.is_sorted_by(|a, b| a < b);
+            && out.tickets.is_sorted_by(|a, b| a < b)
+            && out.answers[out.tickets.len()..]
+                .iter()
+                .all(|answer| *answer == Answer::Awaited)
+            && out.open().all(|ticket| !self.open.contains_key(&ticket));
         if fits {
             self.open.extend(out.open().map(|ticket| (ticket, batch)));
             *registered = out;
@@ -268,8 +275,8 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             slice.candidates.resume(&computed);
             slice.ledger.evaluated_elsewhere(values);
         }
-        self.running.settle(out.turn, problem, previous, &mut ());
         self.is_free(out.turn);
+        self.running.settle(out.turn, problem, previous, &mut ());
         self.unused += (before + values as u64).saturating_sub(self.fitness_values(out.turn));
         self.withdraw_proofs();
         self.enter_informed(problem, previous);
