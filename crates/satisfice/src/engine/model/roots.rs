@@ -39,16 +39,11 @@ pub(super) fn steps(process: &Process, units: &Units, limits: &ComponentLimits, 
             }
         }
     }
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let matrix: Vec<Vec<f64>> = slopes
-        .iter()
-        .map(|a| slopes.iter().map(|b| dot(a, b)).collect())
-        .collect();
-    let right: Vec<f64> = slopes.iter().map(|a| -dot(a, &residuals)).collect();
+    let system = System::new(slopes, &residuals);
     let mut lanes: Vec<Lanes> = x.iter().map(|&x| [x; LANES]).collect();
     let mut target = x.to_vec();
     for (lane, damping) in DAMPINGS.iter().enumerate() {
-        let step = solve(matrix.clone(), right.clone(), *damping);
+        let step = system.step(*damping);
         target.copy_from_slice(x);
         for (&j, step) in moving.iter().zip(step) {
             let moved = x[j] + step * length(j);
@@ -67,6 +62,53 @@ pub(super) fn steps(process: &Process, units: &Units, limits: &ComponentLimits, 
         }
     }
     lanes
+}
+
+/// The linear system of the steps, in as many unknowns as there are axes or residuals, whichever are fewer:
+/// `(J'J + damping)^-1 J' = J' (JJ' + damping)^-1`.
+struct System {
+    /// Of each axis, how the residuals change along it.
+    slopes: Vec<Vec<f64>>,
+    by_axes: bool,
+    matrix: Vec<Vec<f64>>,
+    right: Vec<f64>,
+}
+
+impl System {
+    fn new(slopes: Vec<Vec<f64>>, residuals: &[f64]) -> Self {
+        let products = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            let row = |a: &Vec<f64>| rows.iter().map(|b| dot(a, b)).collect();
+            rows.iter().map(row).collect()
+        };
+        let by_axes = slopes.len() <= residuals.len();
+        let (matrix, right) = if by_axes {
+            let right = slopes.iter().map(|a| -dot(a, residuals)).collect();
+            (products(&slopes), right)
+        } else {
+            let of_residual = |k: usize| slopes.iter().map(|a| a[k]).collect();
+            let rows: Vec<Vec<f64>> = (0..residuals.len()).map(of_residual).collect();
+            (products(&rows), residuals.iter().map(|r| -r).collect())
+        };
+        Self {
+            slopes,
+            by_axes,
+            matrix,
+            right,
+        }
+    }
+
+    /// The step along each axis.
+    fn step(&self, damping: f64) -> Vec<f64> {
+        let solved = solve(self.matrix.clone(), self.right.clone(), damping);
+        if self.by_axes {
+            return solved;
+        }
+        self.slopes.iter().map(|a| dot(a, &solved)).collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Solves `(A + damping) s = b` for a symmetric `A` that is nowhere negative, by a Cholesky factor.
@@ -130,6 +172,22 @@ mod tests {
         let distance = |lane: usize| (steps[0][lane] - 0.4).hypot(steps[2][lane] - 0.6);
         assert!(distance(0) < 5e-3 && distance(LANES - 1) > 0.1, "{steps:?}");
         assert!(steps[1].iter().all(|&x| x == 0.5));
+    }
+
+    /// One residual along three axes, and one axis with three residuals, against the solution written down.
+    #[test]
+    fn steps_are_the_same_in_axes_and_in_residuals() {
+        let (slopes, residual, damping) = ([1.0, -2.0, 0.5], 3.0, 0.1);
+        let rows = slopes.iter().map(|&slope| vec![slope]).collect();
+        let steps = System::new(rows, &[residual]).step(damping);
+        let scale = -residual / (dot(&slopes, &slopes) + damping);
+        for (step, slope) in steps.iter().zip(slopes) {
+            approx::assert_relative_eq!(*step, scale * slope, epsilon = 1e-14);
+        }
+        let residuals = [0.3, -1.0, 2.0];
+        let steps = System::new(vec![slopes.to_vec()], &residuals).step(damping);
+        let expected = -dot(&slopes, &residuals) / (dot(&slopes, &slopes) + damping);
+        approx::assert_relative_eq!(steps[0], expected, epsilon = 1e-14);
     }
 
     #[test]
