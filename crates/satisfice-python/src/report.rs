@@ -37,7 +37,7 @@ impl Best {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let x = self.x.bind(py).repr()?;
         Ok(format!(
-            "Best(x={x}, fun={}, evaluation={})",
+            "Best(x={x}, fun={:?}, evaluation={})",
             self.fun, self.evaluation
         ))
     }

@@ -293,7 +293,15 @@ impl Search {
 
     #[classmethod]
     fn load(_: &Bound<'_, PyType>, py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        py.detach(|| Self::resume(Saved::read(bytes)?))
+        py.detach(|| {
+            let saved = Saved::read(bytes)?;
+            if !saved.tickets {
+                return Err(PyValueError::new_err(
+                    "this search has no tickets: `find` saved it, and goes on with it by checkpoint= and the same arguments",
+                ));
+            }
+            Self::resume(saved)
+        })
     }
 
     /// The saved search, which must be the same as this one.

@@ -144,6 +144,8 @@ def test_files_that_do_not_fit(tmp_path):
             satisfice.find(evaluations.ring, SQUARE, **{**RING, **change}, checkpoint=file)
     with pytest.raises(ValueError, match="bounds"):
         satisfice.find(evaluations.ring, [(-1, 2)] * 2, **RING, checkpoint=file)
+    with pytest.raises(ValueError, match="has no tickets: `find` saved it"):
+        satisfice.Search.load(file)
     file.write_text("{}")
     with pytest.raises(ValueError, match="not a saved search"):
         satisfice.find(evaluations.ring, SQUARE, **RING, checkpoint=file)

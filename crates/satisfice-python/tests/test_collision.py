@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import pickle
 import signal
 import threading
 import time
@@ -288,6 +289,24 @@ def test_pairs_agree_with_the_tree_of_scipy():
     assert set(zip(found.i.tolist(), found.j.tolist(), strict=True)) == set(
         zip(theirs.row.tolist(), theirs.col.tolist(), strict=True)
     )
+
+
+def test_a_body_that_cannot_move_so_is_named():
+    world = collision.World(threshold=0.1)
+    world.add(sheet(3), "fixed")
+    lid = world.add(sheet(3), "deforming")
+    with pytest.raises(ValueError, match="body = 1 is not allowed: it is not rigid"):
+        world.place(lid, [0, 0, 1])
+
+
+def test_a_mesh_can_be_pickled():
+    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 5.0]]
+    mesh = collision.mesh(corners, [[0, 1, 2]], [[0, 3]])
+    again = pickle.loads(pickle.dumps(mesh))
+    assert (again.vertices == mesh.vertices).all() and (again.faces == mesh.faces).all()
+    line = collision.mesh([[-1.0, 0.0, 4.0], [1.0, 0.0, 4.0]], edges=[[0, 1]])
+    pairs = [collision.close_pairs(one, line, threshold=0.1, pairs="edge-edge") for one in (mesh, again)]
+    assert len(pairs[0].i) == 1 and (pairs[1].i == pairs[0].i).all()
 
 
 def test_a_trimesh_is_a_mesh():

@@ -96,7 +96,7 @@ impl World {
             _ => return Err(unknown(body)),
         };
         if !whereabouts.is_rigid() {
-            return Err(not_rigid());
+            return Err(not_rigid(body));
         }
         // what is in the room is in the range of numbers
         let mut stays = rotation.is_none() && self.rooms[slot].holds(self.tree.frame(), &translation);
@@ -155,8 +155,8 @@ impl World {
         let Some(deforming) = self.state_mut(body.slot).deforming.as_mut() else {
             return Err(Error::parameter(
                 "body",
-                "not deforming",
-                "only a deforming body has moving vertices",
+                body,
+                "it is not deforming, and only a deforming body has moving vertices",
             ));
         };
         deforming.deform(vertices)?;
@@ -175,6 +175,10 @@ impl World {
 }
 
 #[cold]
-fn not_rigid() -> Error {
-    Error::parameter("body", "not rigid", "only a rigid body has a moving placement")
+fn not_rigid(body: BodyId) -> Error {
+    Error::parameter(
+        "body",
+        body,
+        "it is not rigid, and only a rigid body has a moving placement",
+    )
 }

@@ -265,6 +265,7 @@ class Mesh:
     @property
     def faces(self) -> NDArray[np.uint32]:
         """The triangles by their vertices, shape (m, 3)."""
+    def __reduce__(self) -> tuple[type[Mesh], tuple[_Vectors, NDArray[np.int64], NDArray[np.int64]]]: ...
 
 @final
 class Body:

@@ -3,6 +3,7 @@
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use satisfice_collision::Mesh as Inner;
 use satisfice_collision::scene::SharedMesh;
 
@@ -12,6 +13,9 @@ use crate::refused;
 /// A checked mesh and the trees over its features, which are built when a query first needs them.
 #[pyclass(frozen, module = "satisfice.collision")]
 pub(crate) struct Mesh(pub(super) SharedMesh);
+
+/// Vertices, faces, and edges that are not sides of faces.
+type Arrays = (Py<PyArray2<f64>>, Py<PyArray2<i64>>, Py<PyArray2<i64>>);
 
 /// An index of an array as that of a vertex; the mesh checks the upper end.
 fn vertex(index: i64, row: usize, vertices: usize) -> PyResult<u32> {
@@ -71,6 +75,17 @@ impl Mesh {
     #[getter]
     fn faces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<u32>>> {
         rows(py, self.0.mesh().triangles().to_vec())
+    }
+
+    /// So that it can be sent to another process; the trees are built again there.
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyType>, Arrays)> {
+        let (py, mesh) = (slf.py(), slf.get().0.mesh());
+        let arrays = (
+            rows(py, mesh.vertices().to_vec())?,
+            rows(py, mesh.triangles().iter().map(|t| t.map(i64::from)).collect())?,
+            rows(py, mesh.lines().iter().map(|l| l.map(i64::from)).collect())?,
+        );
+        Ok((slf.get_type().unbind(), arrays))
     }
 
     fn __repr__(&self) -> String {

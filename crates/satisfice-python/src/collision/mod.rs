@@ -39,12 +39,12 @@ fn threshold(delta: f64) -> PyResult<Threshold> {
 }
 
 /// Rows of three numbers as an array of shape (n, 3).
-fn rows<T: numpy::Element>(py: Python<'_>, rows: Vec<[T; 3]>) -> PyResult<Py<PyArray2<T>>> {
+fn rows<T: numpy::Element, const N: usize>(py: Python<'_>, rows: Vec<[T; N]>) -> PyResult<Py<PyArray2<T>>> {
     let count = rows.len();
     Ok(rows
         .into_flattened()
         .into_pyarray(py)
-        .reshape([count, 3])?
+        .reshape([count, N])?
         .unbind())
 }
 

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _satisfice
 from .._checked import real, seconds, whole, whole_or_none
 from .._satisfice import Body
-from ._mesh import mesh, point_of, pose_of, vertices_of
+from ._mesh import mesh as mesh_of
+from ._mesh import point_of, pose_of, vertices_of
 
 _CONTACT = np.dtype([("body_a", "u4"), ("body_b", "u4"), ("a", "u4"), ("b", "u4"), ("distance", "f8")])
 
@@ -103,7 +104,7 @@ class World:
 
     def add(
         self,
-        mesh_: Any,
+        mesh: Any,
         motion: str = "rigid",
         *,
         transform: ArrayLike | None = None,
@@ -116,8 +117,8 @@ class World:
 
         Parameters
         ----------
-        mesh_ : mesh
-            Its mesh (see `mesh`). Bodies of one `Mesh` share it.
+        mesh : mesh
+            Its mesh (see `collision.mesh`). Bodies of one `Mesh` share it.
         motion : {"rigid", "fixed", "deforming"}
             How it may move: by `place` and `translate`, not at all, or by `deform`. Only a deforming body collides with itself.
         transform : array, shape (4, 4) or (3,), optional
@@ -137,7 +138,7 @@ class World:
         if motion == "deforming" and transform is not None:
             raise ValueError("transform does not apply to a deforming body: it is where its vertices are")
         return self._world.add(
-            mesh(mesh_), motion, pose_of(transform), _bits(groups, mask), bool(self_collision), whole("ring", ring, least=0)
+            mesh_of(mesh), motion, pose_of(transform), _bits(groups, mask), bool(self_collision), whole("ring", ring, least=0)
         )
 
     def place(self, body: Body, transform: ArrayLike | None) -> None:
@@ -156,9 +157,9 @@ class World:
         """Remove a body. Its handle is refused from now on."""
         self._world.remove(body)
 
-    def replace(self, body: Body, mesh_: Any) -> None:
+    def replace(self, body: Body, mesh: Any) -> None:
         """Give a body another mesh."""
-        self._world.replace(body, mesh(mesh_))
+        self._world.replace(body, mesh_of(mesh))
 
     def set_groups(self, body: Body, groups: int, mask: int = 0xFFFFFFFF) -> None:
         """Set the groups of a body and the groups that it collides with."""
