@@ -103,7 +103,7 @@ const PER_FRAME: u64 = 5_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quick = std::env::var_os("SATISFICE_QUICK").is_some();
-    let (seeds, evaluations) = if quick { (1, 200) } else { (SEEDS, EVALUATIONS) };
+    let (seeds, evaluations) = if quick { (1, 60) } else { (SEEDS, EVALUATIONS) };
     let mut means = vec![Vec::new(); ENGINES.len()];
     let mut names = Vec::new();
     for (problem, settings) in PROBLEMS {

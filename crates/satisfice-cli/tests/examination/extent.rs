@@ -13,7 +13,7 @@ const HEADING: &str = "# Reliability\n\n\
     examination itself, a line when its test has passed:\n\n\
     ```text\n\
     SATISFICE_EXAMINE=full cargo test --release -p satisfice-cli --test examination\n\
-    SATISFICE_EXAMINE=full cargo test --release -p satisfice --test allocation\n\
+    SATISFICE_EXAMINE=full cargo test --release -p satisfice --test library allocation\n\
     ```\n\n\
     A damaged file has one to four flipped bits, other bytes, cuts, repetitions or hostile words. On each, the command has to end within 10 s, after an \
     interrupt at the latest, with exit code 0, 1 or 2, in 1.5 GB of address space, and with one error line if it refuses the file.\n\n";

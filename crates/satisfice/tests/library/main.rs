@@ -1,13 +1,16 @@
 //! The library as its users call it. One program, because each compiles the search again for every type of problem.
 
+mod allocation;
 mod axes;
 mod best;
 mod checkpoint;
 mod closures;
+mod conformance;
 mod equations;
 mod isolated_hits;
 mod lanes;
 mod lanes_apart;
+mod many_axes;
 mod model_at_work;
 mod panics;
 mod patience;
