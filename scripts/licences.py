@@ -35,9 +35,9 @@ def is_allowed(expression, allowed):
             fine = alternative()
             tokens.pop(0)
             return fine
-        if tokens and tokens[0] == "WITH":
+        if tokens and tokens[0] == "WITH":  # an exception makes another licence of it
+            token = f"{token} WITH {tokens[1]}"
             del tokens[:2]
-            return False  # an exception is a licence of its own; none is needed so far
         return token in allowed
 
     return alternative()
@@ -51,6 +51,7 @@ def self_test():
     assert not is_allowed("GPL-3.0-only", {"MIT"})
     assert is_allowed("Apache-2.0 WITH LLVM-exception OR MIT", {"MIT"})
     assert not is_allowed("Apache-2.0 WITH LLVM-exception", {"Apache-2.0"})
+    assert is_allowed("Apache-2.0 WITH LLVM-exception", {"Apache-2.0 WITH LLVM-exception"})
 
 
 def main():

@@ -1,5 +1,8 @@
 //! The native part of the Python package `satisfice`: searches, reports and the command. Its Python part is in `python/`.
 
+// Arguments and tuples as Python passes them.
+#![allow(clippy::needless_pass_by_value, clippy::type_complexity)]
+
 mod arguments;
 mod caller;
 mod collision;

@@ -120,7 +120,7 @@ impl Add for &Form {
     type Output = Form;
 
     fn add(self, other: Self) -> Form {
-        debug_assert_eq!(self.0.len(), other.0.len(), "sums are of one degree");
+        assert_eq!(self.0.len(), other.0.len(), "sums are of one degree");
         Form(self.0.iter().zip(&other.0).map(|(a, b)| a + b).collect())
     }
 }
@@ -129,7 +129,7 @@ impl Sub for &Form {
     type Output = Form;
 
     fn sub(self, other: Self) -> Form {
-        debug_assert_eq!(self.0.len(), other.0.len(), "differences are of one degree");
+        assert_eq!(self.0.len(), other.0.len(), "differences are of one degree");
         Form(self.0.iter().zip(&other.0).map(|(a, b)| a - b).collect())
     }
 }

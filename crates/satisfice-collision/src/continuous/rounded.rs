@@ -38,7 +38,7 @@ impl Rounded {
     }
 
     fn combined(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        debug_assert_eq!(self.len, other.len, "sums are of one degree");
+        assert_eq!(self.len, other.len, "sums are of one degree");
         let mut sums = [0.0; MOST];
         let pairs = self.coefficients.iter().zip(&other.coefficients);
         for (sum, (&a, &b)) in sums.iter_mut().zip(pairs).take(self.len) {

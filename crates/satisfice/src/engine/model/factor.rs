@@ -60,7 +60,7 @@ impl Factor {
         let start = self.rows.len();
         self.rows.extend(covariances);
         let (above, row) = self.rows.split_at_mut(start);
-        debug_assert_eq!(row.len(), self.inverse_pivots.len(), "one for each point before");
+        assert_eq!(row.len(), self.inverse_pivots.len(), "one for each point before");
         for (j, inverse) in self.inverse_pivots.iter().enumerate() {
             let other = &above[j * (j + 1) / 2..][..j];
             let dot = other
