@@ -20,7 +20,8 @@ impl World {
         let expected: BTreeMap<u32, Placement> = self
             .came_from
             .iter()
-            .map(|&(slot, from)| (slot, self.next_place(slot, &from.into())))
+            .filter(|(body, _)| self.contains(*body))
+            .map(|&(body, from)| (body.slot, self.next_place(body.slot, &from.into())))
             .collect();
         let wanted = |record: &Record| {
             record.status == Status::Current && record.slack.is_none() && !record.pairs.is_empty()

@@ -124,8 +124,8 @@ pub struct World {
     unmarked_since: Option<u64>,
     /// Whether contacts are measured between frames, which needs to know where bodies came from.
     predicts: bool,
-    /// Where the bodies that moved in this frame came from; empty unless `predicts`.
-    came_from: Vec<(u32, CompactPlacement)>,
+    /// Where the bodies that moved in this frame came from; empty unless `predicts`. Some may have been removed since.
+    came_from: Vec<(BodyId, CompactPlacement)>,
     /// Counts the changes of the known contacts: each ends the passes that began before.
     answers: u64,
     log: Log,
@@ -294,7 +294,7 @@ impl World {
             + self.pairs.bytes()
             + (self.unpaired.capacity() + self.dirty.capacity()) * 4
             + self.movers.bytes()
-            + self.came_from.capacity() * size_of::<(u32, CompactPlacement)>()
+            + self.came_from.capacity() * size_of::<(BodyId, CompactPlacement)>()
     }
 
     /// How many pairs of bodies are kept because their boxes meet, or nearly.

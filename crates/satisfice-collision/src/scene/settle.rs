@@ -1,10 +1,10 @@
 //! Going to the next frame: which bodies move, whose boxes meet now, and which records to examine. Linear in the bodies that
 //! move.
 
-use super::World;
 use super::ahead::Ahead;
 use super::body_tree::{Change, Meeting};
 use super::pairs::{NONE, Status};
+use super::{BodyId, World};
 use crate::Aabb;
 use crate::broad::{Box32, inflate};
 use crate::distance::{Point, Threshold};
@@ -114,7 +114,8 @@ impl World {
                     let from = state.placement_before(whereabouts);
                     let to = state.last_placement(whereabouts);
                     state.motion = state.mesh.extent().motion(&from, &to);
-                    self.came_from.push((slot, (&from).into()));
+                    let generation = whereabouts.generation;
+                    self.came_from.push((BodyId { slot, generation }, (&from).into()));
                 }
             }
         }

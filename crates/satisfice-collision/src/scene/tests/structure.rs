@@ -342,3 +342,35 @@ fn an_update_that_is_stopped_does_not_say_that_bodies_rest() {
     }
     assert!(cut > 0);
 }
+
+/// What is known of the motion of a body that is gone is of no use to anyone.
+#[test]
+fn contacts_are_measured_after_a_moving_body_is_gone() {
+    let ball = SharedMesh::from(generate::icosphere(1.0, 1).unwrap());
+    for what in 0..3 {
+        let mut world = world(PairKind::TriangleTriangle, 0.1);
+        let ids = [(); 3].map(|()| world.add(Body::rigid(ball.clone())).unwrap());
+        world.update().unwrap();
+        world.measure_contacts();
+        for (id, x) in ids.into_iter().zip([0.1, 0.2, 0.3]) {
+            world.place(id, at(x, 0.0, 0.0)).unwrap();
+        }
+        world.update().unwrap();
+        match what {
+            0 => world.remove(ids[0]).unwrap(),
+            1 => world
+                .replace(ids[0], generate::cloth(1.0, 1.0, 2, 2).unwrap())
+                .unwrap(),
+            _ => {
+                world.remove(ids[0]).unwrap();
+                world.add(Body::fixed(ball.clone())).unwrap();
+            }
+        }
+        world.measure_contacts();
+        world.place(ids[1], at(0.3, 0.0, 0.0)).unwrap();
+        let pass = world.pass();
+        let held = world.found_by(&pass).collect::<Vec<_>>();
+        let all = world.frame().unwrap().contacts;
+        assert!(!all.is_empty() && held.iter().all(|contact| all.binary_search(contact).is_ok()));
+    }
+}
