@@ -28,6 +28,7 @@ mod count;
 mod deforming;
 mod extent;
 mod filter;
+mod lent;
 mod measure;
 mod membership;
 mod movers;

@@ -12,6 +12,7 @@ mod referee;
 mod script;
 mod steady;
 mod structure;
+mod unwound;
 
 use referee::{KINDS, PosedMesh, contacts as referee, turn};
 

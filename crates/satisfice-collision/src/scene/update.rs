@@ -55,16 +55,14 @@ impl World {
         if self.method == Method::Grid {
             return Ok(());
         }
-        let mut dirty = self.take_dirty();
-        let result = dirty.iter().try_for_each(|&record| {
-            let bodies = self.pairs[record].bodies;
-            if self.boxes_apart(bodies) {
-                return Ok(());
+        self.dirty = self.take_dirty();
+        for at in 0..self.dirty.len() {
+            let bodies = self.pairs[self.dirty[at]].bodies;
+            if !self.boxes_apart(bodies) {
+                self.ensure_trees(bodies)?;
             }
-            self.ensure_trees(bodies)
-        });
-        std::mem::swap(&mut self.dirty, &mut dirty);
-        result
+        }
+        Ok(())
     }
 
     /// [`World::update`] and the sorted list of all contacts. Cost: that of the update, and linear in all contacts.
@@ -120,15 +118,16 @@ impl World {
         self.log.clean();
         self.settle();
         let mut skips = Skips::default();
-        let mut dirty = self.take_dirty();
-        let mut done = 0;
-        if !dirty.is_empty() {
-            self.answers += 1;
+        let mut lent = self.without_dirty();
+        if !lent.dirty.is_empty() {
+            lent.world.answers += 1;
         }
-        let result = self.look_at(&dirty, &mut done, &mut skips, watch);
-        let meeting = dirty.iter().filter(|&&record| !self.pairs[record].apart).count();
-        dirty.drain(..done);
-        self.dirty = dirty;
+        let result = lent.world.look_at(&lent.dirty, &mut lent.done, &mut skips, watch);
+        let is_met = |record: &&u32| !lent.world.pairs[**record].apart;
+        let meeting = lent.dirty.iter().filter(is_met).count();
+        let done = lent.done;
+        lent.is_over = true;
+        drop(lent);
         result?;
         self.log.end();
         Ok(Update {

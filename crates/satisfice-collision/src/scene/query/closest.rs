@@ -164,13 +164,12 @@ impl World {
         self.settle();
         let probe = Probe::new(point)?;
         let mut closest = Closest::any();
-        let tree = std::mem::take(&mut self.tree);
-        let result = tree.nearest_to(&Aabb::point(point), |body, _| {
-            self.closest_to(body, &probe, &mut closest)?;
-            Ok(reach(&closest))
-        });
-        self.tree = tree;
-        result?;
+        self.with_tree(|tree, world| {
+            tree.nearest_to(&Aabb::point(point), |body, _| {
+                world.closest_to(body, &probe, &mut closest)?;
+                Ok::<_, Error>(reach(&closest))
+            })
+        })?;
         Ok(self.as_feature(closest, point))
     }
 
@@ -231,19 +230,18 @@ impl World {
                 }
             }
         }
-        let tree = std::mem::take(&mut self.tree);
-        let result = tree.closest_pairs(reach(&closest), |a, b| {
-            if watch.ask(0) {
-                return Ok(f64::NEG_INFINITY);
-            }
-            let (gap, least) = (self.gap(a, b), ([a.min(b), a.max(b)], Pair::default()));
-            if self.collides(a, b) && gap <= closest.bound() && !closest.excludes(gap, least) {
-                self.closest_of([a, b], &mut closest, watch)?;
-            }
-            Ok(reach(&closest))
-        });
-        self.tree = tree;
-        result?;
+        self.with_tree(|tree, world| {
+            tree.closest_pairs(reach(&closest), |a, b| {
+                if watch.ask(0) {
+                    return Ok(f64::NEG_INFINITY);
+                }
+                let (gap, least) = (world.gap(a, b), ([a.min(b), a.max(b)], Pair::default()));
+                if world.collides(a, b) && gap <= closest.bound() && !closest.excludes(gap, least) {
+                    world.closest_of([a, b], &mut closest, watch)?;
+                }
+                Ok::<_, Error>(reach(&closest))
+            })
+        })?;
         Ok(self.as_contacts(closest))
     }
 

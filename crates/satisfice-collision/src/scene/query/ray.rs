@@ -66,15 +66,14 @@ impl World {
         self.settle();
         let segment = [from, to];
         let mut first = FirstHit::new(segment);
-        let tree = std::mem::take(&mut self.tree);
-        let result = tree.along(segment, |slot| {
-            if counts(self.id(slot)) {
-                self.first_in(slot, &mut first)?;
-            }
-            Ok::<_, Error>(first.bound())
-        });
-        self.tree = tree;
-        result?;
+        self.with_tree(|tree, world| {
+            tree.along(segment, |slot| {
+                if counts(world.id(slot)) {
+                    world.first_in(slot, &mut first)?;
+                }
+                Ok::<_, Error>(first.bound())
+            })
+        })?;
         Ok(first.found().map(|((slot, triangle), part)| RayHit {
             body: self.id(slot),
             triangle,
