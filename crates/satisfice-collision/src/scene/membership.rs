@@ -115,7 +115,7 @@ impl World {
         if collides_with_itself {
             self.add_record([slot; 2]);
         }
-        self.unpaired.push(slot);
+        self.unpair(slot);
         Ok(id)
     }
 
@@ -143,7 +143,7 @@ impl World {
         records.into_iter().for_each(|record| self.remove_record(record));
         self.tree.remove(slot);
         self.membership.forget(slot);
-        self.forget_pending(slot);
+        self.movers.forget();
         if let Some(state) = self.states[slot as usize].take() {
             self.membership.count(&state, false);
             self.hulls[slot as usize] = Box32::EMPTY;
@@ -183,7 +183,7 @@ impl World {
         }
         self.changing();
         self.workspaces.iter_mut().for_each(Workspace::forget);
-        self.forget_pending(body.slot);
+        self.movers.forget();
         let records: Vec<u32> = self.pairs.of(body.slot).collect();
         for record in records {
             let bodies = self.pairs[record].bodies;
@@ -191,7 +191,7 @@ impl World {
             self.add_record(bodies);
         }
         self.put(body.slot, state, whereabouts);
-        self.unpaired.push(body.slot);
+        self.unpair(body.slot);
         if let Some(placement) = &next {
             self.place(body, *placement)?;
         }
@@ -221,7 +221,7 @@ impl World {
                 self.remove_record(record);
             }
         }
-        self.unpaired.push(body.slot);
+        self.unpair(body.slot);
         Ok(())
     }
 
@@ -260,7 +260,7 @@ impl World {
         }
         self.changing();
         if a != b {
-            self.unpaired.push(a.slot);
+            self.unpair(a.slot);
         } else if self
             .state(a.slot)
             .deforming

@@ -111,7 +111,7 @@ pub struct World {
     pairs: Records,
     /// What moves in the next frame.
     movers: Movers,
-    /// Bodies whose partners must be found again.
+    /// Bodies whose partners must be found again; some may have been removed since, or be listed twice.
     unpaired: Vec<u32>,
     /// Records to examine.
     dirty: Vec<u32>,

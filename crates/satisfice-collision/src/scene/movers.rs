@@ -167,10 +167,21 @@ impl World {
         Ok(())
     }
 
-    /// A body is about to be removed or replaced.
-    pub(super) fn forget_pending(&mut self, slot: u32) {
-        self.movers.forget();
-        self.unpaired.retain(|&other| other != slot);
+    /// The partners of a body must be found again.
+    pub(super) fn unpair(&mut self, slot: u32) {
+        self.unpaired.push(slot);
+        // many changes of few bodies must not fill the memory
+        if self.unpaired.len() > 2 * self.states.len() + 64 {
+            self.clean_unpaired();
+        }
+    }
+
+    /// Leaves out bodies that have been removed since, and what is there twice.
+    pub(super) fn clean_unpaired(&mut self) {
+        let states = &self.states;
+        self.unpaired.retain(|&slot| states[slot as usize].is_some());
+        self.unpaired.sort_unstable();
+        self.unpaired.dedup();
     }
 }
 

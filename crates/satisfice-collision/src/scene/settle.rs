@@ -67,6 +67,7 @@ impl World {
 
     /// Goes to the next frame, if anything has changed.
     pub(super) fn settle(&mut self) {
+        self.clean_unpaired();
         if self.movers.is_empty() && self.unpaired.is_empty() {
             return;
         }

@@ -374,3 +374,24 @@ fn contacts_are_measured_after_a_moving_body_is_gone() {
         assert!(!all.is_empty() && held.iter().all(|contact| all.binary_search(contact).is_ok()));
     }
 }
+
+/// Bodies whose partners must be found are listed without looking through the list, which must not grow for ever either.
+#[test]
+fn bodies_that_come_and_go_between_updates_leave_nothing_behind() {
+    let ball = SharedMesh::from(generate::icosphere(1.0, 1).unwrap());
+    let mut world = world(PairKind::TriangleTriangle, 0.1);
+    let stays = world.add(Body::rigid(ball.clone())).unwrap();
+    for k in 0..1000 {
+        world.set_groups(stays, 1, 1 + k % 2).unwrap();
+        let goes = world.add(Body::rigid(ball.clone())).unwrap();
+        world.replace(goes, ball.clone()).unwrap();
+        world.remove(goes).unwrap();
+    }
+    assert!(world.unpaired.len() < 100, "{}", world.unpaired.len());
+    world.set_groups(stays, 1, 1).unwrap();
+    let frame = world.frame().unwrap();
+    assert!(frame.contacts.is_empty() && world.unpaired.is_empty());
+    let other = world.add(Body::rigid(ball)).unwrap();
+    let contacts = world.frame().unwrap().contacts;
+    assert!(!contacts.is_empty() && contacts.iter().all(|contact| contact.bodies() == (stays, other)));
+}
