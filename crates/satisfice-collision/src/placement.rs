@@ -3,6 +3,11 @@
 use crate::error::Error;
 use crate::mesh::Mesh;
 
+/// Who normalises gets the square of a length that differs from 1 by no more than this.
+const UNIT: f64 = 8.0 * f64::EPSILON;
+/// Products of rows of a rotation matrix may be off by this.
+const OFF: f64 = 1e-6;
+
 /// A rigid motion `x -> R x + t`: a rotation about the origin, then a translation, in `f64`.
 ///
 /// ```
@@ -35,7 +40,16 @@ impl Placement {
         Self::IDENTITY.moved(translation)
     }
 
-    /// A rotation from a quaternion `[w, x, y, z]` of any length but zero; it is normalised.
+    /// A rotation from a quaternion `[w, x, y, z]` of any length but zero. It is normalised, unless its length is 1 within rounding: what
+    /// [`Placement::quaternion`] returns gives the same rotation to the last bit.
+    ///
+    /// ```
+    /// use satisfice_collision::Placement;
+    /// let placement = Placement::from_axis_angle([1.0, 2.0, 3.0], 0.7)?.moved([1.0, 0.0, 0.0])?;
+    /// let (rotation, translation) = (placement.quaternion(), placement.translation());
+    /// assert_eq!(Placement::from_quaternion(rotation)?.moved(translation)?, placement);
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::Parameter`] if a component is not finite or all are zero.
@@ -44,14 +58,65 @@ impl Placement {
         if quaternion.iter().any(|c| !c.is_finite()) {
             return refuse("four finite numbers w, x, y, z");
         }
-        let Some(quaternion) = unit(quaternion) else {
-            return refuse("not all zero");
-        };
-        Ok(Self {
+        let square: f64 = quaternion.iter().map(|c| c * c).sum();
+        if (square - 1.0).abs() <= UNIT {
+            return Ok(Self::turned(quaternion));
+        }
+        match unit(quaternion) {
+            Some(quaternion) => Ok(Self::turned(quaternion)),
+            None => refuse("not all zero"),
+        }
+    }
+
+    /// The rotation of a unit quaternion.
+    fn turned(quaternion: [f64; 4]) -> Self {
+        Self {
             quaternion,
             rotation: matrix(quaternion),
             translation: [0.0; 3],
-        })
+        }
+    }
+
+    /// The rotation of a quaternion that is 0 nowhere near, normalised.
+    fn normalised(quaternion: [f64; 4]) -> Self {
+        Self::turned(unit(quaternion).unwrap_or(Self::IDENTITY.quaternion))
+    }
+
+    /// A rotation from the rows of its matrix, then a translation: `x -> R x + t`. Of a matrix whose rows have length 1 and are at right
+    /// angles up to 1e-6, about the nearest rotation. What [`Placement::rotation`] returns gives the same rotation within rounding; to
+    /// get it to the last bit, keep the [quaternion](Placement::from_quaternion).
+    ///
+    /// ```
+    /// use satisfice_collision::Placement;
+    /// let quarter = Placement::from_matrix([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [5.0, 0.0, 0.0])?;
+    /// let [x, y, z] = quarter.apply([1.0, 0.0, 0.0]);
+    /// assert!((x - 5.0).abs() < 1e-15 && (y - 1.0).abs() < 1e-15 && z == 0.0);
+    /// assert!(Placement::from_matrix([[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]).is_err());
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if a number is not finite, or the matrix scales, shears or mirrors.
+    pub fn from_matrix(rows: [[f64; 3]; 3], translation: [f64; 3]) -> Result<Self, Error> {
+        let refuse = |allowed| Err(Error::parameter("rotation", format!("{rows:?}"), allowed));
+        if rows.as_flattened().iter().any(|c| !c.is_finite()) {
+            return refuse("three rows of three finite numbers");
+        }
+        let product = |i: usize, j: usize| (0..3).map(|k| rows[i][k] * rows[j][k]).sum::<f64>();
+        let is_off = |(i, j): (usize, usize)| {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            !((product(i, j) - expected).abs() <= OFF)
+        };
+        if (0..3).flat_map(|i| (i..3).map(move |j| (i, j))).any(is_off) {
+            return refuse(
+                "rows of length 1 at right angles, up to 1e-6: a rotation scales and shears nothing",
+            );
+        }
+        let [[a, b, c], [d, e, f], [g, h, i]] = rows;
+        if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0 {
+            return refuse("a matrix of positive determinant: a rotation mirrors nothing");
+        }
+        Self::normalised(of_matrix(&rows)).with_translation(translation)
     }
 
     /// A rotation by `angle` in radians about `axis`, counter-clockwise seen from its tip; the axis may have any length
@@ -71,7 +136,27 @@ impl Placement {
             return refuse("not all zero");
         };
         let (s, c) = (angle / 2.0).sin_cos();
-        Self::from_quaternion([c, s * x, s * y, s * z])
+        Ok(Self::normalised([c, s * x, s * y, s * z]))
+    }
+
+    /// The same rotation, and this translation instead of its own.
+    ///
+    /// ```
+    /// use satisfice_collision::Placement;
+    /// let turned = Placement::from_axis_angle([0.0, 0.0, 1.0], 0.5)?.moved([5.0, 0.0, 0.0])?;
+    /// let elsewhere = turned.with_translation([0.0, 1.0, 0.0])?;
+    /// assert_eq!(elsewhere.rotation(), turned.rotation());
+    /// assert_eq!(elsewhere.translation(), [0.0, 1.0, 0.0]);
+    /// # Ok::<(), satisfice_collision::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if a component is not finite.
+    pub fn with_translation(self, translation: [f64; 3]) -> Result<Self, Error> {
+        if translation.iter().all(|t| t.is_finite()) {
+            return Ok(self.at(translation));
+        }
+        Err(not_finite(translation))
     }
 
     /// The same placement, then a translation by `offset`.
@@ -85,11 +170,7 @@ impl Placement {
         if self.translation.iter().all(|t| t.is_finite()) {
             Ok(self)
         } else {
-            Err(Error::parameter(
-                "translation",
-                format!("{offset:?}"),
-                "three finite numbers",
-            ))
+            Err(not_finite(offset))
         }
     }
 
@@ -106,7 +187,7 @@ impl Placement {
             a * g - b * h + c * e + d * f,
             a * h + b * g - c * f + d * e,
         ];
-        Self::from_quaternion(product)?.moved(next.apply(self.translation))
+        Self::normalised(product).moved(next.apply(self.translation))
     }
 
     /// The inverse motion: exact for a translation, within rounding otherwise.
@@ -118,7 +199,7 @@ impl Placement {
         let back = if self.rotation == Self::IDENTITY.rotation {
             Self::IDENTITY
         } else {
-            Self::from_quaternion([w, -x, -y, -z])?
+            Self::normalised([w, -x, -y, -z])
         };
         back.moved(back.apply(self.translation).map(|c| -c))
     }
@@ -234,6 +315,10 @@ fn unit<const N: usize>(v: [f64; N]) -> Option<[f64; N]> {
     Some(v.map(|c| c / length))
 }
 
+fn not_finite(translation: [f64; 3]) -> Error {
+    Error::parameter("translation", format!("{translation:?}"), "three finite numbers")
+}
+
 fn matrix([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
     [
         [
@@ -254,93 +339,27 @@ fn matrix([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
     ]
 }
 
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-
-    use proptest::prelude::*;
-
-    use super::*;
-
-    fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-        (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+/// The quaternion `[w, x, y, z]` of a rotation, of any length: the greatest of its components is computed first
+/// (Shepperd 1978, <https://doi.org/10.2514/3.55767b>).
+pub(crate) fn of_matrix(m: &[[f64; 3]; 3]) -> [f64; 4] {
+    let trace = m[0][0] + m[1][1] + m[2][2];
+    let greatest = (0..3).fold(0, |best, k| if m[k][k] > m[best][best] { k } else { best });
+    if trace >= m[greatest][greatest] {
+        return [
+            1.0 + trace,
+            m[2][1] - m[1][2],
+            m[0][2] - m[2][0],
+            m[1][0] - m[0][1],
+        ];
     }
-
-    /// Rodrigues' formula, the reference for the quaternion.
-    fn rodrigues(axis: [f64; 3], angle: f64, p: [f64; 3]) -> [f64; 3] {
-        let length = distance(axis, [0.0; 3]);
-        let [x, y, z] = axis.map(|c| c / length);
-        let (s, c) = angle.sin_cos();
-        let along = (x * p[0] + y * p[1] + z * p[2]) * (1.0 - c);
-        let cross = [y * p[2] - z * p[1], z * p[0] - x * p[2], x * p[1] - y * p[0]];
-        std::array::from_fn(|k| p[k] * c + cross[k] * s + [x, y, z][k] * along)
-    }
-
-    #[test]
-    fn no_rotation_is_exact() {
-        let p = [0.1, -1e300, 7.3e-310];
-        assert_eq!(Placement::IDENTITY.apply(p), p);
-        let moved = Placement::from_translation([0.2, 1e299, 1.0]).unwrap();
-        assert_eq!(moved.apply(p), [0.1 + 0.2, -1e300 + 1e299, 7.3e-310 + 1.0]);
-    }
-
-    #[test]
-    fn what_is_not_a_placement_is_refused_by_name() {
-        let named = |result: Result<Placement, Error>, name: &str| match result {
-            Err(Error::Parameter { parameter, .. }) => assert_eq!(parameter, name),
-            other => panic!("{name}: {other:?}"),
-        };
-        named(Placement::from_translation([0.0, f64::NAN, 0.0]), "translation");
-        named(Placement::from_quaternion([0.0; 4]), "quaternion");
-        named(
-            Placement::from_quaternion([1.0, f64::INFINITY, 0.0, 0.0]),
-            "quaternion",
-        );
-        named(Placement::from_axis_angle([0.0; 3], 1.0), "axis");
-        named(Placement::from_axis_angle([f64::NAN, 0.0, 1.0], 1.0), "axis");
-        named(
-            Placement::from_axis_angle([0.0, 0.0, 1.0], f64::INFINITY),
-            "angle",
-        );
-        let far = Placement::from_translation([1.7e308, 0.0, 0.0]).unwrap();
-        named(far.then(&far), "translation");
-        let mesh = Mesh::new(vec![[1.7e308, 0.0, 0.0]], vec![], vec![]).unwrap();
-        assert!(matches!(
-            far.place(&mesh),
-            Err(Error::NonFiniteVertex {
-                vertex: 0,
-                axis: 'x',
-                ..
-            })
-        ));
-    }
-
-    #[test]
-    fn quaternions_of_any_length_are_normalised() {
-        let plain = Placement::from_quaternion([1.0, 2.0, -3.0, 4.0]).unwrap();
-        for scale in [2.0_f64.powi(-1060), 2.0_f64.powi(1020)] {
-            let scaled = Placement::from_quaternion([1.0, 2.0, -3.0, 4.0].map(|c| c * scale)).unwrap();
-            assert_eq!(plain, scaled);
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn agrees_with_rodrigues_and_keeps_distances(
-            axis in prop::array::uniform3(-1.0..1.0_f64),
-            angle in -10.0..10.0_f64,
-            offset in prop::array::uniform3(-5.0..5.0_f64),
-            p in prop::array::uniform3(-5.0..5.0_f64),
-            q in prop::array::uniform3(-5.0..5.0_f64),
-        ) {
-            prop_assume!(distance(axis, [0.0; 3]) > 1e-3);
-            let placed = Placement::from_axis_angle(axis, angle).unwrap().moved(offset).unwrap();
-            let turned = rodrigues(axis, angle, p);
-            let expected = std::array::from_fn(|k| turned[k] + offset[k]);
-            prop_assert!(distance(placed.apply(p), expected) < 1e-13);
-            prop_assert!((distance(placed.apply(p), placed.apply(q)) - distance(p, q)).abs() < 1e-13);
-            let twice = placed.then(&placed).unwrap();
-            prop_assert!(distance(twice.apply(p), placed.apply(placed.apply(p))) < 1e-12);
-        }
-    }
+    let (i, j, k) = (greatest, (greatest + 1) % 3, (greatest + 2) % 3);
+    let mut q = [0.0; 4];
+    q[0] = m[k][j] - m[j][k];
+    q[1 + i] = 1.0 + m[i][i] - m[j][j] - m[k][k];
+    q[1 + j] = m[j][i] + m[i][j];
+    q[1 + k] = m[k][i] + m[i][k];
+    q
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::placement::Placement;
+use crate::placement::{Placement, of_matrix};
 
 /// A matrix written in single precision is a rotation up to this.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -91,7 +91,7 @@ impl Transform {
         if !is_rotation(&rotation) {
             return Ok(Self::Affine { linear, translation });
         }
-        let placement = Placement::from_quaternion(quaternion(&rotation))?.moved(translation)?;
+        let placement = Placement::from_quaternion(of_matrix(&rotation))?.moved(translation)?;
         let is_unit = (scale.abs() - 1.0).abs() <= SINGLE_PRECISION;
         Ok(Self::Similar {
             scale: if is_unit { scale.signum() } else { scale },
@@ -214,28 +214,6 @@ fn is_rotation(m: &Matrix) -> bool {
             (dot(m[i], m[j]) - expected).abs() <= 2.0 * SINGLE_PRECISION
         })
     })
-}
-
-/// The quaternion `[w, x, y, z]` of a rotation, of any length: the greatest of its components is computed first
-/// (Shepperd 1978, <https://doi.org/10.2514/3.55767b>).
-fn quaternion(m: &Matrix) -> [f64; 4] {
-    let trace = m[0][0] + m[1][1] + m[2][2];
-    let greatest = (0..3).fold(0, |best, k| if m[k][k] > m[best][best] { k } else { best });
-    if trace >= m[greatest][greatest] {
-        return [
-            1.0 + trace,
-            m[2][1] - m[1][2],
-            m[0][2] - m[2][0],
-            m[1][0] - m[0][1],
-        ];
-    }
-    let (i, j, k) = (greatest, (greatest + 1) % 3, (greatest + 2) % 3);
-    let mut q = [0.0; 4];
-    q[0] = m[k][j] - m[j][k];
-    q[1 + i] = 1.0 + m[i][i] - m[j][j] - m[k][k];
-    q[1 + j] = m[j][i] + m[i][j];
-    q[1 + k] = m[k][i] + m[i][k];
-    q
 }
 
 #[cfg(test)]

@@ -152,7 +152,7 @@ fn unknown(body: BodyId) -> Error {
     Error::parameter(
         "body",
         body,
-        "a handle that `add` returned, of a body that has not been removed",
+        "there is no such body; it was removed, or the handle is from another world",
     )
 }
 
