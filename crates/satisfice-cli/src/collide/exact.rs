@@ -153,16 +153,17 @@ impl Exact<'_> {
         if pairs.unmeasured() > 0 {
             answer.stop = limit.reason();
         }
-        let overlaps = match world.request.solid {
-            false => None,
+        let (overlaps, are_all) = match world.request.solid {
+            false => (None, true),
             // the solids may not be prepared
-            true if limit.is_reached() => Some(Vec::new()),
+            true if limit.is_reached() => (Some(Vec::new()), false),
             true => {
                 counting.say("looking into the bodies".to_owned());
-                Some(overlaps::find(world.solids()?, &|| limit.is_reached()))
+                let (overlaps, are_all) = overlaps::find(world.solids()?, &|| limit.is_reached());
+                (Some(overlaps), are_all)
             }
         };
-        if overlaps.is_some() && limit.is_reached() {
+        if !are_all {
             answer.stop = limit.reason();
             answer.complete = false;
         }

@@ -1,6 +1,7 @@
 //! `--solid`: which closed bodies overlap, how they lie, and how deep.
 
 use anyhow::Context;
+use satisfice_collision::scene::Completeness;
 use satisfice_collision::solid::{self, Relation, Solid};
 use serde::{Deserialize, Serialize};
 
@@ -50,27 +51,35 @@ impl From<Relation> for Lies {
 pub(super) fn solids(bodies: &[NamedBody]) -> anyhow::Result<Vec<Solid>> {
     let of = |body: &NamedBody| {
         let solid = body.placed().and_then(|mesh| Solid::new(&mesh));
-        solid.with_context(|| format!("--solid takes closed meshes, which {} is not", body.name))
+        solid.with_context(|| format!("--solid asks for solids, which {} is not", body.name))
     };
     bodies.iter().map(of).collect()
 }
 
-/// The bodies that overlap, as far as they were found until `stop`.
-pub(super) fn find(solids: &[Solid], stop: &(dyn Fn() -> bool + Sync)) -> Vec<Overlap> {
+/// The bodies that overlap, as far as they were found until `stop`, and whether these are all, with the best bounds of their depths.
+pub(super) fn find(solids: &[Solid], stop: &(dyn Fn() -> bool + Sync)) -> (Vec<Overlap>, bool) {
     let pairs = (0..solids.len()).flat_map(|a| (a + 1..solids.len()).map(move |b| (a, b)));
-    let pairs = pairs.take_while(|_| !stop());
-    let found = pairs.filter_map(|(a, b)| {
-        let solid::Overlap { relation, depth } = solid::overlap(&solids[a], &solids[b], stop)?;
-        Some(Overlap {
-            a,
-            b,
-            relation: relation.into(),
-            depth_at_least: depth.at_least,
-            depth_at_most: Some(depth.at_most).filter(|depth| depth.is_finite()),
-            direction: depth.direction,
-        })
-    });
-    found.collect()
+    let mut found = Vec::new();
+    for (a, b) in pairs {
+        if stop() {
+            return (found, false);
+        }
+        let (overlap, completeness) = solid::overlap(&solids[a], &solids[b], stop);
+        if let Some(solid::Overlap { relation, depth }) = overlap {
+            found.push(Overlap {
+                a,
+                b,
+                relation: relation.into(),
+                depth_at_least: depth.at_least,
+                depth_at_most: Some(depth.at_most).filter(|depth| depth.is_finite()),
+                direction: depth.direction,
+            });
+        }
+        if completeness == Completeness::Unknown {
+            return (found, false);
+        }
+    }
+    (found, true)
 }
 
 impl Overlap {

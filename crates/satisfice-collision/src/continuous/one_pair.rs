@@ -7,6 +7,7 @@ use super::step::{MovingContact, Step};
 use super::{Decided, Separation};
 use crate::Error;
 use crate::distance::PairKind;
+use crate::scene::Completeness;
 
 impl Step {
     /// The first time of a hit of a pair of this kind within `tolerance`, or `None` if it does not hit or there is no such pair.
@@ -20,10 +21,12 @@ impl Step {
         separation: Separation,
         tolerance: f64,
     ) -> Result<Option<Impact>, Error> {
-        self.impact_of_until(kind, contact, separation, tolerance, &|| false)
+        let impact = self.impact_of_until(kind, contact, separation, tolerance, &|| false)?;
+        Ok(impact.0)
     }
 
-    /// The same, until `stop` says so, which is asked while a decision by integers takes long; then also `None`.
+    /// The same, until `stop` says so, which is asked while a decision by integers takes long: then `None` and
+    /// [`Completeness::Unknown`], which says nothing of the pair.
     ///
     /// # Errors
     /// As [`impact_of`](Self::impact_of).
@@ -34,7 +37,7 @@ impl Step {
         separation: Separation,
         tolerance: f64,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Option<Impact>, Error> {
+    ) -> Result<(Option<Impact>, Completeness), Error> {
         let lists = Self::lists(kind)?;
         let goal = Goal {
             tolerance: Goal::checked(tolerance)?,
@@ -43,8 +46,13 @@ impl Step {
         };
         let pair = self.numbers(lists, contact);
         let pair = pair.filter(|&[a, b]| self.may_pair(lists, a, b));
-        let Some([a, b]) = pair else { return Ok(None) };
-        Ok(self.impact(kind, a, b, separation, goal).unwrap_or_default())
+        let Some([a, b]) = pair else {
+            return Ok((None, Completeness::Proved));
+        };
+        Ok(match self.impact(kind, a, b, separation, goal) {
+            Ok(impact) => (impact, Completeness::Proved),
+            Err(CutShort) => (None, Completeness::Unknown),
+        })
     }
 
     /// The first hit of a pair during a part of the step.

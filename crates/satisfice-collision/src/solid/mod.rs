@@ -5,13 +5,16 @@
 //! matter, and a shell within a shell is a hollow.
 //!
 //! ```
+//! use satisfice_collision::scene::Completeness;
 //! use satisfice_collision::solid::{Relation, Solid, overlap};
 //! use satisfice_collision::{Placement, generate};
 //! let large = Solid::new(&generate::icosphere(2.0, 3)?)?;
 //! let small = generate::icosphere(0.5, 3)?;
 //! let small = Solid::new(&Placement::from_translation([1.0, 0.0, 0.0])?.place(&small)?)?;
 //! assert!(large.contains([1.9, 0.0, 0.0]) && !large.contains([2.1, 0.0, 0.0]));
-//! let overlap = overlap(&large, &small, &|| false).expect("one lies within the other");
+//! let (overlap, completeness) = overlap(&large, &small, &|| false);
+//! let overlap = overlap.expect("one lies within the other");
+//! assert_eq!(completeness, Completeness::Proved);
 //! assert_eq!(overlap.relation, Relation::SecondInsideFirst);
 //! // The shortest way out is 0.5 to the surface and the diameter of the small ball.
 //! assert!((overlap.depth.at_most - 1.5).abs() < 0.02);
@@ -25,8 +28,10 @@ mod parity;
 mod unit;
 
 use crate::broad::{Closest, Dirty, FeatureTree, PairQuery, Watch, find_closest};
+use crate::distance::orientation::side_of_line;
 use crate::distance::{Point, Threshold};
 use crate::mesh::weld;
+use crate::scene::Completeness;
 use crate::{Aabb, Error, FeatureKind, Mesh, Placement};
 pub use depth::Depth;
 
@@ -66,12 +71,13 @@ pub struct Overlap {
 
 impl Solid {
     /// Checks that the surface is closed: that an even number of triangles meet at each edge. Vertices with equal coordinates count
-    /// as one; vertices and lines that belong to no triangle do not count.
+    /// as one; vertices and lines that belong to no triangle do not count. A surface may be flat: its depth in others is 0.
     ///
     /// Cost: O(n log n).
     ///
     /// # Errors
-    /// [`Error::NotClosed`], or [`Error::Parameter`] for a mesh without triangles.
+    /// [`Error::NotClosed`], or [`Error::Parameter`] for a mesh without a triangle that has an area, and for one so large that depths
+    /// may be out of the range of numbers.
     pub fn new(mesh: &Mesh) -> Result<Self, Error> {
         if mesh.triangles().is_empty() {
             return Err(Error::parameter(
@@ -87,8 +93,10 @@ impl Solid {
         let mesh = Mesh::new(vertices, Vec::new(), triangles)?;
         let parts = parts(&mesh);
         let corners = mesh.triangles().iter().flatten().map(|&v| mesh.vertex(v));
+        let bounds = Aabb::of_points(corners).unwrap_or_else(|| mesh.bounds());
+        check_size(&mesh, &bounds)?;
         Ok(Self {
-            bounds: Aabb::of_points(corners).unwrap_or_else(|| mesh.bounds()),
+            bounds,
             tree: FeatureTree::new(&mesh, FeatureKind::Triangle),
             is_convex: parts.len() == 1 && convex::is_convex(&mesh),
             parts,
@@ -119,50 +127,77 @@ impl Solid {
         corners.into_iter().map(|v| self.mesh.vertex(v))
     }
 
-    /// How many connected parts of another solid lie inside, if the surfaces do not meet.
-    fn parts_inside(&self, other: &Self) -> usize {
-        let inside = |v: &&u32| self.contains(other.mesh.vertex(**v));
-        other.parts.iter().filter(inside).count()
+    /// How many connected parts of another solid lie inside, if the surfaces do not meet. Those that the watch leaves time for.
+    fn parts_inside(&self, other: &Self, watch: &Watch<'_>) -> usize {
+        let parts = other.parts.iter().take_while(|_| !watch.ask(0));
+        parts.filter(|v| self.contains(other.mesh.vertex(**v))).count()
     }
 }
 
-/// Whether two solids overlap, and how deep; `None` if no point of one lies inside or on the other. `stop` may end the search early:
-/// bounds of the depth are then wider, and if it says so from the beginning, surfaces that meet may go unnoticed.
+/// Whether two solids overlap, and how deep; `None` if no point of one lies inside or on the other. `stop` may end the search early; if it
+/// does, the answer is [`Completeness::Unknown`]: an overlap is there as it says, but the bounds of its depth may be wider, and
+/// `None` says nothing.
+///
+/// ```
+/// use satisfice_collision::generate;
+/// use satisfice_collision::scene::Completeness;
+/// use satisfice_collision::solid::{Solid, overlap};
+/// let ball = Solid::new(&generate::icosphere(1.0, 3)?)?;
+/// assert_eq!(overlap(&ball, &ball, &|| true), (None, Completeness::Unknown));
+/// assert!(matches!(overlap(&ball, &ball, &|| false), (Some(_), Completeness::Proved)));
+/// # Ok::<(), satisfice_collision::Error>(())
+/// ```
 ///
 /// Whether they overlap is decided exactly. For two convex solids the bounds of the depth agree but for rounding, unless the search
 /// for it was ended; otherwise see [`Depth`].
 ///
 /// Cost: that of the closest pair of triangles, a ray for each connected part, and for the depth a few hundred passes over all vertices.
-pub fn overlap(first: &Solid, second: &Solid, stop: &(dyn Fn() -> bool + Sync)) -> Option<Overlap> {
+pub fn overlap(
+    first: &Solid,
+    second: &Solid,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> (Option<Overlap>, Completeness) {
+    let stop = |_: usize| stop();
+    let watch = Watch::until(&stop);
+    let overlap = relation(first, second, &watch).map(|relation| Overlap {
+        relation,
+        depth: depth::depth(first, second, &|| watch.ask(0)),
+    });
+    let completeness = match watch.stopped() {
+        true => Completeness::Unknown,
+        false => Completeness::Proved,
+    };
+    (overlap, completeness)
+}
+
+/// How two solids lie, as far as the watch lets it be found.
+fn relation(first: &Solid, second: &Solid, watch: &Watch<'_>) -> Option<Relation> {
     let (a, b) = (&first.bounds, &second.bounds);
     if (0..3).any(|k| a.max[k] < b.min[k] || b.max[k] < a.min[k]) {
         return None;
     }
-    let relation = if surfaces_meet(&first.tree, &second.tree, stop) {
-        Relation::SurfacesMeet
+    if surfaces_meet(&first.tree, &second.tree, watch) {
+        return Some(Relation::SurfacesMeet);
+    }
+    let second_parts = first.parts_inside(second, watch);
+    let first_parts = second.parts_inside(first, watch);
+    if watch.stopped() {
+        return None;
+    }
+    if first_parts == first.parts.len() {
+        Some(Relation::FirstInsideSecond)
+    } else if second_parts == second.parts.len() {
+        Some(Relation::SecondInsideFirst)
     } else {
-        let (second_parts, first_parts) = (first.parts_inside(second), second.parts_inside(first));
-        if first_parts == first.parts.len() {
-            Relation::FirstInsideSecond
-        } else if second_parts == second.parts.len() {
-            Relation::SecondInsideFirst
-        } else if first_parts + second_parts > 0 {
-            Relation::PartsInside
-        } else {
-            return None;
-        }
-    };
-    Some(Overlap {
-        relation,
-        depth: depth::depth(first, second, stop),
-    })
+        (first_parts + second_parts > 0).then_some(Relation::PartsInside)
+    }
 }
 
-/// Visits of pairs of boxes between two questions to `stop`.
+/// Visits of pairs of boxes between two questions to the watch.
 const VISITS: usize = 256;
 
-/// Whether a triangle of one tree meets one of another, as far as `stop` lets it be found.
-fn surfaces_meet(a: &FeatureTree, b: &FeatureTree, stop: &(dyn Fn() -> bool + Sync)) -> bool {
+/// Whether a triangle of one tree meets one of another, as far as the watch lets it be found.
+fn surfaces_meet(a: &FeatureTree, b: &FeatureTree, watch: &Watch<'_>) -> bool {
     // Closer than the least number that there is.
     let Ok(threshold) = Threshold::new(f64::from_bits(1)) else {
         return false;
@@ -170,7 +205,7 @@ fn surfaces_meet(a: &FeatureTree, b: &FeatureTree, stop: &(dyn Fn() -> bool + Sy
     let query = query(a, b, threshold);
     let (mut stack, mut found) = (Vec::new(), Vec::new());
     query.start(&mut stack);
-    while !stack.is_empty() && found.is_empty() && !stop() {
+    while !stack.is_empty() && found.is_empty() && !watch.ask(0) {
         query.step(&mut stack, VISITS, 1, &mut found);
     }
     !found.is_empty()
@@ -223,6 +258,31 @@ fn check_closed(mesh: &Mesh, triangles: &[[u32; 3]], number: &[usize]) -> Result
         triangles: first.len(),
         edges: 1 + open.count(),
     })
+}
+
+/// Refuses a surface that encloses nothing at any scale, and one four times as large as which nothing can be: two that overlap and the
+/// ways out of each other have to be in the range of numbers.
+fn check_size(mesh: &Mesh, bounds: &Aabb) -> Result<(), Error> {
+    let has_area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.vertex(v));
+        (0..3).any(|axis| side_of_line(a, b, c, axis) != 0)
+    };
+    if !mesh.triangles().iter().any(has_area) {
+        return Err(Error::parameter(
+            "number of triangles with an area",
+            0,
+            "the corners of each lie in one point or on one line, and enclose nothing; leave the mesh out, or scale it before it is rounded",
+        ));
+    }
+    let size = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
+    if size > f64::MAX / 4.0 {
+        return Err(Error::parameter(
+            "size of the surface",
+            format!("{size:e}"),
+            "at most 4e307, so that depths are in the range of numbers; give the mesh in a larger unit",
+        ));
+    }
+    Ok(())
 }
 
 /// A vertex of each connected part of the surface, the least one.

@@ -1,6 +1,8 @@
 //! Against solid angles, boxes whose depth is known, and all directions that can be the shallowest.
 #![allow(clippy::unwrap_used)]
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rand::{RngExt as _, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -31,7 +33,9 @@ fn solid(mesh: &Mesh) -> Solid {
 }
 
 fn overlap_of(a: &Mesh, b: &Mesh) -> Option<Overlap> {
-    overlap(&solid(a), &solid(b), &|| false)
+    let (overlap, completeness) = overlap(&solid(a), &solid(b), &|| false);
+    assert_eq!(completeness, Completeness::Proved);
+    overlap
 }
 
 /// A box of these sides around the origin, each side of so many squares.
@@ -403,11 +407,78 @@ fn other_depths_are_bounded() {
         depth.at_least > 0.4 && depth.at_least < 0.7 && depth.at_most >= 0.7 - 0.02,
         "{depth:?}"
     );
-    // Ended at once, the bounds are wide, and still bounds.
-    let (one, two) = (solid(&ball), solid(&ring));
-    let hasty = overlap(&one, &two, &|| true).unwrap().depth;
-    assert!(
-        hasty.at_least <= depth.at_least && hasty.at_most >= depth.at_most,
-        "{hasty:?}"
-    );
+}
+
+/// Ended after any number of questions, what is said is true: the bounds are wide, and still bounds.
+#[test]
+fn an_answer_that_is_ended_says_nothing_wrong() {
+    let ring = generate::torus(2.0, 0.5, 60, 30).unwrap();
+    let ball = |size: f64, x: f64| solid(&moved(&generate::icosphere(size, 2).unwrap(), [x, 0.0, 0.0]));
+    for (other, lies) in [
+        (ball(0.2, 2.0), Some(Relation::FirstInsideSecond)),
+        (ball(0.2, 2.5), Some(Relation::SurfacesMeet)),
+        (ball(9.0, 0.0), Some(Relation::SecondInsideFirst)),
+        (ball(1.2, 0.0), None),
+    ] {
+        let ring = solid(&ring);
+        let (whole, completeness) = overlap(&other, &ring, &|| false);
+        assert_eq!(completeness, Completeness::Proved);
+        assert_eq!(whole.map(|whole| whole.relation), lies);
+        let mut some = [0; 2];
+        for most in (0..).flat_map(|k| {
+            if k < 60 {
+                Some(k)
+            } else {
+                (k % 97 == 0).then_some(k)
+            }
+        }) {
+            let asked = AtomicUsize::new(0);
+            let stop = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+            let (found, completeness) = overlap(&other, &ring, &stop);
+            assert_eq!(completeness == Completeness::Unknown, asked.into_inner() > most);
+            if completeness == Completeness::Proved {
+                assert_eq!(found, whole);
+                break;
+            }
+            some[usize::from(found.is_some())] += 1;
+            if let Some(found) = found {
+                let whole = whole.unwrap();
+                assert_eq!(found.relation, whole.relation);
+                let [hasty, depth] = [found.depth, whole.depth];
+                assert!(
+                    hasty.at_least <= depth.at_least && hasty.at_most >= depth.at_most,
+                    "{hasty:?}"
+                );
+            }
+        }
+        assert!(some[0] > 0 && (some[1] > 0) == lies.is_some(), "{some:?}");
+    }
+}
+
+#[test]
+fn what_encloses_nothing_or_is_too_large_is_refused() {
+    let refused = |mesh: Result<Mesh, Error>, name: &str| match Solid::new(&mesh.unwrap()) {
+        Err(Error::Parameter { parameter, .. }) => assert_eq!(parameter, name),
+        other => panic!("{name}: {other:?}"),
+    };
+    let sheet = |points: [Point; 3]| Mesh::new(points.to_vec(), Vec::new(), vec![[0, 1, 2], [0, 2, 1]]);
+    let none = "number of triangles with an area";
+    refused(sheet([[0.5; 3]; 3]), none);
+    refused(sheet([[0.0; 3], [1.0; 3], [3.0; 3]]), none);
+    let ball = generate::icosphere(1.0, 1).unwrap();
+    let scaled = |by: f64| ball.with_vertices(ball.vertices().iter().map(|p| p.map(|c| by * c)).collect());
+    refused(scaled(f64::MAX), "size of the surface");
+    refused(scaled(f64::MAX / 4.0), "size of the surface");
+    // the largest ones have depths, and so have flat ones
+    let large = solid(&scaled(f64::MAX / 10.0).unwrap());
+    let beside = moved(&scaled(f64::MAX / 10.0).unwrap(), [f64::MAX / 20.0, 0.0, 0.0]);
+    for other in [&large, &solid(&beside)] {
+        let depth = overlap(&large, other, &|| false).0.unwrap().depth;
+        assert!(
+            depth.at_most.is_finite() && depth.at_least > 0.9 * depth.at_most,
+            "{depth:?}"
+        );
+    }
+    let flat = solid(&sheet([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap());
+    assert_eq!(overlap(&flat, &flat, &|| false).0.unwrap().depth.at_most, 0.0);
 }

@@ -178,7 +178,7 @@ impl Search<'_> {
                 if !self.is_over(start) {
                     for hit in some {
                         let kind = frames.kinds[usize::from(hit.kind)];
-                        let impact = frames.step.impact_of_until(
+                        let (impact, _) = frames.step.impact_of_until(
                             kind,
                             &hit.contact,
                             frames.separation,

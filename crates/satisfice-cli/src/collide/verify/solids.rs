@@ -18,7 +18,7 @@ pub(super) fn check(
     world: &World,
     checks: &mut Checks,
 ) -> anyhow::Result<()> {
-    let found = overlaps::find(world.solids()?, &|| false);
+    let (found, _) = overlaps::find(world.solids()?, &|| false);
     let was_stopped = matches!(head.stop_reason, StopReason::Time | StopReason::Cancelled);
     if !was_stopped {
         let all: Vec<String> = found.iter().map(|overlap| overlap.text(&world.bodies)).collect();
