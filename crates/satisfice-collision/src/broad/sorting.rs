@@ -17,12 +17,21 @@ impl Sorter {
     pub(crate) fn sort<'p>(&mut self, found: impl Iterator<Item = &'p [Pair]> + Clone, out: &mut Vec<Pair>) {
         out.clear();
         let n = found.clone().map(<[Pair]>::len).sum::<usize>();
-        let pairs = found.clone().flatten();
-        let (least, greatest) = pairs.clone().fold((u32::MAX, 0), |(least, greatest), pair| {
-            (least.min(pair.a), greatest.max(pair.a))
-        });
+        // list by list: one iterator over the pairs of all of them is slow
+        let (mut least, mut greatest) = (u32::MAX, 0);
+        for pairs in found.clone() {
+            for pair in pairs {
+                (least, greatest) = (least.min(pair.a), greatest.max(pair.a));
+            }
+        }
         let rows = greatest.saturating_sub(least) as usize + 1;
-        let is_sorted = pairs.clone().is_sorted();
+        let mut last = Pair { a: 0, b: 0 };
+        let is_sorted = found.clone().all(|pairs| {
+            let Some(first) = pairs.first() else { return true };
+            let follows = last <= *first;
+            last = pairs[pairs.len() - 1];
+            follows && pairs.is_sorted()
+        });
         if is_sorted || rows > SPARSE * n || u32::try_from(n).is_err() {
             for pairs in found {
                 out.extend_from_slice(pairs);
@@ -36,18 +45,22 @@ impl Sorter {
         let ends = &mut self.ends;
         ends.clear();
         ends.resize(rows, 0);
-        for pair in pairs.clone() {
-            ends[(pair.a - least) as usize] += 1;
+        for pairs in found.clone() {
+            for pair in pairs {
+                ends[(pair.a - least) as usize] += 1;
+            }
         }
         let mut sum = 0;
         for end in &mut *ends {
             sum += std::mem::replace(end, sum);
         }
         out.resize(n, Pair { a: 0, b: 0 });
-        for &pair in pairs {
-            let end = &mut ends[(pair.a - least) as usize];
-            out[*end as usize] = pair;
-            *end += 1;
+        for pairs in found {
+            for &pair in pairs {
+                let end = &mut ends[(pair.a - least) as usize];
+                out[*end as usize] = pair;
+                *end += 1;
+            }
         }
         let mut start = 0;
         for &end in &*ends {

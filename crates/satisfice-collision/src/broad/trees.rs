@@ -10,8 +10,12 @@ use super::watch::Watch;
 use crate::distance::Threshold;
 use crate::{Error, Placement};
 
-/// Visits, or decisions of a row of brute force, between two calls of the watch.
+/// Decisions of a row of brute force between two calls of the watch.
 const LOOK: usize = 1 << 12;
+/// Visits between two calls of the watch: each of two leaves may have 64 candidates.
+const VISITS: usize = 1 << 9;
+/// Lists of so many pairs are handed over, and not copied.
+const LONG: usize = 1 << 16;
 
 /// Finds pairs of features of kept trees. Keeps its memory from call to call.
 ///
@@ -157,6 +161,15 @@ impl TreeJoin {
         &self.pairs
     }
 
+    /// The pairs of the last call, for the caller to keep.
+    pub(crate) fn take_pairs(&mut self) -> Vec<Pair> {
+        let is_full = self.pairs.capacity() - self.pairs.len() <= self.pairs.len() / 8;
+        if self.pairs.len() >= LONG && is_full {
+            return std::mem::take(&mut self.pairs);
+        }
+        self.pairs.clone()
+    }
+
     /// All pairs of a query, or those found before the watch stops it.
     pub(crate) fn all(&mut self, query: &PairQuery<'_>, watch: &Watch<'_>) -> &[Pair] {
         if query.apart() {
@@ -190,7 +203,7 @@ impl TreeJoin {
         let go_on = |task: &mut Task| {
             let mut told = task.found.len();
             while !task.stack.is_empty() && !watch.stopped() {
-                go(task, LOOK);
+                go(task, VISITS);
                 watch.ask(task.found.len() - told);
                 told = task.found.len();
             }

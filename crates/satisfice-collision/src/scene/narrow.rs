@@ -211,7 +211,8 @@ impl World {
         if all {
             // the filter counts what it leaves out, as the descent of trees does
             (query.keep, query.shares_mesh) = (filter.is_needed().then_some(keep), false);
-            let pairs = space.join.brute_force(&query, watch).to_vec();
+            space.join.brute_force(&query, watch);
+            let pairs = space.join.take_pairs();
             filter.count(skips);
             return Ok(pairs);
         }
@@ -220,7 +221,8 @@ impl World {
         if is_partial {
             query.moved = moved;
         }
-        let mut pairs = space.join.all(&query, watch).to_vec();
+        space.join.all(&query, watch);
+        let mut pairs = space.join.take_pairs();
         skips.mesh_neighbours += space.join.work().neighbours;
         if is_partial {
             let rests = |state: &State, kind, moved, feature| match moved {
@@ -273,6 +275,13 @@ impl World {
         let (kind_a, kind_b) = self.kind.features();
         let (a, b) = (self.state(a), self.state(b));
         distance::within(&a.shape(kind_a, pair.a), &b.shape(kind_b, pair.b), self.threshold)
+    }
+
+    /// Builds the trees of two bodies, which are up to date, that would be built when they are used.
+    pub(super) fn build_shared_trees(&self, [a, b]: [u32; 2]) {
+        let (kind_a, kind_b) = self.kind.features();
+        self.state(a).tree(kind_a);
+        self.state(b).tree(kind_b);
     }
 
     /// Brings the trees of two bodies up to date.

@@ -48,6 +48,50 @@ fn an_interrupted_pass_resumes_exactly() {
     }
 }
 
+/// Between two questions little is found, however much there is: each takes time.
+#[test]
+fn a_stop_is_asked_after_what_is_found_too() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let mut world = World::new(PairKind::TriangleTriangle, Threshold::new(9.0).unwrap());
+    for _ in 0..2 {
+        world
+            .add(Body::fixed(generate::icosphere(1.0, 3).unwrap()))
+            .unwrap();
+    }
+    let (told, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let stop = |found: usize| {
+        let new = found - told.swap(found, Ordering::Relaxed);
+        most.fetch_max(new, Ordering::Relaxed);
+        false
+    };
+    world.update_until(&stop).unwrap();
+    assert_eq!(world.contacts().count(), 1280 * 1280);
+    assert!(most.into_inner() <= 1 << 16);
+}
+
+#[test]
+fn trees_are_built_beforehand_on_one_thread_too() {
+    for kind in [
+        PairKind::TriangleTriangle,
+        PairKind::VertexTriangle,
+        PairKind::EdgeEdge,
+    ] {
+        let mut world = World::new(kind, Threshold::new(0.2).unwrap());
+        let add = |world: &mut World| world.add(Body::rigid(generate::icosphere(1.0, 2).unwrap()));
+        let ids = [(); 2].map(|()| add(&mut world).unwrap());
+        let (first, second) = world.feature_kinds();
+        let has_tree = |world: &World, id, kind| world.mesh(id).unwrap().pays_for_tree(kind);
+        assert!(!has_tree(&world, ids[0], first));
+        world.build_trees().unwrap();
+        for id in ids {
+            assert!(
+                has_tree(&world, id, first) && has_tree(&world, id, second),
+                "{kind}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_stopped_question_keeps_what_it_found() {
     use std::sync::atomic::{AtomicUsize, Ordering};
