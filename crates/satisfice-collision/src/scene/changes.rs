@@ -90,7 +90,9 @@ impl Log {
 impl World {
     /// The contacts that the last update examined: those that began or ended, and those that persist although one of their
     /// bodies moved. Contacts of bodies at rest are not among them. In the order in which bodies were examined; those of two
-    /// bodies are sorted. A body that is added, removed, replaced, excluded or moved afterwards ends this: there are no changes
+    /// bodies are sorted. The contacts of a body that was [replaced](World::replace) had features of another mesh: each of them
+    /// ends, and those of the new mesh begin, so that a contact that both meshes have is there twice, as [`ChangeKind::Ended`] and as
+    /// [`ChangeKind::Begun`]. A body that is added, removed, replaced, excluded or moved afterwards ends this: there are no changes
     /// until the next update.
     pub fn changes(&self) -> impl Iterator<Item = Change> {
         let entries = self.log.entries.iter().filter(|_| self.log.is_over);

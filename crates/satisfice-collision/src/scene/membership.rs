@@ -225,7 +225,8 @@ impl World {
         Ok(())
     }
 
-    /// Excludes contacts of two bodies, or of one with itself.
+    /// Excludes contacts of two bodies, or of one with itself. Cost: linear in the kept pairs of the first body and logarithmic in
+    /// the excluded pairs; and the next update goes through all excluded pairs once, to count them.
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
@@ -248,7 +249,8 @@ impl World {
         Ok(())
     }
 
-    /// Removes an exclusion.
+    /// Removes an exclusion. Cost: logarithmic in the excluded pairs, and that of finding the partners of the first body again; the next
+    /// update counts the excluded pairs as after [`World::exclude`].
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is no such body.
