@@ -76,6 +76,9 @@ pub enum Motion {
 /// let cloth = Body::deforming(generate::cloth(1.0, 1.0, 10, 10)?).beyond_ring(1);
 /// # Ok::<(), satisfice_collision::Error>(())
 /// ```
+///
+/// Cloning is cheap: the copy shares the mesh.
+#[derive(Clone)]
 pub struct Body {
     pub(super) mesh: SharedMesh,
     pub(super) motion: Motion,

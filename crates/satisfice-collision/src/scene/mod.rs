@@ -25,6 +25,7 @@ mod body_tree;
 mod changes;
 mod contact;
 mod count;
+mod debug;
 mod deforming;
 mod extent;
 mod filter;

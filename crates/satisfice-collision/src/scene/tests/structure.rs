@@ -395,3 +395,25 @@ fn bodies_that_come_and_go_between_updates_leave_nothing_behind() {
     let contacts = world.frame().unwrap().contacts;
     assert!(!contacts.is_empty() && contacts.iter().all(|contact| contact.bodies() == (stays, other)));
 }
+
+/// However large the meshes are, and however many bodies there are.
+#[test]
+fn what_is_printed_is_short() {
+    let body = Body::rigid(generate::icosphere(1.0, 3).unwrap()).at(at(1.0, 2.0, 3.0));
+    let mut world = world(PairKind::TriangleTriangle, 0.1);
+    for _ in 0..20 {
+        world.add(body.clone()).unwrap();
+    }
+    let pass = world.pass();
+    let (body, world, pass) = (format!("{body:?}"), format!("{world:?}"), format!("{pass:?}"));
+    assert!(
+        body.contains("Rigid") && body.contains("1280 triangles"),
+        "{body}"
+    );
+    assert!(
+        world.contains("TriangleTriangle") && world.contains("bodies: 20"),
+        "{world}"
+    );
+    assert!(pass.contains("found: 0"), "{pass}");
+    assert!([body, world, pass].iter().all(|text| text.len() < 500));
+}
