@@ -105,7 +105,8 @@ impl Placement {
         let product = |i: usize, j: usize| (0..3).map(|k| rows[i][k] * rows[j][k]).sum::<f64>();
         let is_off = |(i, j): (usize, usize)| {
             let expected = if i == j { 1.0 } else { 0.0 };
-            !((product(i, j) - expected).abs() <= OFF)
+            let off = (product(i, j) - expected).abs();
+            off.is_nan() || off > OFF
         };
         if (0..3).flat_map(|i| (i..3).map(move |j| (i, j))).any(is_off) {
             return refuse(
