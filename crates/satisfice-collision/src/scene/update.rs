@@ -28,7 +28,7 @@ impl World {
     /// on with the pairs of bodies that are left.
     ///
     /// Two parts ask no `stop`. Trees that do not exist yet are built first; [`World::build_trees`] does so beforehand. What
-    /// was found of two bodies is put in order at the end: on one thread, which takes up to a fifth of the processor time of the search where
+    /// was found of two bodies is put in order at the end: on one thread, which takes about a fifth of the processor time of the search where
     /// most features of two bodies are near each other, and little else.
     ///
     /// # Errors
