@@ -46,7 +46,7 @@ Examples:
   satisfice collide a.obj b.ply --threshold 0.01           all pairs of vertices closer than 0.01
   satisfice bench mine.toml --seeds 0..16 --out results    compare engines on problems, over seeds
 
-Exit codes: 0 at least one hit (or success), 1 no hit (or a report that is wrong), 2 an error."
+Exit codes: 0 at least one hit (or success), 1 no hit until then (or a report that is wrong), 2 an error."
 )]
 pub(crate) struct Satisfice {
     #[command(subcommand)]

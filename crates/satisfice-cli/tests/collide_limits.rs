@@ -318,8 +318,8 @@ fn surfaces_that_may_cut_are_pointed_at_where_only_vertices_were_compared() {
         (done.code, done.stderr.as_str()),
         (
             1,
-            "note: only vertices were compared; the surfaces of flat.obj and through.obj may meet all the same, since their \
-             boxes overlap: --pairs triangle-triangle compares surfaces\n"
+            "note: only vertices were compared; the surfaces of flat.obj and through.obj may be closer than the threshold all \
+             the same, as their boxes are: --pairs triangle-triangle compares surfaces\n"
         )
     );
     for other in ["--pairs triangle-triangle", "--at through:0,0,2"] {

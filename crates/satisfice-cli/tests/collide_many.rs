@@ -175,3 +175,55 @@ fn a_time_limit_covers_what_is_made_before_a_search() {
         (&"Time".into(), &"Unknown".into(), &0.into())
     );
 }
+
+/// Two bars that cross between their vertices, and a third one beside the end of the first.
+#[test]
+fn bodies_that_touch_are_those_with_pairs_of_the_kind_that_is_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let bar = |name: &str, low: [f64; 3], high: [f64; 3]| {
+        let corner = |i: usize| {
+            let at = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
+            format!("v {} {} {}\n", at(0), at(1), at(2))
+        };
+        let corners: String = (0..8).map(corner).collect();
+        let faces = "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
+        fs::write(folder.path().join(name), corners + faces).unwrap();
+    };
+    bar("along.obj", [-5.0, -0.5, -0.5], [5.0, 0.5, 0.5]);
+    bar("across.obj", [-0.5, -5.0, -0.25], [0.5, 5.0, 0.25]);
+    bar("beside.obj", [5.05, -0.5, -0.5], [6.0, 0.5, 0.5]);
+    let call = "collide along.obj across.obj beside.obj --threshold 0.1 --touching";
+    let surfaces = satisfice_in(folder.path(), &format!("{call} --pairs triangle-triangle"));
+    assert_eq!((surfaces.code, surfaces.stderr.as_str()), (0, ""));
+    assert!(
+        surfaces.stdout.contains("surfaces closer than the threshold")
+            && surfaces.stdout.contains("along.obj - across.obj"),
+        "{}",
+        surfaces.stdout
+    );
+    for (pairs, said) in [
+        ("vertex-vertex", "which means: vertices closer than the threshold"),
+        (
+            "vertex-triangle",
+            "which means: a vertex and a triangle closer than the threshold",
+        ),
+    ] {
+        let done = satisfice_in(folder.path(), &format!("{call} --pairs {pairs}"));
+        assert!(done.code == 0 && done.stdout.contains(said), "{}", done.stdout);
+        assert!(
+            done.stderr.contains(
+                "the surfaces of along.obj and across.obj may be closer than the threshold all the same"
+            ),
+            "{pairs}: {}",
+            done.stderr
+        );
+    }
+    let closest = satisfice_in(folder.path(), "collide along.obj across.obj --closest 1");
+    assert!(
+        closest
+            .stderr
+            .starts_with("note: only vertices were compared; surfaces may be closer than that"),
+        "{}",
+        closest.stderr
+    );
+}

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 mod common;
+#[path = "collide_motion/unasked.rs"]
+mod unasked;
 
 use std::fs;
 use std::path::Path;

@@ -45,10 +45,10 @@ Meshes are .obj, .ply, .stl and .off files; scenes are .gltf and .glb files (a b
   name = \"left arm\"
   at = [0, 0, 2.5]           # also rotate = [degrees about x, then y, then z] and scale = 2
 All may be compressed (.gz). Features are numbered from 0: vertices and triangles as in the file, edges in the order of their lower,
-then their higher vertex. `Touch` means: surfaces closer than the threshold;
+then their higher vertex. `Touch` means: features of the kind of --pairs closer than the threshold;
 a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.
 
-Exit codes: 0 a pair was found (with --solid, or bodies that overlap), 1 none was, 2 an error.")]
+Exit codes: 0 a pair was found (with --solid, or bodies that overlap), 1 none was (for certain if `answer` is Proved), 2 an error.")]
 pub(crate) struct CollideArguments {
     /// Files of meshes or scenes: .obj, .ply, .stl, .off, .gltf, .glb, .json or .toml; `-` is standard input.
     #[arg(value_name = "MESH", required_unless_present = "from", value_hint = ValueHint::FilePath)]
@@ -185,7 +185,7 @@ pub(crate) enum Axis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Args)]
 #[group(multiple = false)]
 pub(crate) struct FindArguments {
-    /// Only which bodies touch (have surfaces closer than the threshold): stop at the first pair of each two bodies. Not with --from.
+    /// Only which bodies touch (have a pair of the kind of --pairs; triangle-triangle for surfaces): stop at the first pair of each two bodies. Not with --from.
     #[arg(long)]
     touching: bool,
 

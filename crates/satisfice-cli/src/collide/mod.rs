@@ -107,8 +107,8 @@ fn collide_at_rest(arguments: &CollideArguments) -> anyhow::Result<ExitCode> {
     if files.summary {
         steps.step(output::print(summary::summary(&report).as_bytes()));
     }
-    if report.head.hits == 0
-        && let Some(hint) = warnings::only_vertices(&world)
+    if (report.head.hits == 0 || report.head.answer == satisfice::Completeness::Proved)
+        && let Some(hint) = warnings::surfaces_not_compared(&world, &report.touching)
     {
         message::say(format_args!("note: {hint}"));
     }

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use satisfice::{Completeness, StopReason};
 use satisfice_catalogue::quantity::shown;
 use satisfice_collision::FeatureKind;
+use satisfice_collision::distance::PairKind;
 
 use super::arguments::Find;
 use super::body::NamedBody;
@@ -128,7 +129,7 @@ fn count(report: &Report<'_>) -> String {
 /// How sure the answer is: a name and what it says. Where all pairs are asked for, whether these are all.
 pub(super) fn assurance(report: &Report<'_>) -> (&'static str, String) {
     match asked(report) {
-        Some(answer) => ("Answer", answer.to_owned()),
+        Some(answer) => ("Answer", answer),
         None => ("Completeness", completeness(report)),
     }
 }
@@ -186,29 +187,38 @@ fn was_stopped(head: &Head) -> bool {
 }
 
 /// What is sure about a list that is asked not to have all pairs, unless it has all.
-fn asked(report: &Report<'_>) -> Option<&'static str> {
+fn asked(report: &Report<'_>) -> Option<String> {
     let request = &report.world.request;
     let was_stopped = report.head.answer != Completeness::Proved;
     let has_all = report.head.completeness == Completeness::Proved;
-    match request.find {
-        Find::All => None,
-        Find::First | Find::Closest(_) if has_all => None,
+    let features = match request.kind {
+        PairKind::VertexVertex => "vertices",
+        PairKind::VertexEdge => "a vertex and an edge",
+        PairKind::VertexTriangle => "a vertex and a triangle",
+        PairKind::EdgeEdge => "edges",
+        PairKind::EdgeTriangle | PairKind::TriangleTriangle => "surfaces",
+    };
+    let said = match request.find {
+        Find::All => return None,
+        Find::First | Find::Closest(_) if has_all => return None,
         Find::Touching if was_stopped => {
-            Some("unknown: one pair of each two bodies that were found to touch; others may touch as well")
+            "unknown: one pair of each two bodies that were found to touch; others may touch as well"
+                .to_owned()
         }
-        Find::Touching if request.solid => Some(
-            "proved: no other bodies touch, which means: surfaces closer than the threshold, or one inside the other; one pair of each two is listed",
+        Find::Touching if request.solid => format!(
+            "proved: no other bodies touch, which means: {features} closer than the threshold, or one inside the other; one pair of each two is listed"
         ),
-        Find::Touching => Some(
-            "proved: no other bodies touch, which means: surfaces closer than the threshold; one pair of each two is listed; --solid also finds bodies inside others",
+        Find::Touching => format!(
+            "proved: no other bodies touch, which means: {features} closer than the threshold; one pair of each two is listed; --solid also finds bodies inside others"
         ),
-        Find::First if was_stopped => Some("unknown: no pair was found until then"),
-        Find::First => Some("one pair, whichever is found first"),
+        Find::First if was_stopped => "unknown: no pair was found until then".to_owned(),
+        Find::First => "one pair, whichever is found first".to_owned(),
         Find::Closest(_) if was_stopped => {
-            Some("unknown: the closest of the pairs found; others may be closer")
+            "unknown: the closest of the pairs found; others may be closer".to_owned()
         }
-        Find::Closest(_) => Some("proved: no other pair is closer"),
-    }
+        Find::Closest(_) => "proved: no other pair is closer".to_owned(),
+    };
+    Some(said)
 }
 
 /// The bodies that have pairs with each other, by their names.

@@ -1,9 +1,12 @@
 //! Signs of wrong units, wrong scales and seams. They do not change the pairs, which are exact for the given numbers.
 
-use satisfice_catalogue::quantity::shown;
-use satisfice_collision::FeatureKind;
-use satisfice_collision::distance::PairKind;
+use std::collections::BTreeSet;
 
+use satisfice_catalogue::quantity::shown;
+use satisfice_collision::distance::PairKind;
+use satisfice_collision::{Aabb, FeatureKind};
+
+use super::arguments::Find;
 use super::scene::World;
 use super::weld;
 
@@ -108,26 +111,49 @@ pub(super) fn warnings(world: &World) -> Vec<String> {
     said
 }
 
-/// Surfaces can cut through each other where no two vertices are near: said where only vertices were compared, none are near,
-/// and two bodies with triangles have boxes that overlap.
-pub(super) fn only_vertices(world: &World) -> Option<String> {
-    if world.request.kind != PairKind::VertexVertex || world.request.solid {
-        return None;
-    }
-    let with_surface = || {
-        let bodies = world.bodies.iter();
-        bodies.filter(|body| !body.unplaced().triangles().is_empty())
+/// Surfaces can meet where no pair of the kind that was compared is near. Said of two bodies without a pair whose boxes are close
+/// enough, and of every distance that is not one of surfaces.
+pub(super) fn surfaces_not_compared(world: &World, touching: &BTreeSet<[usize; 2]>) -> Option<String> {
+    let request = &world.request;
+    let compared = match request.kind {
+        PairKind::VertexVertex => "only vertices were compared",
+        PairKind::VertexEdge => "only vertices and edges were compared",
+        PairKind::VertexTriangle => "only vertices and triangles were compared, not edges with edges",
+        PairKind::EdgeEdge => "only edges were compared, not vertices with triangles",
+        // The nearest points of two surfaces are on an edge of one of them.
+        PairKind::EdgeTriangle | PairKind::TriangleTriangle => return None,
     };
-    let boxes: Vec<_> = with_surface().map(|body| (&body.name, body.bounds())).collect();
-    let (a, b) = boxes.iter().enumerate().find_map(|(index, (a, box_a))| {
-        let (b, _) = boxes[index + 1..].iter().find(|(_, box_b)| {
-            (0..3).all(|k| box_a.min[k] <= box_b.max[k] && box_b.min[k] <= box_a.max[k])
-        })?;
-        Some((*a, *b))
+    let advice = "--pairs triangle-triangle compares surfaces";
+    let mut boxes: Vec<_> = (0..)
+        .zip(&world.bodies)
+        .filter(|(_, body)| !body.unplaced().triangles().is_empty())
+        .map(|(number, body)| (number, &body.name, body.bounds()))
+        .collect();
+    match request.find {
+        Find::First if !touching.is_empty() => return None,
+        Find::Closest(_) if boxes.len() > 1 => {
+            return Some(format!("{compared}; surfaces may be closer than that: {advice}"));
+        }
+        // Solids that overlap are found by their volumes.
+        Find::All | Find::First | Find::Closest(_) if request.solid => return None,
+        _ => {}
+    }
+    boxes.sort_by(|(_, _, a), (_, _, b)| a.min[0].total_cmp(&b.min[0]));
+    let (a, b) = boxes.iter().enumerate().find_map(|(index, (number, a, box_a))| {
+        let is_near = |k: usize, b: &Aabb| {
+            b.min[k] - box_a.max[k] < request.threshold && box_a.min[k] - b.max[k] < request.threshold
+        };
+        boxes[index + 1..]
+            .iter()
+            .take_while(|(_, _, box_b)| is_near(0, box_b))
+            .find(|(other, _, box_b)| {
+                let pair = [*number.min(other), *number.max(other)];
+                is_near(1, box_b) && is_near(2, box_b) && !touching.contains(&pair)
+            })
+            .map(|(other, b, _)| if number < other { (*a, *b) } else { (*b, *a) })
     })?;
     Some(format!(
-        "only vertices were compared; the surfaces of {a} and {b} may meet all the same, since their boxes overlap: \
-         --pairs triangle-triangle compares surfaces"
+        "{compared}; the surfaces of {a} and {b} may be closer than the threshold all the same, as their boxes are: {advice}"
     ))
 }
 

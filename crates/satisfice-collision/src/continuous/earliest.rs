@@ -252,14 +252,14 @@ impl<'s> Descent<'s> {
                 self.look_at_all();
             }
             if let Some(next) = self.at_once.pop() {
-                if next.time < self.best.time[1] {
+                if self.may_be_first(next.time) {
                     return Some(next);
                 }
                 continue;
             }
-            let next = self.waiting.pop().filter(|next| next.time < self.best.time[1])?;
+            let next = self.waiting.pop().filter(|next| self.may_be_first(next.time))?;
             // All that wait are later than this one, which is close enough. A bound of 0 would not say that the start is free.
-            if next.time > 0.0 && next.time + self.tolerance >= self.best.time[1] {
+            if next.time > 0.0 && !self.may_be_first(next.time + self.tolerance) {
                 self.best.time[0] = self.best.time[0].min(next.time);
                 return None;
             }
@@ -268,8 +268,13 @@ impl<'s> Descent<'s> {
         }
     }
 
+    /// Whether a hit at this time or later can be the first. Until one is found, even at the end of the step.
+    fn may_be_first(&self, time: f64) -> bool {
+        self.best.first.is_none() || time < self.best.time[1]
+    }
+
     fn wait(&mut self, kind: u8, time: f64, a: GroupOrFeature, b: GroupOrFeature) {
-        if time < self.best.time[1] && !(self.has_rigid_bodies && self.is_one_rigid_body(kind, a, b)) {
+        if self.may_be_first(time) && !(self.has_rigid_bodies && self.is_one_rigid_body(kind, a, b)) {
             self.push(Waiting { time, kind, a, b });
         }
     }
@@ -349,7 +354,7 @@ impl<'s> Descent<'s> {
             let time = f64::from(self.first_times[lane][other]);
             let a = trees[0].order.get(of.a.group as usize * LANES + lane);
             let b = trees[1].order.get(of.b.group as usize * LANES + other);
-            if let (Some(&a), Some(&b), true) = (a, b, time < self.best.time[1]) {
+            if let (Some(&a), Some(&b), true) = (a, b, self.may_be_first(time)) {
                 let pair = if is_one_list && a > b { [b, a] } else { [a, b] };
                 self.look_at(of.kind, lists, pair, time);
             }
@@ -363,6 +368,11 @@ impl<'s> Descent<'s> {
             return;
         }
         self.best.queries += 1;
+        if time >= 1.0 {
+            // boxes meet at the end of the step, from where no look can go on
+            self.ask(KINDS[number as usize], lists, pair, 0.0);
+            return;
+        }
         if self.looks.kind != number {
             self.look_at_all();
         }
@@ -383,7 +393,7 @@ impl<'s> Descent<'s> {
         }
     }
 
-    /// Lets a pair wait for the time up to which it is free.
+    /// Lets a pair wait for the time up to which it is free; for the whole step, the end included, if that is 1.
     fn wait_until(&mut self, number: u8, lists: [FeatureList; 2], [a, b]: [u32; 2], free: f64) {
         if free >= self.best.time[1] {
             return;

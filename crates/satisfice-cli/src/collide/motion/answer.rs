@@ -210,6 +210,7 @@ impl Search<'_> {
             first,
             queries,
             stop: match is_decided && all_are_timed {
+                _ if pairs.len() == wanted && !all_are_listed => StopReason::Hits,
                 true => StopReason::Covered,
                 false if count >= wanted as u64 => StopReason::Hits,
                 false => self.why_stopped(),

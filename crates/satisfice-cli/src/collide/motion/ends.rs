@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::super::arguments::CollideArguments;
 use super::super::body::NamedBody;
 use super::super::inputs::{self, Inputs};
+use super::bent::bent;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Ends {
@@ -27,6 +28,16 @@ pub(super) struct Times {
     pub(super) seconds: [f64; 2],
     /// Their names; all if there is none.
     animations: Vec<String>,
+}
+
+/// What both ends are read to.
+pub(super) struct EndsRead {
+    /// At the start and at the end.
+    pub(super) bodies: [Vec<NamedBody>; 2],
+    /// Every file that was read for them.
+    pub(super) files: Vec<PathBuf>,
+    /// What is to be said if bodies do not move straight from the one end to the other.
+    pub(super) bent: Option<String>,
 }
 
 impl Times {
@@ -144,8 +155,7 @@ impl Ends {
         }
     }
 
-    /// The bodies at the start and at the end, and every file that was read for them.
-    pub(super) fn read(&self) -> anyhow::Result<([Vec<NamedBody>; 2], Vec<PathBuf>)> {
+    pub(super) fn read(&self) -> anyhow::Result<EndsRead> {
         match self {
             Self::Files { from, to } => {
                 if from.reads_stdin() && to.reads_stdin() {
@@ -154,7 +164,11 @@ impl Ends {
                 let (start, mut files) = from.read().context("--from")?;
                 let (end, others) = to.read().context("--to")?;
                 files.extend(others);
-                Ok(([start, end], files))
+                Ok(EndsRead {
+                    bodies: [start, end],
+                    files,
+                    bent: None,
+                })
             }
             Self::Times(times) => times.read(),
         }
@@ -162,16 +176,19 @@ impl Ends {
 }
 
 impl Times {
-    fn read(&self) -> anyhow::Result<([Vec<NamedBody>; 2], Vec<PathBuf>)> {
+    fn read(&self) -> anyhow::Result<EndsRead> {
         let names: Vec<&str> = self.animations.iter().map(String::as_str).collect();
         let scenes = self.inputs.scenes(&names)?;
         self.check(&scenes)?;
         let [from, to] = self.seconds;
-        let bodies = [
-            self.inputs.at_time(&scenes, from).context("--from")?,
-            self.inputs.at_time(&scenes, to).context("--to")?,
-        ];
-        Ok((bodies, inputs::files(&scenes)))
+        let start = self.inputs.at_time(&scenes, from).context("--from")?;
+        let end = self.inputs.at_time(&scenes, to).context("--to")?;
+        let at = |seconds| self.inputs.at_time(&scenes, seconds);
+        Ok(EndsRead {
+            bent: bent([&start, &end], self.seconds, at)?,
+            bodies: [start, end],
+            files: inputs::files(&scenes),
+        })
     }
 
     /// The animations must exist and reach the times: behind its end nothing moves, which nobody asks for on purpose.

@@ -11,7 +11,7 @@ use satisfice_collision::{Error, Mesh};
 use serde_json::json;
 
 use super::super::body::NamedBody;
-use super::ends::Ends;
+use super::ends::{Ends, EndsRead};
 
 /// What makes a step.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,12 +42,18 @@ pub(super) struct Frames {
     pub(super) kinds: Vec<PairKind>,
     pub(super) separation: Separation,
     is_at_rest: bool,
+    /// What is said if the bodies of an animation do not move straight during the step.
+    pub(super) bent: Option<String>,
 }
 
 impl Frames {
     pub(super) fn read(request: MotionRequest) -> anyhow::Result<Self> {
         let separation = Separation::new(request.threshold)?;
-        let ([bodies, ends], files) = request.ends.read()?;
+        let EndsRead {
+            bodies: [bodies, ends],
+            files,
+            bent,
+        } = request.ends.read()?;
         check_partners(&request, &bodies, &ends)?;
         if bodies.len() < 2 && !request.within {
             bail!("one body has no partner: name a second mesh, or look for pairs within it by --self");
@@ -75,6 +81,7 @@ impl Frames {
             kinds,
             separation,
             is_at_rest,
+            bent,
         };
         frames.check_features()?;
         Ok(frames)

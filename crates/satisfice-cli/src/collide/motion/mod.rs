@@ -1,6 +1,7 @@
 //! `satisfice collide --from A --to B`: what comes near while bodies move from one frame to the next.
 
 mod answer;
+mod bent;
 mod csv;
 mod ends;
 mod frames;
@@ -44,6 +45,9 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
             "warning: no vertex moves: the coordinates are the same at --from and --to"
         ));
     }
+    if let Some(bent) = &frames.bent {
+        message::say(format_args!("warning: {bent}"));
+    }
     let cancel = interrupt::listen()?;
     let (time, hits) = arguments.search.limits();
     let search = Search {
@@ -73,6 +77,12 @@ pub(super) fn collide(arguments: &CollideArguments) -> anyhow::Result<ExitCode> 
     }
     if files.summary {
         steps.step(output::print(summary::summary(&report).as_bytes()));
+    }
+    if let (0, Some(kind)) = (report.head.hits, frames.request.pairs) {
+        message::say(format_args!(
+            "note: only {} pairs were compared; without --pairs all those in which surfaces, wires and points first meet",
+            kind.name()
+        ));
     }
     steps.outcome()?;
     Ok(ExitCode::from(u8::from(report.head.hits == 0)))

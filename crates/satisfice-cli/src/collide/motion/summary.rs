@@ -85,6 +85,9 @@ pub(super) fn completeness(report: &MotionReport<'_>) -> &'static str {
     let head = &report.head;
     match (head.completeness, head.reference_hits) {
         (Completeness::Proved, _) => "proved: these are all",
+        (_, Some(_)) if head.stop_reason == StopReason::Hits => {
+            "all are counted, but --hits asks for so many only, which need not be the earliest"
+        }
         (_, Some(_)) => "all are counted, but not all are listed: --max-pairs N lists more",
         (_, None) => "unknown: there may be more",
     }
@@ -96,8 +99,13 @@ pub(super) fn first_impact(report: &MotionReport<'_>) -> String {
     };
     let [low, high] = first.time;
     let found = !report.pairs.is_empty();
+    let request = &report.frames.request;
     match (first.proved, found) {
-        (true, false) => "none: the step is free, that is proved".to_owned(),
+        (true, false) => match (request.pairs, request.ends.times()) {
+            (Some(kind), _) => format!("none: no {} pair comes that near, that is proved", kind.name()),
+            (None, Some(_)) => "none: the straight step is free, that is proved".to_owned(),
+            (None, None) => "none: the step is free, that is proved".to_owned(),
+        },
         (true, true) if high == 0.0 => "at the start, that is proved".to_owned(),
         (true, true) => format!("{}, that is proved", bounds(first)),
         (false, true) => format!("{} so far; an earlier one may exist", bounds(first)),

@@ -161,17 +161,39 @@ fn first(head: &Head, lists: &ImpactLists, frames: &Frames, checks: &mut Checks)
     if head.evaluations > MOST_TO_COUNT {
         return Ok(Looked::TooLong);
     }
-    let earliest = frames
-        .step
-        .earliest_among(&frames.kinds, frames.separation, TOLERANCE, &mut || false)?;
-    let [low, high] = earliest.time;
+    let there_is = first_of_all(frames)?;
+    let [low, high] = there_is.unwrap_or([1.0, 1.0]);
     let is_bounded = given.time[0] <= high && low <= given.time[1];
     let is_final = !given.proved || (0.0..=TOLERANCE).contains(&(given.time[1] - given.time[0]));
-    let expected = format!("between {low} and {high}");
-    checks.that(is_bounded && is_final, "first_impact", given.time, expected);
+    let is_found = !given.proved || lists.pairs.is_empty() == there_is.is_none();
+    let expected = there_is.map_or("none".to_owned(), |_| format!("between {low} and {high}"));
+    checks.that(
+        is_bounded && is_final && is_found,
+        "first_impact",
+        given.time,
+        expected,
+    );
     Ok(if given.proved {
         Looked::ForMissing
     } else {
         Looked::NoClaim
     })
+}
+
+/// Bounds of the first impact, by asking about every pair of the step instead of looking for the first one; `None` if there is none.
+fn first_of_all(frames: &Frames) -> anyhow::Result<Option<[f64; 2]>> {
+    let mut first: Option<[f64; 2]> = None;
+    for &kind in &frames.kinds {
+        let mut hits = Vec::new();
+        frames
+            .step
+            .each_hit(kind, frames.separation, &mut || false, &mut |hit| hits.push(hit))?;
+        for hit in &hits {
+            if let Some(impact) = frames.step.impact_of(kind, hit, frames.separation, TOLERANCE)? {
+                let known = first.unwrap_or(impact.time);
+                first = Some([known[0].min(impact.time[0]), known[1].min(impact.time[1])]);
+            }
+        }
+    }
+    Ok(first)
 }
