@@ -366,6 +366,14 @@ fn rotation_is_followed() {
         0
     );
     assert!(rigid_hits(&[(&bar, turn)], PairKind::EdgeEdge, delta, 0.0).is_err());
+    // A touch is never certain: the places of vertices are rounded.
+    let falls = RigidMotion {
+        translation: [0.0, 2.0, 0.0],
+        ..RigidMotion::REST
+    };
+    let bodies = [(&bar, falls), (&peg, RigidMotion::REST)];
+    let touch = rigid_hits(&bodies, PairKind::EdgeEdge, Separation::TOUCHING, 1e-3).unwrap();
+    assert_eq!((touch.certain.len(), touch.possible.len()), (0, 1), "{touch:?}");
     let bad = RigidMotion {
         axis: [0.0; 3],
         ..turn

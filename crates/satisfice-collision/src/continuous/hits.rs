@@ -58,7 +58,8 @@ impl Step {
     /// All pairs of a kind that come nearer than delta during the step, or touch for a delta of 0. Uses the threads of the
     /// current rayon pool.
     ///
-    /// Candidates are decided one by one and never stored. Cost: about 100 ns a candidate.
+    /// Candidates are decided one by one and never stored. Cost: about 100 ns a candidate, far more
+    /// where rounding decides nothing (see [`decide`](super::decide)).
     ///
     /// # Errors
     /// [`Error::Parameter`] for the kinds edge-triangle and triangle-triangle.

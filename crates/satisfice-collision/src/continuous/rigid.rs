@@ -11,6 +11,9 @@ use super::{Separation, vector::dot};
 use crate::distance::{PairKind, Point};
 use crate::{Error, Mesh};
 
+/// Distances this far apart, as a part of the size of the scene, are told apart without integers; far closer ones take
+/// milliseconds for each pair.
+const EASY: f64 = 1e-9;
 /// The most pieces that a step is cut into.
 const MOST_PIECES: u32 = 1 << 16;
 
@@ -105,14 +108,17 @@ impl RigidMotion {
         squared.fold(0.0_f64, f64::max).sqrt() * (1.0 + 1e-14)
     }
 
+    /// A bound of the numbers that a vertex is placed with.
+    fn size(&self, mesh: &Mesh) -> f64 {
+        let largest = |p: Point| super::vector::largest(p);
+        self.radius(mesh) * (2.0 + self.angle.abs()) + largest(self.centre) + largest(self.translation)
+    }
+
     /// How far `pieces` linear pieces are from the true path at most, rounding included.
     fn deviation(&self, mesh: &Mesh, pieces: u32) -> f64 {
-        let radius = self.radius(mesh);
         let angle = self.angle / f64::from(pieces);
-        let largest = |p: Point| super::vector::largest(p);
-        let size = radius * (2.0 + self.angle.abs()) + largest(self.centre) + largest(self.translation);
         // Rounding: fewer than 64 operations, each on numbers of at most `size`; the angle itself is rounded, too.
-        radius * angle * angle / 8.0 * (1.0 + 1e-14) + 64.0 * f64::EPSILON * size
+        self.radius(mesh) * angle * angle / 8.0 * (1.0 + 1e-14) + 64.0 * f64::EPSILON * self.size(mesh)
     }
 
     /// The least number of pieces for a deviation of at most `tolerance` beside rounding.
@@ -132,7 +138,9 @@ impl RigidMotion {
 /// All pairs of features of different bodies that come nearer than delta while the bodies turn and move.
 ///
 /// `tolerance` is how far the linear pieces may be from the true path, in the unit of the coordinates. No hit is missed,
-/// whatever it is; it decides how many pairs remain `possible`. Cost: a [`Step::hits`] for each piece.
+/// whatever it is; it decides how many pairs remain `possible`. For a delta of 0 all hits are only `possible`, without a rotation,
+/// too: the rounding of where a vertex is makes a touch a miss. [`Step`] decides touching for given ends exactly.
+/// Cost: two [`Step::hits`] for each piece.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a motion that is not finite, a tolerance that is not above 0, or a kind that [`Step::hits`] refuses.
@@ -161,6 +169,11 @@ pub fn rigid_hits(
         .collect();
     deviations.sort_by(|a, b| b.total_cmp(a));
     let off = deviations.iter().take(2).sum::<f64>() * (1.0 + 1e-14);
+    let size = bodies
+        .iter()
+        .map(|(mesh, motion)| motion.size(mesh))
+        .fold(0.0, f64::max);
+    let off = off.max(tolerance.min(EASY * size));
     let delta = separation.get();
     // A touching pair is below every positive distance, so a step of rounding makes the enlarged question contain it.
     let wide = Separation::new((delta + off).next_up())?;
