@@ -321,7 +321,10 @@ fn mistakes_are_errors() {
     let place = folder("");
     for (arguments, says) in [
         (&["--program", "./nothing {x}"][..], "cannot start `./nothing`"),
-        (&["--program", "false {x}"], "the first 8 evaluations all failed"),
+        (
+            &["--program", "false {x}"],
+            "evaluations failed, the last one because",
+        ),
         (&["--worker", "true"], "3 times in a row"),
         (&["--program", "echo 1"], "no coordinate"),
         (&["--program", "echo {c}"], "{c} names no axis"),

@@ -14,7 +14,7 @@ pub(super) const COMPARE: &str = "compare.html";
 const STYLE: &str = include_str!("report.css");
 const HOW: &str = "Runs limited by evaluations ran side by side, and their times are not shown; runs limited by a time ran last, \
     one at a time, while the program did nothing else. Reference counts were made before, outside any clock. Numbers are medians \
-    over seeds, intervals 95 % bootstrap intervals of the median; an engine is compared with another seed by seed by the exact \
+    over seeds, intervals 95 % bootstrap intervals of the median (of fewer than six runs, their range); an engine is compared with another seed by seed by the exact \
     sign test, p corrected after Holm for the lines of its table.";
 /// The number of groups of a part that are shown unfolded.
 const UNFOLDED: usize = 3;

@@ -222,7 +222,7 @@ fn threads(threads: usize) -> anyhow::Result<rayon::ThreadPool> {
 fn check(arguments: &CollideArguments, is_exact: bool) -> anyhow::Result<()> {
     if arguments.threshold() == 0.0 {
         bail!(
-            "--threshold 0 asks for pairs that touch in a motion, between --from and --to: bodies at rest need a distance above 0"
+            "--threshold 0 asks for pairs that touch in a motion, between --from and --to: bodies at rest need a distance above 0, such as 1e-300 for surfaces that meet (--pairs triangle-triangle)"
         );
     }
     let method = &arguments.method;

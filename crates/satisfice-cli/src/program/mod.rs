@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow, bail};
 use satisfice::problem::{FnProblem, evaluated_elsewhere};
-use satisfice::{Cancel, Located, RunReport, Search, StopReason, Ticket, Tickets};
+use satisfice::{Cancel, Located, Report, RunReport, Search, StopReason, Ticket, Tickets};
 use satisfice_catalogue::{RunSpec, json, small_batches};
 use serde_json::Value;
 
@@ -36,14 +36,25 @@ use template::{Template, split};
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// So many failures are told one by one; the report counts all of them.
 const TOLD: u64 = 3;
-/// If so many evaluations fail and none succeeds, the program is at fault, not the points.
-const HOPELESS: u64 = 8;
+/// If so many evaluations fail and none succeeds, the program is at fault, not the points: a program that fails in nine of ten
+/// points is given up once in a thousand times.
+const HOPELESS: u64 = 64;
 
 /// What a report names instead of a problem.
 pub(crate) const PROBLEM: &str = "program";
 
 /// A problem whose values come from elsewhere.
 type Problem = FnProblem<f64, fn(&[f64]) -> f64>;
+
+/// What became of a search.
+struct Driven {
+    report: Report<Located<f64>>,
+    /// Evaluations in batches of the size that was asked for.
+    full_batches: u64,
+    failed: u64,
+    /// Why the last evaluation failed, if none succeeded.
+    no_success: Option<String>,
+}
 
 /// A point to evaluate.
 struct Job {
@@ -95,7 +106,12 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
     };
     let tickets = order(search, problem, &budget)?;
     let deadline = spec.budget.time.and_then(|time| process::now().checked_add(time));
-    let (report, full, failed) = with_workers(&task, workers, |jobs, values| {
+    let Driven {
+        report,
+        full_batches,
+        failed,
+        no_success,
+    } = with_workers(&task, workers, |jobs, values| {
         drive(tickets, workers, jobs, values, &cancel, deadline)
     })?;
     let few = report.counts.evaluations < u64::from(given.workers());
@@ -112,7 +128,7 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         ));
     }
     if given.ordered
-        && let Some(remark) = small_batches(&spec, report.counts.evaluations, full)
+        && let Some(remark) = small_batches(&spec, report.counts.evaluations, full_batches)
     {
         message::say(format_args!("note: {remark}"));
     }
@@ -132,6 +148,9 @@ pub(crate) fn run(arguments: &RunArguments) -> anyhow::Result<ExitCode> {
         steps.step(output::print(summary::summary_with(&report, show).as_bytes()));
     }
     steps.outcome()?;
+    if let Some(says) = no_success {
+        bail!("all of the {failed} evaluations failed, the last one because {says}");
+    }
     Ok(summary::exit_code(&report))
 }
 
@@ -236,7 +255,7 @@ fn with_workers<T>(
     })
 }
 
-/// Runs the search to its end; returns its report, how many points were in full batches and how many evaluations failed.
+/// Runs the search to its end.
 fn drive(
     mut tickets: Tickets<Problem>,
     workers: usize,
@@ -244,8 +263,8 @@ fn drive(
     values: &Receiver<(Ticket, Result<f64, Failure>)>,
     cancel: &Cancel,
     deadline: Option<Instant>,
-) -> anyhow::Result<(satisfice::Report<Located<f64>>, u64, u64)> {
-    let (mut failed, mut succeeded) = (0, 0_u64);
+) -> anyhow::Result<Driven> {
+    let (mut failed, mut succeeded, mut last_failure) = (0, 0_u64, None);
     loop {
         // Asked first: then the tickets know as well that the time is over, and why they end.
         let is_late = deadline.is_some_and(|deadline| process::now() >= deadline);
@@ -281,13 +300,14 @@ fn drive(
                 if failed <= TOLD {
                     message::say(format_args!("evaluation {} failed: {says}", ticket.number() + 1));
                 }
-                if succeeded == 0 && failed >= HOPELESS {
-                    bail!("the first {failed} evaluations all failed, the last one because {says}");
-                }
+                last_failure = Some(says);
                 f64::NAN
             }
         };
         tickets.tell(ticket, value)?;
+        if succeeded == 0 && failed >= HOPELESS {
+            break;
+        }
     }
     if failed > TOLD {
         message::say(format_args!(
@@ -295,5 +315,11 @@ fn drive(
         ));
     }
     let (report, search) = tickets.finish_slice();
-    Ok((report, search.in_full_batches(), failed))
+    let why = last_failure.filter(|_| succeeded == 0);
+    Ok(Driven {
+        full_batches: search.in_full_batches(),
+        report,
+        failed,
+        no_success: why,
+    })
 }

@@ -72,6 +72,11 @@ fn binary(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Error> {
         );
         return Err(Error::malformed(NAME, reason));
     };
+    let is_text = bytes[..HEADER].iter().all(|byte| (b'\t'..0x7f).contains(byte));
+    if announced != length as u64 && is_text {
+        let reason = "it is text, but does not begin with \"solid\" as ASCII STL does".to_owned();
+        return Err(Error::malformed(NAME, reason));
+    }
     if announced != length as u64 {
         let reason = format!(
             "its binary header announces {count} triangles, which take {announced} bytes, but it has {length}"

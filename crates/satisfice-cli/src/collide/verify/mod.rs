@@ -67,8 +67,8 @@ pub(crate) fn verify(text: &[u8], counting: &Counting) -> anyhow::Result<Checked
         return motion::verify(text, &head, counting);
     }
     let lists: ReadLists = serde_json::from_slice(text).context(wrong)?;
-    let world =
-        World::of_settings(&head.problem_parameters).context("the scene of the report cannot be built")?;
+    let world = World::of_settings(&head.problem_parameters)
+        .context("the scene of the report cannot be built; its files are looked for from this folder")?;
     let referee = Referee::new(&world);
     let mut checks = Checks::default();
     check_lists(&head, &lists, &world, &mut checks);

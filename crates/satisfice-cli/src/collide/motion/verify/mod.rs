@@ -29,8 +29,8 @@ pub(in super::super) fn is_of_motion(head: &Head) -> bool {
 pub(in super::super) fn verify(text: &[u8], head: &Head, counting: &Counting) -> anyhow::Result<Checked> {
     let lists: ImpactLists =
         serde_json::from_slice(text).context("the report is not one of `collide --from --to --json`")?;
-    let frames =
-        Frames::of_settings(&head.problem_parameters).context("the motion of the report cannot be built")?;
+    let frames = Frames::of_settings(&head.problem_parameters)
+        .context("the motion of the report cannot be built; its files are looked for from this folder")?;
     let mut checks = Checks::default();
     check_lists(head, &lists, &frames, &mut checks);
     let mut seen = BTreeSet::new();
