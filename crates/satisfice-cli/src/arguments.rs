@@ -40,7 +40,7 @@ pub(crate) fn parse(arguments: &[std::ffi::OsString]) -> Result<Subcommands, cla
     after_help = "\
 Examples:
   satisfice list                                           all engines and problems
-  satisfice run teapots --time 100ms                       what the default engine finds in a tenth of a second
+  satisfice run teapots --time 100ms                       a tenth of a second of search
   satisfice run queens --set n=6 --evaluations 1e5 --json report.json
   satisfice verify report.json                             check that report
   satisfice collide a.obj b.ply --threshold 0.01           all pairs of vertices closer than 0.01
@@ -87,9 +87,9 @@ Examples:
   satisfice run teapots
       Run the default engine for a second on two colliding teapots.
   satisfice run queens --set n=6 --engine random --evaluations 200000 --json -
-      Write a report as JSON to stdout. Under a budget of evaluations the same command gives the same report, apart from times,
-      on any number of threads; on another platform the last bit of `exp` or `sin` may change it.
-  satisfice run rastrigin --set dimension=2 --engine latest-hit-qpso --engine-set particles=60 --time 2s --plot hits.svg
+      Write a report as JSON to stdout. Under a budget of evaluations the same command gives the same report, apart from times, on any number of threads; on another platform the last bit of `exp` or `sin` may change it.
+  satisfice run rastrigin --set dimension=2 --engine latest-hit-qpso \\
+          --engine-set particles=60 --time 2s --plot hits.svg
       Set parameters of the problem and of the engine, and draw hits against evaluations and time.
   satisfice run shell --time 50ms --slices 10 --threads 0
       Run ten time slices of 50 ms, each warm from the hits of the previous one, on all cores.
@@ -98,18 +98,15 @@ Examples:
   satisfice run arm --time 1h --checkpoint arm.json
   satisfice run --resume arm.json --checkpoint arm.json
       Run for an hour without losing hits to Ctrl-C or a power cut: a resumed run finds what an uninterrupted one finds.
-  satisfice run --program './simulate {x}' --space space.toml --threshold 0.1 --evaluations 500 --workers 4
+  satisfice run --program './simulate {x}' --space space.toml \\
+          --threshold 0.1 --evaluations 500 --workers 4
       Start ./simulate with the coordinates as arguments, four at a time; the last line that it writes is the value.
-  satisfice run --worker './simulator --serve' --space space.toml --threshold 0.1 --time 8h --workers 4 --timeout 10min --json night.json
-      Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2.0]} and answers {\"ticket\": 7, \"value\": 0.3},
-      or {\"ticket\": 7, \"error\": \"why not\"}, line by line. space.toml has a table [[axis]] for each coordinate, with
-      lower and upper (and integer, logarithmic or periodic = true), or categories = [\"a\", \"b\"], or permutation = 5 for an order
-      of five, and a name; separation = 0.1 makes nearer hits one.
-      --program gets a whole number as 15, a category by its name, and an order as its places: {order} by itself is an argument for
-      each of them, --x={order} is --x=1,0,2, and with --shell there are blanks between them. --worker gets numbers: 15.0, the
-      number of a category from 0, and the places of an order one by one.
-      --set, --slices, --threads, --reference, --plot and --page are for problems of the catalogue only. There are no checkpoints
-      of programs: the report is written at the end, also after Ctrl-C or SIGTERM, which keep what was found.
+  satisfice run --worker './simulator --serve' --space space.toml \\
+          --threshold 0.1 --time 8h --workers 4 --timeout 10min \\
+          --json night.json
+      Start the simulator four times. It reads a line {\"ticket\": 7, \"x\": [0.5, 2.0]} and answers {\"ticket\": 7, \"value\": 0.3}, or {\"ticket\": 7, \"error\": \"why not\"}, line by line. space.toml has a table [[axis]] for each coordinate, with lower and upper (and integer, logarithmic or periodic = true), or categories = [\"a\", \"b\"], or permutation = 5 for an order of five, and a name; separation = 0.1 makes nearer hits one.
+      --program gets a whole number as 15, a category by its name, and an order as its places: {order} by itself is an argument for each of them, --x={order} is --x=1,0,2, and with --shell there are blanks between them. --worker gets numbers: 15.0, the number of a category from 0, and the places of an order one by one.
+      --set, --slices, --threads, --reference, --plot and --page are for problems of the catalogue only. There are no checkpoints of programs: the report is written at the end, also after Ctrl-C or SIGTERM, which keep what was found.
 
 Ctrl-C ends the search and keeps its hits.")]
 pub(crate) struct RunArguments {
@@ -324,8 +321,7 @@ impl<const EVERY_SEARCH: bool> Args for Options<EVERY_SEARCH> {
 #[command(after_help = "\
 Examples:
   satisfice bench experiment-one-smoke --out results
-      Run the suite of this name. The folder results gets report.html and its figures, compare.html to look into, results.jsonl
-      (one line per run), summary.json, suite.toml (what was run), and ioh, which IOHanalyzer reads.
+      Run the suite of this name. The folder results gets report.html and its figures, compare.html to look into, results.jsonl (one line per run), summary.json, suite.toml (what was run), and ioh, which IOHanalyzer reads.
   satisfice bench mine.toml --seeds 0..16 --engines portfolio,random
       Run two engines and 16 seeds instead of those of the file.
   satisfice bench regret --seeds 0..2 --budgets 50,200 --out regret
@@ -336,16 +332,15 @@ A suite is a file such as this; all values of a list are run:
   [[part]]
   engines = [\"random\", { name = \"latest-hit-qpso\", particles = [10, 30] }]
   problems = [{ name = \"rastrigin\", dimension = [2, 3] }, \"queens\"]
-  evaluations = 100_000            # and / or time = \"100ms\", hits, patience, slices, probes, islands, parallel
+  evaluations = 100_000            # and / or time = \"100ms\", hits, patience, slices, probes, ...
   at-evaluations = [1000, 10_000]  # and / or at-times = [\"10ms\"]: where hits are counted
   against = \"random\"               # the engine that the others are compared with, seed by seed
   beside = { queens = \"backtracking: all 92\" }   # printed beside the figures of a problem
 
-Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command continues an
-interrupted sweep: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.
+Runs limited by evaluations share the cores; runs limited by a time come last, one at a time. The same command continues an interrupted sweep: runs that are in results.jsonl are not run again. Ctrl-C keeps the runs that have ended.
 
 Several machines share a sweep, each with a folder of its own:
-  satisfice bench mine.toml --shard 1/4 --out part-1       and so on to 4/4, anywhere and in any order
+  satisfice bench mine.toml --shard 1/4 --out part-1       and so on to 4/4, in any order
   satisfice bench merge part-1 part-2 part-3 part-4 --out results")]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct BenchArguments {

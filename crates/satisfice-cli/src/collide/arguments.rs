@@ -16,27 +16,37 @@ use crate::quantity;
 Examples:
   satisfice collide left.obj right.ply --threshold 0.01
       All pairs of vertices, one of each mesh, with a distance below 0.01 in the unit of the meshes.
-  satisfice collide A.obj B.obj --threshold 0.01 --pairs triangle-triangle --json - --picture contacts.png
+  satisfice collide A.obj B.obj --threshold 0.01 \\
+          --pairs triangle-triangle --json - --picture contacts.png
       All pairs of triangles (distance 0 where they intersect) as JSON on stdout, and a picture of them.
-  satisfice collide cloth.ply --self --pairs edge-edge --ring-width 1 --threshold 0.005 --out pairs.csv
+  satisfice collide cloth.ply --self --pairs edge-edge --ring-width 1 \\
+          --threshold 0.005 --out pairs.csv
       Pairs of edges of one mesh; edges that share a vertex, or that a third edge joins, are no pairs.
-  satisfice collide a.stl b.stl --threshold 0.5 --method latest-hit-qpso --time 100ms --json -
+  satisfice collide a.stl b.stl --threshold 0.5 --method latest-hit-qpso \\
+          --time 100ms --json -
       As many pairs as a search engine finds in 100 ms, and what share of all that is.
   satisfice collide *.obj --threshold 0.1 --pairs triangle-triangle --touching
       Only which bodies touch, with one pair of triangles that shows it for each pair of bodies.
-  satisfice collide a.obj b.obj --closest 1 --pairs triangle-triangle --witnesses
+  satisfice collide a.obj b.obj --closest 1 --pairs triangle-triangle \\
+          --witnesses
       How far apart two bodies are, and where.
-  satisfice collide housing.stl part.stl --solid --threshold 0.1 --pairs triangle-triangle
+  satisfice collide housing.stl part.stl --solid --threshold 0.1 \\
+          --pairs triangle-triangle
       Also whether one body lies inside the other, how deep they overlap, and along which way they come apart.
-  satisfice collide factory.glb --threshold 0.01 --pairs triangle-triangle --touching
+  satisfice collide factory.glb --threshold 0.01 \\
+          --pairs triangle-triangle --touching
       Which nodes of a scene touch, by their names.
-  satisfice collide --from cloth92.ply --to cloth93.ply --self --threshold 0 --out impacts.csv
+  satisfice collide --from cloth92.ply --to cloth93.ply --self \\
+          --threshold 0 --out impacts.csv
       What touches while every vertex moves along a straight line from the one frame to the other, the earliest impact first.
-  satisfice collide --from robot0.glb wall.stl --to robot1.glb wall.stl --threshold 0.01 --first --time 10ms
+  satisfice collide --from robot0.glb wall.stl --to robot1.glb wall.stl \\
+          --threshold 0.01 --first --time 10ms
       The earliest time at which two bodies are closer than 0.01, with bounds; proved, or what is known after 10 ms.
-  satisfice collide robot.glb hall.stl --from 0.5s --to 0.6s --threshold 0.01 --pairs edge-edge
+  satisfice collide robot.glb hall.stl --from 0.5s --to 0.6s \\
+          --threshold 0.01 --pairs edge-edge
       The same between two times of a glTF animation; choose small steps, since vertices move straight from one time to the other.
-  curl example.com/scan.ply.gz | satisfice collide - tool.stl --format ply --at tool:0,0,12.5,90,0,0 --threshold 0.2
+  curl example.com/scan.ply.gz | satisfice collide - tool.stl \\
+          --format ply --at tool:0,0,12.5,90,0,0 --threshold 0.2
       A mesh from standard input, and another one turned about x and lifted.
 
 Meshes are .obj, .ply, .stl and .off files; scenes are .gltf and .glb files (a body for each node with a mesh) and lists of meshes:
@@ -44,9 +54,7 @@ Meshes are .obj, .ply, .stl and .off files; scenes are .gltf and .glb files (a b
   mesh = \"arm.obj\"           # relative to the list
   name = \"left arm\"
   at = [0, 0, 2.5]           # also rotate = [degrees about x, then y, then z] and scale = 2
-All may be compressed (.gz). Features are numbered from 0: vertices and triangles as in the file, edges in the order of their lower,
-then their higher vertex. `Touch` means: features of the kind of --pairs closer than the threshold;
-a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.
+All may be compressed (.gz). Features are numbered from 0: vertices and triangles as in the file, edges in the order of their lower, then their higher vertex. `Touch` means: features of the kind of --pairs closer than the threshold; a body inside another touches nothing unless --solid is given. Ctrl-C keeps the pairs found so far.
 
 Exit codes: 0 a pair was found (with --solid, or bodies that overlap), 1 none was (for certain if `answer` is Proved), 2 an error.")]
 pub(crate) struct CollideArguments {
@@ -76,6 +84,7 @@ pub(crate) struct CollideArguments {
 
     /// Place a body: scale it about the origin, turn it about x, then y, then z by degrees, and move it. BODY is a number
     /// from 0 or a name, which is that of the file without its extension. May be repeated.
+    /// A body of a list or of a scene is first where that places it.
     #[arg(long, value_name = "BODY:x,y,z[,rx,ry,rz[,scale]]", value_parser = inputs::at, allow_hyphen_values = true)]
     pub(crate) at: Vec<At>,
 

@@ -28,7 +28,11 @@ impl From<Output> for Done {
 /// The command with these arguments, separated by spaces, in this folder.
 pub(crate) fn command(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_satisfice"));
-    command.args(arguments.split_whitespace()).current_dir(folder);
+    // the width of help
+    command
+        .args(arguments.split_whitespace())
+        .current_dir(folder)
+        .env_remove("COLUMNS");
     command
 }
 
