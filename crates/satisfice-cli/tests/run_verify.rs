@@ -4,8 +4,11 @@
 
 mod common;
 
-use common::{refuse, verify};
-use serde_json::json;
+use std::collections::BTreeSet;
+use std::fs;
+
+use common::{refuse, satisfice_in, verify};
+use serde_json::{Value, json};
 
 #[test]
 fn one_slice_of_an_engine_with_sources() {
@@ -93,4 +96,52 @@ fn true_reports_are_believed() {
         let limit = if limit { " --evaluations 200" } else { "" };
         refuse(folder.path(), &format!("run {call}{limit}"), &[]);
     }
+}
+
+/// Every key of this and below, except of what users name.
+fn keys(of: &Value, all: &mut BTreeSet<String>) {
+    match of {
+        Value::Object(entries) => {
+            for (key, value) in entries {
+                all.insert(key.clone());
+                let users = ["problem_parameters", "engine_parameters", "skipped", "solution"];
+                if !users.contains(&key.as_str()) {
+                    keys(value, all);
+                }
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| keys(value, all)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_is_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    let faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    for (name, x) in [("here.obj", 0), ("there.obj", 3)] {
+        let moved = corners
+            .replace("v 0", &format!("v {x}"))
+            .replace("v 1", &format!("v {}", x + 1));
+        fs::write(folder.path().join(name), moved + faces).unwrap();
+    }
+    let page = include_str!("../../../docs/json.md");
+    let mut all = BTreeSet::new();
+    for call in [
+        "run queens --set n=5 --evaluations 2000 --probes 0.1 --slices 2 --patience 500 --parallel 2",
+        "collide here.obj here.obj --threshold 0.5 --solid --witnesses --pairs edge-edge",
+        "collide here.obj here.obj --threshold 0.5 --method random --evaluations 300",
+        "collide --from here.obj there.obj --to here.obj here.obj --threshold 0",
+    ] {
+        let done = satisfice_in(folder.path(), &format!("{call} --json -"));
+        assert_eq!(done.code, 0, "{call}: {}", done.stderr);
+        keys(&serde_json::from_str(&done.stdout).unwrap(), &mut all);
+    }
+    assert!(all.len() > 70, "{}", all.len());
+    let unknown: Vec<_> = all
+        .iter()
+        .filter(|key| !page.contains(&format!("`{key}`")))
+        .collect();
+    assert!(unknown.is_empty(), "not in docs/json.md: {unknown:?}");
 }
