@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use common::{Done, without_times};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Two axes of integers and what is near (3, 1): five points.
 const SPACE: &str = "[[axis]]\nname = \"a\"\ninteger = true\nlower = 0\nupper = 9\n\
@@ -317,14 +317,21 @@ fn an_engine_that_proposes_fewer_points_is_told() {
 }
 
 #[test]
+fn a_program_that_always_fails_is_given_up() {
+    let place = folder("");
+    let done = run(place.path(), &["--program", "false {x}"]);
+    assert_eq!(done.code, 2, "{done:?}");
+    let report: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert_eq!((&report["failed"], &report["hits"]), (&json!(64), &json!(0)));
+    let says = "error: all of the 64 evaluations failed, the last one because ";
+    assert!(done.stderr.contains(says), "{}", done.stderr);
+}
+
+#[test]
 fn mistakes_are_errors() {
     let place = folder("");
     for (arguments, says) in [
         (&["--program", "./nothing {x}"][..], "cannot start `./nothing`"),
-        (
-            &["--program", "false {x}"],
-            "evaluations failed, the last one because",
-        ),
         (&["--worker", "true"], "3 times in a row"),
         (&["--program", "echo 1"], "no coordinate"),
         (&["--program", "echo {c}"], "{c} names no axis"),

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// Who normalises gets the square of a length that differs from 1 by no more than this.
+/// The square of the length of a normalised quaternion differs from 1 by no more than this.
 const UNIT: f64 = 8.0 * f64::EPSILON;
 /// Products of rows of a rotation matrix may be off by this.
 const OFF: f64 = 1e-6;
@@ -77,7 +77,7 @@ impl Placement {
         }
     }
 
-    /// The rotation of a quaternion that is 0 nowhere near, normalised.
+    /// The rotation of a quaternion that is not near 0, normalised.
     fn normalised(quaternion: [f64; 4]) -> Self {
         Self::turned(unit(quaternion).unwrap_or(Self::IDENTITY.quaternion))
     }

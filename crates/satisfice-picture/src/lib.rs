@@ -135,7 +135,8 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Marks a pair of points: in vermilion where it was `found`, in black otherwise. Marks behind a body are fainter.
+    /// Marks a pair of points: in vermilion where it was `found`, in black otherwise. Marks behind a body are fainter. A pair whose
+    /// points are apart in the picture is a line between two marks.
     /// Points that are not finite are left out.
     pub fn pair(&mut self, a: [f64; 3], b: [f64; 3], found: bool) {
         if a.iter().chain(&b).all(|c| c.is_finite()) {
@@ -277,6 +278,25 @@ mod tests {
         // Blue where the first body is in front, sand where the second one is.
         assert!(first([&front, &ball]).blue() > first([&front, &ball]).red());
         assert!(first([&ball, &front]).blue() < first([&ball, &front]).red());
+    }
+
+    #[test]
+    fn a_pair_whose_points_are_apart_is_a_line() {
+        let view = View {
+            azimuth: 0.0,
+            elevation: 0.0,
+            up: Up::Z,
+        };
+        let corners = Mesh::new(vec![[0.0, -1.0, -1.0], [0.0, 1.0, 1.0]], vec![], vec![]).unwrap();
+        let marked = |y: f64| {
+            let mut picture = Picture::new(200, 200, view);
+            picture.body(&corners);
+            picture.pair([0.0, -y, 0.0], [0.0, y, 0.0], true);
+            vermilion(&pixels(&picture))
+        };
+        // 200 pixels for 2.17 units: a line of 92 pixels beside two marks
+        let (point, line) = (marked(0.001), marked(0.5));
+        assert!(line > 2 * point + 70, "{point} and {line} pixels");
     }
 
     /// A scene whose axes are exchanged, seen with another axis upwards, is the same picture.

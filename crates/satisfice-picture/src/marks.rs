@@ -19,38 +19,64 @@ const RIM: f64 = 3.4;
 /// Opacity of a mark that a body hides.
 const FAINT: f32 = 0.6;
 
+/// Width of the line between the ends of a pair, in pixels.
+const LINE: f32 = 2.0;
+
+/// A pair in the picture: one point, or the two ends of a line where they are so far apart that their marks do not meet.
+struct Placed {
+    found: bool,
+    hidden: bool,
+    points: Vec<[f64; 3]>,
+}
+
+impl Placed {
+    fn new(mark: &Mark, raster: &Raster, camera: &Camera) -> Self {
+        let [a, b] = mark.ends.map(|end| camera.project(end));
+        let is_long = (a[0] - b[0]).hypot(a[1] - b[1]) > 2.0 * RADIUS;
+        Self {
+            found: mark.found,
+            // A pair lies between two surfaces: it counts as seen where one of its ends is.
+            hidden: raster.hides(a, RADIUS) && raster.hides(b, RADIUS),
+            points: match is_long {
+                true => vec![a, b],
+                false => vec![std::array::from_fn(|k| 0.5 * (a[k] + b[k]))],
+            },
+        }
+    }
+}
+
 /// Marks pairs: those not found first, those found over them, each hidden ones first.
 pub(super) fn pairs(pixmap: &mut Pixmap, marks: &[Mark], raster: &Raster, camera: &Camera) {
     let placed: Vec<_> = marks
         .iter()
-        .map(|mark| {
-            let [a, b] = mark.ends.map(|end| camera.project(end));
-            let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
-            // A pair lies between two surfaces: it counts as seen where one of its ends is.
-            let hidden = raster.hides(a, RADIUS) && raster.hides(b, RADIUS);
-            (mark.found, hidden, middle)
-        })
+        .map(|mark| Placed::new(mark, raster, camera))
         .collect();
     for (found, hidden) in [(false, true), (true, true), (false, false), (true, false)] {
         let chosen = || {
             placed
                 .iter()
-                .filter(move |mark| (mark.0, mark.1) == (found, hidden))
-                .map(|mark| mark.2)
+                .filter(move |mark| (mark.found, mark.hidden) == (found, hidden))
         };
+        let points = || chosen().flat_map(|mark| mark.points.iter().copied());
         let opacity = if hidden { FAINT } else { 1.0 };
         let [red, green, blue] = if found { [0xd5, 0x5e, 0x00] } else { [0x00; 3] };
         let core = Color::from_rgba8(red, green, blue, (255.0 * opacity) as u8);
+        let lines = || {
+            let ends = chosen().filter_map(|mark| <&[_; 2]>::try_from(&mark.points[..]).ok());
+            lines(ends.map(|ends| ends.map(|[x, y, _]| [x as f32, y as f32])))
+        };
         if !hidden {
+            stroke(pixmap, lines(), LINE + 2.0 * (RIM - RADIUS) as f32, Color::WHITE);
             fill(
                 pixmap,
-                discs(chosen(), if found { RIM } else { 0.85 * RIM }),
+                discs(points(), if found { RIM } else { 0.85 * RIM }),
                 Color::WHITE,
             );
         }
+        stroke(pixmap, lines(), LINE, core);
         fill(
             pixmap,
-            discs(chosen(), if found { RADIUS } else { 0.7 * RADIUS }),
+            discs(points(), if found { RADIUS } else { 0.7 * RADIUS }),
             core,
         );
     }
@@ -68,19 +94,23 @@ pub(super) fn skeleton(pixmap: &mut Pixmap, mesh: &Mesh, tone: [f64; 3], camera:
         fill(pixmap, discs(points, 1.2), colour);
         return;
     }
-    let mut lines = PathBuilder::new();
-    for edge in mesh.edges() {
-        let [a, b] = edge.map(|v| camera.project(mesh.vertex(v)).map(|c| c as f32));
-        lines.move_to(a[0], a[1]);
-        lines.line_to(b[0], b[1]);
+    let ends = mesh.edges().iter().map(|edge| {
+        edge.map(|v| {
+            let [x, y, _] = camera.project(mesh.vertex(v));
+            [x as f32, y as f32]
+        })
+    });
+    stroke(pixmap, lines(ends), 0.8, colour);
+}
+
+/// Lines between points of the picture.
+fn lines(ends: impl Iterator<Item = [[f32; 2]; 2]>) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for [a, b] in ends {
+        path.move_to(a[0], a[1]);
+        path.line_to(b[0], b[1]);
     }
-    if let Some(path) = lines.finish() {
-        let stroke = Stroke {
-            width: 0.8,
-            ..Stroke::default()
-        };
-        pixmap.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
-    }
+    path.finish()
 }
 
 /// Discs of one radius about points of the picture.
@@ -101,6 +131,16 @@ fn fill(pixmap: &mut Pixmap, path: Option<Path>, colour: Color) {
             Transform::identity(),
             None,
         );
+    }
+}
+
+fn stroke(pixmap: &mut Pixmap, path: Option<Path>, width: f32, colour: Color) {
+    if let Some(path) = path {
+        let stroke = Stroke {
+            width,
+            ..Stroke::default()
+        };
+        pixmap.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
     }
 }
 

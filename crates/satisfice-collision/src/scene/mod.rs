@@ -58,6 +58,8 @@ pub use query::{NearestFeature, RayHit};
 pub use shared_mesh::SharedMesh;
 pub use skips::Skips;
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::broad::{Box32, Method, Pair};
 use crate::distance::{self, PairKind, Proximity, Threshold};
 use crate::{Aabb, CompactPlacement, Error, FeatureKind, Placement};
@@ -69,6 +71,9 @@ use narrow::Workspace;
 use pairs::{Record, Records};
 use state::{Present, State};
 use whereabouts::{Room, Whereabouts};
+
+/// How many worlds there have been.
+static WORLDS: AtomicU64 = AtomicU64::new(0);
 
 /// Bodies, a kind of feature pair and a threshold.
 ///
@@ -120,6 +125,8 @@ pub struct World {
     has_removed_dirty: bool,
     /// Whether one of them may have contacts of this frame or the last one.
     has_known_dirty: bool,
+    /// Tells worlds apart, for their passes.
+    number: u64,
     /// Counts the frames in which something changed.
     frame: u64,
     /// The frame before the first one whose movers are not marked in their records yet.
@@ -187,6 +194,7 @@ impl World {
             dirty: Vec::new(),
             has_removed_dirty: false,
             has_known_dirty: false,
+            number: WORLDS.fetch_add(1, Ordering::Relaxed),
             frame: 0,
             unmarked_since: None,
             predicts: false,

@@ -40,6 +40,8 @@ const VISITS_OF_PART: usize = 256;
 /// # Ok::<(), satisfice_collision::Error>(())
 /// ```
 pub struct Pass {
+    /// The number of its world.
+    world: u64,
     frame: u64,
     /// The number of the answer when the pass began.
     answers: u64,
@@ -138,6 +140,7 @@ impl World {
         let delivered = links.iter().map(|link| link.held).sum();
         skips.held_by_motion = delivered as u64;
         Pass {
+            world: self.number,
             frame: self.frame,
             answers: self.answers,
             phase: match links.is_empty() {
@@ -175,7 +178,7 @@ impl World {
             return Err(Error::parameter(
                 "pass",
                 pass.frame,
-                "a pass of the present frame that began after the last other answer",
+                "a pass of this world and its present frame that began after the last other answer",
             ));
         }
         while !matches!(pass.phase, Phase::Done) && !stop(pass.found()) {
@@ -185,7 +188,8 @@ impl World {
     }
 
     /// The contacts that a pass has found so far: those of bodies at rest, then those of each pair of bodies in the order in
-    /// which they were found. Nothing twice; nothing at all if the world has changed since the pass began.
+    /// which they were found. Nothing twice; nothing at all if the world has changed since the pass
+    /// began, or for a pass of another world.
     pub fn found_by<'w>(&'w self, pass: &'w Pass) -> impl Iterator<Item = Contact> + 'w {
         let is_current = self.is_current(pass);
         let resting = self
@@ -256,9 +260,10 @@ impl World {
         frame
     }
 
-    /// Whether nothing has changed since a pass began.
+    /// Whether a pass is one of this world, in which nothing has changed since it began.
     fn is_current(&self, pass: &Pass) -> bool {
-        pass.frame == self.frame
+        pass.world == self.number
+            && pass.frame == self.frame
             && pass.answers == self.answers
             && self.movers.is_empty()
             && self.unpaired.is_empty()

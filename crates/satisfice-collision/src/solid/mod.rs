@@ -260,8 +260,8 @@ fn check_closed(mesh: &Mesh, triangles: &[[u32; 3]], number: &[usize]) -> Result
     })
 }
 
-/// Refuses a surface that encloses nothing at any scale, and one four times as large as which nothing can be: two that overlap and the
-/// ways out of each other have to be in the range of numbers.
+/// Refuses a surface of which no triangle has an area, and one larger than a quarter of the largest number: bounds of two that overlap,
+/// and the ways out of each other, have to be in the range of numbers.
 fn check_size(mesh: &Mesh, bounds: &Aabb) -> Result<(), Error> {
     let has_area = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| mesh.vertex(v));

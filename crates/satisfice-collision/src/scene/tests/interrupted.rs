@@ -290,3 +290,30 @@ fn a_pass_takes_over_what_has_not_moved() {
     assert_eq!(answer.contacts, fresh.frame().unwrap().contacts);
     assert!(part.iter().all(|contact| answer.contacts.contains(contact)));
 }
+
+#[test]
+fn a_pass_of_another_world_is_refused() {
+    let ball = generate::icosphere(1.0, 1).unwrap();
+    let world_of = |count: usize| {
+        let mut world = World::new(PairKind::VertexVertex, Threshold::new(0.1).unwrap());
+        for _ in 0..count {
+            world.add(Body::rigid(ball.clone())).unwrap();
+        }
+        world
+    };
+    let (mut many, mut few) = (world_of(4), world_of(1));
+    let mut pass = many.pass();
+    let own = few.pass();
+    few.finish(own);
+    assert!(few.advance(&mut pass, &mut |_| false).is_err());
+    assert_eq!(few.found_by(&pass).count(), 0);
+    assert_eq!(few.finish(pass).contacts, []);
+    let mut pass = many.pass();
+    let mut other = few.pass();
+    assert!(many.advance(&mut other, &mut |_| false).is_err());
+    assert_eq!(
+        many.advance(&mut pass, &mut |_| false).unwrap(),
+        Completeness::Proved
+    );
+    assert!(many.found_by(&pass).count() > 0);
+}
