@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Everything that has to be green before a change lands. Needs the Rust toolchain only; run from anywhere.
-# With TESTED=1 the workspace's tests are not run again (continuous integration does so itself), and benches are not run.
+# With TESTED=1 the workspace's tests are not run again (continuous integration does so itself), and benches are left out: the
+# libraries that they compare with take half as long to check as everything else.
 # PROFILE=dev runs examples and benches as the tests are built, instead of building everything once more in release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -19,7 +20,9 @@ step "licences and sources of the dependencies"
 if command -v python3 > /dev/null; then python3 scripts/licences.py; else echo "no python3: not checked"; fi
 
 step "clippy, all targets, warnings are errors"
-cargo clippy --workspace --all-targets --all-features --quiet -- -D warnings
+without_benches=()
+[ "${TESTED:-0}" = 1 ] && without_benches=(--exclude satisfice-benches)
+cargo clippy --workspace ${without_benches[@]+"${without_benches[@]}"} --all-targets --all-features --quiet -- -D warnings
 
 if [ "${TESTED:-0}" != 1 ]; then
   step "tests and doc tests"
@@ -49,7 +52,8 @@ examples=$!
 trap 'kill "$examples" 2> /dev/null || true; rm -rf "$out"' EXIT
 
 step "docs without warnings"
-RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --all-features --quiet
+# Nobody calls the native part of the Python package from Rust.
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --exclude satisfice-python --no-deps --all-features --quiet
 
 step "feature matrix: none, each alone"
 # The workspace's tests have all features. On one thread they run the code that there is without rayon.
@@ -68,7 +72,6 @@ step "fuzz targets compile"
 # Their bodies run as tests (satisfice-collision, fuzz_targets and continuous). Without libFuzzer itself, which is C++ and is not linked here.
 CUSTOM_LIBFUZZER_PATH=./none.a cargo check --manifest-path fuzz/Cargo.toml --target-dir "${CARGO_TARGET_DIR:-target}" --locked --quiet
 
-# Continuous integration leaves it at clippy, which has read the benches: the libraries that they compare with take minutes to build.
 if [ "${TESTED:-0}" != 1 ]; then
   step "every bench, once, as a test ($profile)"
   cargo test --workspace --profile "$profile" --bench '*' --quiet

@@ -24,7 +24,7 @@ if [ "${ONLY:-build}" = build ]; then
   features=()
   [ "$profile" = dev ] && features=(--features as-tested)
   rm -rf "$target/wheels-python"
-  CARGO_TARGET_DIR=$target RUSTFLAGS="${RUSTFLAGS:-}" "$python" -m maturin build --quiet --profile "$profile" "${features[@]}" --out "$target/wheels-python"
+  CARGO_TARGET_DIR=$target RUSTFLAGS="${RUSTFLAGS:-}" "$python" -m maturin build --quiet --profile "$profile" ${features[@]+"${features[@]}"} --out "$target/wheels-python"
   "$python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$target"/wheels-python/*.whl
   "$python" -m pip install --quiet --disable-pip-version-check "$target"/wheels-python/*.whl
 fi
