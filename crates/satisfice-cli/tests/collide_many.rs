@@ -180,15 +180,7 @@ fn a_time_limit_covers_what_is_made_before_a_search() {
 #[test]
 fn bodies_that_touch_are_those_with_pairs_of_the_kind_that_is_compared() {
     let folder = tempfile::tempdir().unwrap();
-    let bar = |name: &str, low: [f64; 3], high: [f64; 3]| {
-        let corner = |i: usize| {
-            let at = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
-            format!("v {} {} {}\n", at(0), at(1), at(2))
-        };
-        let corners: String = (0..8).map(corner).collect();
-        let faces = "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
-        fs::write(folder.path().join(name), corners + faces).unwrap();
-    };
+    let bar = |name: &str, low, high| common::write_box(folder.path(), name, low, high);
     bar("along.obj", [-5.0, -0.5, -0.5], [5.0, 0.5, 0.5]);
     bar("across.obj", [-0.5, -5.0, -0.25], [0.5, 5.0, 0.25]);
     bar("beside.obj", [5.05, -0.5, -0.5], [6.0, 0.5, 0.5]);

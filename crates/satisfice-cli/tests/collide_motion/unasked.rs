@@ -6,13 +6,10 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use super::{FALL, fall, folder, pairs, report};
-use crate::common::satisfice_in;
+use crate::common::{satisfice_in, write_box};
 
 fn cube(folder: &TempDir, name: &str, x: f64) {
-    let corner = |i: usize| format!("v {} {} {}\n", x + (i & 1) as f64, i >> 1 & 1, i >> 2);
-    let corners: String = (0..8).map(corner).collect();
-    let faces = "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
-    fs::write(folder.path().join(name), corners + faces).unwrap();
+    write_box(folder.path(), name, [x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
 }
 
 /// One cube rests, another one comes from afar and ends just within it.

@@ -122,3 +122,14 @@ pub(crate) fn refuse(folder: &Path, call: &str, changes: &[(&str, &str, Value)])
     }
     report
 }
+
+/// Writes a box between two corners as an OBJ file.
+pub(crate) fn write_box(folder: &Path, name: &str, low: [f64; 3], high: [f64; 3]) {
+    let corner = |i: usize| {
+        let at = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
+        format!("v {} {} {}\n", at(0), at(1), at(2))
+    };
+    let corners: String = (0..8).map(corner).collect();
+    let faces = "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
+    std::fs::write(folder.join(name), corners + faces).unwrap();
+}
