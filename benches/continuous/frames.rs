@@ -39,7 +39,8 @@ impl Scene {
             step.set_motion(body, from, from).expect("frames of this mesh");
         }
         for kind in KINDS {
-            step.build_trees(kind).expect("a kind in motion");
+            step.build_trees(kind, Separation::TOUCHING)
+                .expect("a kind in motion");
         }
         step
     }

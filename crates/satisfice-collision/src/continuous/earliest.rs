@@ -11,12 +11,13 @@ use std::collections::BinaryHeap;
 
 use super::Separation;
 use super::advance::Goal;
+use super::boxes::{LANES, MovingBox};
 use super::deadline::{CutShort, Deadline};
 use super::looks::Looks;
 use super::meetings::{FirstTimes, Meet, ONCE, ONCE_APART, PairBits, pairs};
 use super::query::Impact;
 use super::step::{FeatureList, MovingContact, Step};
-use super::tree::{LANES, MIXED, MovingBox, MovingTree};
+use super::tree::{MIXED, MovingTree};
 use super::waiting::{FEATURE, GroupOrFeature, Waiting};
 use crate::Error;
 use crate::distance::PairKind;
@@ -119,6 +120,14 @@ impl Step {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Earliest, Error> {
         let tolerance = Goal::checked(tolerance)?;
+        let margin = self.margin(separation.get());
+        let mut trees = Vec::new();
+        for &kind in kinds {
+            let lists = Self::lists(kind)?;
+            if let Some(number) = KINDS.iter().position(|known| *known == kind) {
+                trees.push((number as u8, lists, lists.map(|list| self.tree(list, margin))));
+            }
+        }
         let stop = RefCell::new(stop);
         let asked = || (stop.borrow_mut())();
         let mut descent = Descent {
@@ -128,7 +137,7 @@ impl Step {
             separation,
             tolerance,
             deadline: Deadline::until(&asked),
-            margin: self.margin(separation.get()),
+            margin,
             waiting: BinaryHeap::new(),
             at_once: Vec::new(),
             looks: Looks::default(),
@@ -143,12 +152,9 @@ impl Step {
             },
             first_times: FirstTimes::default(),
         };
-        for &kind in kinds {
-            let lists = Self::lists(kind)?;
-            let trees = lists.map(|list| self.tree(list));
-            if let Some(number) = KINDS.iter().position(|known| *known == kind) {
-                descent.start(number as u8, Sides { lists, trees });
-            }
+        for (number, lists, [a, b]) in &trees {
+            let trees = [a.as_ref(), b.as_ref()];
+            descent.start(*number, Sides { lists: *lists, trees });
         }
         Ok(descent.run(&asked))
     }

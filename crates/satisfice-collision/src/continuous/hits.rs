@@ -7,10 +7,11 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use super::advance::Goal;
+use super::boxes::LANES;
 use super::deadline::Deadline;
 use super::meetings::{Meet, ONCE, ONCE_APART, PairBits, pairs};
 use super::step::{FeatureList, MovingContact, Step};
-use super::tree::{LANES, MIXED, MovingTree};
+use super::tree::{MIXED, MovingTree};
 use super::{DecidedBy, Separation};
 use crate::Error;
 use crate::distance::PairKind;
@@ -111,13 +112,15 @@ impl Step {
         visit: &mut dyn FnMut(MovingContact),
     ) -> Result<Hits, Error> {
         let lists = Self::lists(kind)?;
+        let margin = self.margin(separation.get());
+        let [a, b] = lists.map(|list| self.tree(list, margin));
         let search = PairSearch {
             step: self,
             kind,
             lists,
-            trees: lists.map(|list| self.tree(list)),
+            trees: [a.as_ref(), b.as_ref()],
             separation,
-            margin: self.margin(separation.get()),
+            margin,
         };
         Ok(search.run(stop, visit))
     }

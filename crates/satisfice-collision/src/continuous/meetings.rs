@@ -4,7 +4,7 @@
 //! one rounding; a quotient of gaps is off by less than four. A gap above 0 that shrinks is above 0 until a time if it is so, as computed
 //! with four roundings, until one that is later by a hundred roundings.
 
-use super::tree::{LANES, MovingBox, MovingGroup};
+use super::boxes::{LANES, MovingBox, MovingGroup};
 use crate::simd::{self, Eight, Floats};
 
 /// The pairs of boxes of one group with another, a bit each: bit `8 i + j` is the pair of box `i` of the first and box `j` of the second.

@@ -23,6 +23,7 @@
 
 mod advance;
 mod body_order;
+mod boxes;
 mod conditions;
 mod cubic;
 mod deadline;
@@ -37,6 +38,7 @@ mod integers;
 mod looks;
 mod meetings;
 mod motion;
+mod near_bodies;
 mod nearest;
 mod one_pair;
 mod pairs;
@@ -48,6 +50,7 @@ mod rounded;
 mod separation;
 mod sight;
 mod step;
+mod step_tree;
 mod swept;
 mod system;
 mod tree;

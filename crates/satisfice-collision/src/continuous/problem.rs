@@ -1,13 +1,16 @@
 //! The candidates of a step as a problem for the search engines: which pairs hit, the earliest first.
 
+use std::sync::Arc;
+
 use satisfice::catalogue::Description;
 use satisfice::{Axis, Bounds, Region, SatisficingProblem, Space};
 
 use super::Separation;
 use super::advance::Goal;
 use super::body_order::filled;
+use super::boxes::{EVERYWHERE, MovingBox};
 use super::step::{FeatureList, MovingContact, Step};
-use super::tree::MovingBox;
+use super::tree::MovingTree;
 use crate::Error;
 use crate::distance::PairKind;
 
@@ -52,6 +55,8 @@ pub struct MovingPairs<'s> {
     separation: Separation,
     margin: f32,
     space: Space<f64>,
+    /// Over the features of all bodies.
+    trees: [Arc<MovingTree>; 2],
     /// The lane of the feature at each position.
     lanes: [Vec<u32>; 2],
 }
@@ -63,8 +68,9 @@ impl<'s> MovingPairs<'s> {
     /// [`Error::Parameter`] for kinds that [`Step::hits`] refuses, and if the step has no features of the kind.
     pub fn new(step: &'s Step, kind: PairKind, separation: Separation) -> Result<Self, Error> {
         let lists = Step::lists(kind)?;
-        let lanes = lists.map(|list| {
-            let features = filled(&step.tree(list).order);
+        let trees = lists.map(|list| step.tree(list, EVERYWHERE));
+        let lanes = [0, 1].map(|side| {
+            let features = filled(&trees[side].order);
             features.map(|(lane, _)| lane as u32).collect::<Vec<_>>()
         });
         if lanes.iter().any(Vec::is_empty) {
@@ -85,6 +91,7 @@ impl<'s> MovingPairs<'s> {
             separation,
             margin: step.margin(separation.get()),
             space,
+            trees,
             lanes,
         })
     }
@@ -97,14 +104,12 @@ impl<'s> MovingPairs<'s> {
 
     fn feature(&self, side: usize, position: f64) -> u32 {
         let lane = self.lanes[side][position as usize];
-        self.step.tree(self.lists[side]).order[lane as usize]
+        self.trees[side].order[lane as usize]
     }
 
     /// The box around the features at positions on an axis.
     fn around(&self, side: usize, from: f64, to: f64) -> MovingBox {
-        self.step
-            .tree(self.lists[side])
-            .box_of_range(self.lanes[side][from as usize], self.lanes[side][to as usize])
+        self.trees[side].box_of_range(self.lanes[side][from as usize], self.lanes[side][to as usize])
     }
 }
 

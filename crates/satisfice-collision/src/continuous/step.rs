@@ -1,9 +1,12 @@
 //! The bodies of a scene at the start and at the end of a step.
 
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::Moving;
-use super::tree::{BoxFrame, MIXED, MovingTree};
+use super::boxes::BoxFrame;
+use super::near_bodies::BodyBoxes;
+use super::step_tree::{ListInMotion, StepTree};
+use super::tree::MovingTree;
+use super::{Moving, Separation};
 use crate::distance::{PairKind, Point, Segment, Triangle};
 use crate::mesh::all_finite;
 use crate::{Error, Mesh};
@@ -33,10 +36,9 @@ pub struct Step {
     pub(super) to: Vec<Point>,
     pub(super) edges: Vec<[u32; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    frame: OnceLock<BoxFrame>,
-    trees: [OnceLock<MovingTree>; 3],
-    /// Trees of the motion before, whose order is kept.
-    earlier: [Mutex<Option<MovingTree>>; 3],
+    frame: OnceLock<(BoxFrame, BodyBoxes)>,
+    /// By list.
+    trees: [Mutex<StepTree>; 3],
 }
 
 /// Where the features of a body begin in the common lists.
@@ -125,7 +127,6 @@ impl Step {
             .extend(mesh.triangles().iter().map(|t| t.map(|v| v + offset)));
         self.frame = OnceLock::new();
         self.trees = Default::default();
-        self.earlier = Default::default();
         Ok(self.bodies.len() - 1)
     }
 
@@ -169,10 +170,8 @@ impl Step {
         self.from[first..end].copy_from_slice(from);
         self.to[first..end].copy_from_slice(to);
         self.frame = OnceLock::new();
-        for (tree, earlier) in self.trees.iter_mut().zip(&mut self.earlier) {
-            if let Some(tree) = tree.take() {
-                *earlier.get_mut().unwrap_or_else(PoisonError::into_inner) = Some(tree);
-            }
+        for tree in &mut self.trees {
+            tree.get_mut().unwrap_or_else(PoisonError::into_inner).move_on();
         }
         Ok(())
     }
@@ -222,15 +221,8 @@ impl Step {
     /// The numbers of two features in the common lists, or `None` if there are none such.
     pub(super) fn numbers(&self, lists: [FeatureList; 2], contact: &MovingContact) -> Option<[u32; 2]> {
         let number = |list: FeatureList, feature: FeatureOf| {
-            let count = match list {
-                FeatureList::Vertices => self.from.len(),
-                FeatureList::Edges => self.edges.len(),
-                FeatureList::Triangles => self.triangles.len(),
-            };
-            let end = self
-                .bodies
-                .get(feature.body as usize + 1)
-                .map_or(count as u32, |next| next.first[list as usize]);
+            let next = self.bodies.get(feature.body as usize + 1);
+            let end = next.map_or_else(|| self.count(list), |next| next.first[list as usize]);
             let number =
                 self.bodies.get(feature.body as usize)?.first[list as usize].checked_add(feature.index)?;
             (number < end).then_some(number)
@@ -256,24 +248,25 @@ impl Step {
         }
     }
 
-    /// Builds the trees that pairs of a kind are searched by, which is the part of a search that asks no `stop`: for callers with a
+    /// Builds the trees that pairs of a kind within delta are searched by, which is the part of a search that asks no `stop`: for callers with a
     /// deadline, who can leave it to a thread that they need not wait for. No answer depends on it. Cost: O(n log n), once.
     ///
     /// ```
-    /// use satisfice_collision::continuous::Step;
+    /// use satisfice_collision::continuous::{Separation, Step};
     /// use satisfice_collision::{distance::PairKind, generate};
     /// let ball = generate::icosphere(1.0, 2)?;
     /// let mut step = Step::new();
     /// step.add_rigid(&ball, ball.vertices())?;
-    /// step.build_trees(PairKind::EdgeEdge)?;
+    /// step.build_trees(PairKind::EdgeEdge, Separation::TOUCHING)?;
     /// # Ok::<(), satisfice_collision::Error>(())
     /// ```
     ///
     /// # Errors
     /// [`Error::Parameter`] for kinds whose motion is not decided: edge-triangle and triangle-triangle.
-    pub fn build_trees(&self, kind: PairKind) -> Result<(), Error> {
+    pub fn build_trees(&self, kind: PairKind, separation: Separation) -> Result<(), Error> {
+        let margin = self.margin(separation.get());
         for list in Self::lists(kind)? {
-            self.tree(list);
+            self.tree(list, margin);
         }
         Ok(())
     }
@@ -330,44 +323,59 @@ impl Step {
         matches!(self.bodies.as_slice(), [body] if body.collides_with_itself)
     }
 
-    fn frame(&self) -> &BoxFrame {
-        self.frame.get_or_init(|| BoxFrame::around(&self.from, &self.to))
-    }
-
-    /// The tree over the features of a list; built or fitted when it is first asked for.
-    pub(super) fn tree(&self, list: FeatureList) -> &MovingTree {
-        self.trees[list as usize].get_or_init(|| match list {
-            FeatureList::Vertices => self.fitted(list, self.from.len(), |v| [v]),
-            FeatureList::Edges => self.fitted(list, self.edges.len(), |e| self.edges[e as usize]),
-            FeatureList::Triangles => self.fitted(list, self.triangles.len(), |t| self.triangles[t as usize]),
+    /// The frame of the boxes, and the boxes around whole bodies.
+    fn frame(&self) -> &(BoxFrame, BodyBoxes) {
+        self.frame.get_or_init(|| {
+            let frame = BoxFrame::around(&self.from, &self.to);
+            let first = self.bodies.iter().map(|body| body.first[0] as usize);
+            let boxes = BodyBoxes::new(&frame, &first.collect::<Vec<_>>());
+            (frame, boxes)
         })
     }
 
-    /// The tree of the motion before in its order, or one made anew.
-    fn fitted<const N: usize>(
+    /// The tree over the features of a list that can be in a pair within a margin; built or fitted when it is first asked for.
+    pub(super) fn tree(&self, list: FeatureList, margin: f32) -> Arc<MovingTree> {
+        match list {
+            FeatureList::Vertices => self.tree_of(list, margin, |v| [v]),
+            FeatureList::Edges => self.tree_of(list, margin, |e| self.edges[e as usize]),
+            FeatureList::Triangles => self.tree_of(list, margin, |t| self.triangles[t as usize]),
+        }
+    }
+
+    fn tree_of<const N: usize>(
         &self,
         list: FeatureList,
-        count: usize,
+        margin: f32,
         corners: impl Fn(u32) -> [u32; N],
-    ) -> MovingTree {
-        let frame = self.frame();
-        let mut earlier = self.earlier[list as usize]
+    ) -> Arc<MovingTree> {
+        let (frame, boxes) = self.frame();
+        let first = self.bodies.iter().map(|body| body.first[list as usize]);
+        let in_motion = ListInMotion {
+            frame,
+            boxes,
+            first: first.chain([self.count(list)]).collect(),
+            collides_with_itself: self.bodies.iter().map(|body| body.collides_with_itself).collect(),
+            corners,
+        };
+        let mut kept = self.trees[list as usize]
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        let refitted = earlier.take().and_then(|tree| tree.refitted::<N>(frame));
-        refitted.unwrap_or_else(|| {
-            let bodies = (0..).zip(&self.bodies).map(|(number, body)| {
-                let rigid = if body.collides_with_itself { MIXED } else { number };
-                (body.first[list as usize] as usize, rigid)
-            });
-            let bodies: Vec<(usize, u32)> = bodies.collect();
-            MovingTree::new(frame, count, corners, &bodies)
-        })
+        kept.get(&in_motion, margin)
+    }
+
+    /// The number of features of a list.
+    fn count(&self, list: FeatureList) -> u32 {
+        let count = match list {
+            FeatureList::Vertices => self.from.len(),
+            FeatureList::Edges => self.edges.len(),
+            FeatureList::Triangles => self.triangles.len(),
+        };
+        count as u32
     }
 
     /// Delta in the unit of the trees, rounded up.
     pub(super) fn margin(&self, delta: f64) -> f32 {
-        self.frame().margin(delta)
+        self.frame().0.margin(delta)
     }
 }
 

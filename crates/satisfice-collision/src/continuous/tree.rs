@@ -1,48 +1,17 @@
-//! A tree of moving boxes: eight to a group, each box given at both ends of the step.
-//!
-//! A box that moves linearly from the one to the other contains its features all the time, so two features are apart all the
-//! time if their boxes are, on one axis, apart in the same order at both ends. Two bodies that fall side by side are thus
-//! apart, while the space that they sweep is shared.
-//!
-//! Boxes are in single precision, rounded outwards, in a frame centred on the scene and scaled to its size.
+//! A tree of moving boxes: eight to a group.
 
-use super::body_order::{filled, order_of};
-use crate::broad::{fold, greater, lesser};
-use crate::distance::Point;
-use crate::simd::Eight;
+use std::ops::Range;
 
-/// Boxes of a group.
-pub(super) const LANES: usize = 8;
-
-/// Where the frame of the boxes lies, and where the vertices are in it.
-#[derive(Debug)]
-pub(super) struct BoxFrame {
-    centre: Point,
-    scale: f64,
-    /// Of every vertex at both ends of the step; the fourth coordinate is 0.
-    paths: Vec<[[f32; 4]; 2]>,
-}
-
-/// A box at both ends of the step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct MovingBox {
-    /// At time 0 and at time 1.
-    pub(super) min: [[f32; 3]; 2],
-    pub(super) max: [[f32; 3]; 2],
-}
-
-/// Eight boxes, a lane each. Unused lanes are empty boxes, apart from all others.
-#[derive(Debug, Clone)]
-pub(super) struct MovingGroup {
-    pub(super) min: [[Eight; 3]; 2],
-    pub(super) max: [[Eight; 3]; 2],
-}
+use super::body_order::{Layout, filled};
+use super::boxes::{BoxFrame, LANES, MovingBox, MovingGroup};
 
 /// The boxes of a list of features.
 #[derive(Debug)]
 pub(super) struct MovingTree {
     /// The features in the order of the lowest level's lanes, and [`HOLE`](super::body_order::HOLE) in lanes without one.
     pub(super) order: Vec<u32>,
+    /// The bodies that the features belong to, in ascending order, and the lanes of each.
+    bodies: Vec<(u32, Range<usize>)>,
     /// The vertices of the features of each group, a lane each: as many arrays a group as a feature has vertices.
     corners: Vec<[u32; LANES]>,
     corners_per_feature: usize,
@@ -54,211 +23,21 @@ pub(super) struct MovingTree {
     extent_when_new: f64,
 }
 
-/// A kept order is given up once the boxes around its groups have grown by this factor.
-const LOOSE: f64 = 1.5;
-
-/// By this margin a box reaches all others of its frame, whose coordinates are at most 1/2. An empty box stays apart only if it grows by a
-/// finite number.
-const EVERYWHERE: f32 = 4.0;
-
 /// No rigid body: features of several bodies, or of one that collides with itself.
 pub(super) const MIXED: u32 = u32::MAX;
 
-impl BoxFrame {
-    pub(super) fn around(from: &[Point], to: &[Point]) -> Self {
-        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in from.iter().chain(to) {
-            for k in 0..3 {
-                min[k] = if p[k] < min[k] { p[k] } else { min[k] };
-                max[k] = if p[k] > max[k] { p[k] } else { max[k] };
-            }
-        }
-        // Halves first, so that nothing overflows.
-        let size = (0..3).fold(0.0_f64, |size, k| size.max(0.5 * max[k] - 0.5 * min[k]));
-        let mut frame = Self {
-            centre: std::array::from_fn(|k| 0.5 * min[k] + 0.5 * max[k]),
-            scale: if size > 1e-300 { 1.0 / size } else { 1.0 },
-            paths: Vec::new(),
-        };
-        let ends = from.iter().zip(to);
-        frame.paths = ends.map(|(p, q)| [frame.local(p), frame.local(q)]).collect();
-        frame
-    }
-
-    /// A point in the frame: the exact value of each coordinate lies within one step of single precision of it, or two.
-    #[inline(always)]
-    fn local(&self, p: &Point) -> [f32; 4] {
-        let [x, y, z] = [0, 1, 2].map(|k| ((0.5 * p[k] - 0.5 * self.centre[k]) * self.scale) as f32);
-        [x, y, z, 0.0]
-    }
-
-    /// Around these vertices at both ends of the step: the least and the greatest coordinates, as rounded.
-    #[inline(always)]
-    fn extent<const N: usize>(&self, corners: [u32; N]) -> [[[f32; 4]; 2]; 2] {
-        let mut min = self.paths[corners[0] as usize];
-        let mut max = min;
-        for corner in &corners[1..] {
-            let path = &self.paths[*corner as usize];
-            for end in 0..2 {
-                for k in 0..4 {
-                    min[end][k] = lesser(path[end][k], min[end][k]);
-                    max[end][k] = greater(path[end][k], max[end][k]);
-                }
-            }
-        }
-        [min, max]
-    }
-
-    /// A number for each axis that orders features as the middles of their boxes at half of the step are ordered, up to rounding.
-    #[inline(always)]
-    fn middle<const N: usize>(&self, corners: [u32; N]) -> [f32; 3] {
-        let [min, max] = self.extent(corners);
-        let mut middle = [0.0; 3];
-        for k in 0..3 {
-            middle[k] = (min[0][k] + max[0][k]) + (min[1][k] + max[1][k]);
-        }
-        middle
-    }
-
-    /// A distance in the frame, rounded up, or [`EVERYWHERE`] if it is longer.
-    pub(super) fn margin(&self, delta: f64) -> f32 {
-        if delta == 0.0 {
-            return 0.0;
-        }
-        let margin = ((0.5 * delta * self.scale * (1.0 + 1e-12)) as f32).next_up();
-        margin.min(EVERYWHERE)
-    }
-}
-
-/// At most a coordinate whose rounded value in the frame is `x`, which is at most 1/2.
-fn below(x: f32) -> f32 {
-    x - (x.abs() * 4.0 * f32::EPSILON + 1e-12)
-}
-
-fn above(x: f32) -> f32 {
-    x + (x.abs() * 4.0 * f32::EPSILON + 1e-12)
-}
-
-impl MovingBox {
-    const EMPTY: Self = Self {
-        min: [[f32::INFINITY; 3]; 2],
-        max: [[f32::NEG_INFINITY; 3]; 2],
-    };
-
-    fn include(&mut self, other: &Self) {
-        for end in 0..2 {
-            for k in 0..3 {
-                self.min[end][k] = lesser(other.min[end][k], self.min[end][k]);
-                self.max[end][k] = greater(other.max[end][k], self.max[end][k]);
-            }
-        }
-    }
-
-    /// The box grown by a margin on every side.
-    #[inline(always)]
-    pub(super) fn grown(&self, margin: f32) -> Self {
-        if margin == 0.0 {
-            return *self;
-        }
-        Self {
-            min: self.min.map(|p| p.map(|x| (x - margin).next_down())),
-            max: self.max.map(|p| p.map(|x| (x + margin).next_up())),
-        }
-    }
-
-    /// Bounds of the times at which two boxes meet, or `None` if they are apart all the time.
-    pub(super) fn meeting(&self, other: &Self) -> Option<[f64; 2]> {
-        let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        for (p, q) in [(self, other), (other, self)] {
-            for k in 0..3 {
-                // The gap between them, linear in the time. The differences have at most one rounding.
-                let [from, to] = [0, 1].map(|end| f64::from(p.min[end][k]) - f64::from(q.max[end][k]));
-                if from > 0.0 {
-                    if to > 0.0 {
-                        return None;
-                    }
-                    first = first.max(from / (from - to) * (1.0 - 1e-15));
-                } else if to > 0.0 {
-                    last = last.min(from / (from - to) * (1.0 + 1e-15));
-                }
-            }
-        }
-        (first <= last).then_some([first, last])
-    }
-}
-
-impl MovingGroup {
-    const EMPTY: Self = Self {
-        min: [[[f32::INFINITY; LANES]; 3]; 2],
-        max: [[[f32::NEG_INFINITY; LANES]; 3]; 2],
-    };
-
-    fn set(&mut self, lane: usize, of: &MovingBox) {
-        for end in 0..2 {
-            for k in 0..3 {
-                self.min[end][k][lane] = of.min[end][k];
-                self.max[end][k][lane] = of.max[end][k];
-            }
-        }
-    }
-
-    /// Makes a lane the box around what has this extent before rounding.
-    #[inline(always)]
-    fn set_around(&mut self, lane: usize, [min, max]: &[[[f32; 4]; 2]; 2]) {
-        for end in 0..2 {
-            for k in 0..3 {
-                self.min[end][k][lane] = below(min[end][k]);
-                self.max[end][k][lane] = above(max[end][k]);
-            }
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn lane(&self, lane: usize) -> MovingBox {
-        MovingBox {
-            min: std::array::from_fn(|end| std::array::from_fn(|k| self.min[end][k][lane])),
-            max: std::array::from_fn(|end| std::array::from_fn(|k| self.max[end][k][lane])),
-        }
-    }
-
-    /// The edges of all boxes.
-    fn extent(&self) -> f64 {
-        let mut sum = [0.0; LANES];
-        for end in 0..2 {
-            for k in 0..3 {
-                for (lane, sum) in sum.iter_mut().enumerate() {
-                    // an empty box has less than none
-                    *sum += greater(self.max[end][k][lane] - self.min[end][k][lane], 0.0);
-                }
-            }
-        }
-        sum.iter().map(|&sum: &f32| f64::from(sum)).sum()
-    }
-
-    fn union(&self) -> MovingBox {
-        let least = |lanes: &Eight| fold(lanes, lesser);
-        let most = |lanes: &Eight| fold(lanes, greater);
-        MovingBox {
-            min: std::array::from_fn(|end| std::array::from_fn(|k| least(&self.min[end][k]))),
-            max: std::array::from_fn(|end| std::array::from_fn(|k| most(&self.max[end][k]))),
-        }
-    }
-}
-
 impl MovingTree {
-    /// The tree over so many features with these `corners`. `bodies` are where those of each body begin, and the body if it is rigid or
-    /// [`MIXED`].
+    /// The tree over the features of a layout with these `corners`.
     pub(super) fn new<const N: usize>(
         frame: &BoxFrame,
-        count: usize,
         corners: impl Fn(u32) -> [u32; N],
-        bodies: &[(usize, u32)],
+        layout: Layout,
     ) -> Self {
-        let middles: Vec<_> = (0..count)
-            .map(|feature| frame.middle(corners(feature as u32)))
-            .collect();
-        let has_rigid = bodies.iter().any(|&(_, rigid)| rigid != MIXED);
-        let (order, owners) = order_of(&middles, bodies);
+        let Layout {
+            order,
+            owners,
+            bodies,
+        } = layout;
         let number = order.len().div_ceil(LANES).max(1);
         let mut in_lanes = vec![[u32::MAX; LANES]; number * N];
         for (in_lanes, features) in in_lanes.chunks_exact_mut(N).zip(order.chunks(LANES)) {
@@ -274,7 +53,7 @@ impl MovingTree {
             levels.push(vec![MovingGroup::EMPTY; groups]);
         }
         let mut rigid: Vec<Vec<u32>> = Vec::new();
-        if has_rigid {
+        if !owners.is_empty() {
             rigid.push(common(&owners));
             for level in 1..levels.len() {
                 rigid.push(common(&rigid[level - 1]));
@@ -282,6 +61,7 @@ impl MovingTree {
         }
         let mut tree = Self {
             order,
+            bodies,
             corners: in_lanes,
             corners_per_feature: N,
             levels,
@@ -293,11 +73,25 @@ impl MovingTree {
         tree
     }
 
-    /// The tree over the same features in another motion, in the order that it has; `None` if that order has become loose.
-    pub(super) fn refitted<const N: usize>(mut self, frame: &BoxFrame) -> Option<Self> {
+    /// The tree over the same features in another motion, in the order that it has.
+    pub(super) fn refitted<const N: usize>(mut self, frame: &BoxFrame) -> Self {
         self.fit::<N>(frame);
-        let is_loose = self.extent(frame) > LOOSE * self.extent_when_new;
-        (!is_loose).then_some(self)
+        self
+    }
+
+    /// Whether the boxes around groups are larger by this factor than they were in this order when it was new.
+    pub(super) fn is_loose(&self, frame: &BoxFrame, factor: f64) -> bool {
+        self.extent(frame) > factor * self.extent_when_new
+    }
+
+    /// Whether the features in the tree are those of these bodies, in ascending order.
+    pub(super) fn is_of(&self, bodies: &[u32]) -> bool {
+        self.bodies.iter().map(|(body, _)| body).eq(bodies)
+    }
+
+    fn lanes_of(&self, body: u32) -> Option<&Range<usize>> {
+        let place = self.bodies.binary_search_by_key(&body, |(body, _)| *body).ok()?;
+        Some(&self.bodies[place].1)
     }
 
     /// Sets all boxes.
@@ -322,7 +116,23 @@ impl MovingTree {
     /// The edges of all boxes around groups, which is how often a search meets one, up to a factor.
     fn extent(&self, frame: &BoxFrame) -> f64 {
         let groups = self.levels[1..].iter().flatten();
-        groups.map(MovingGroup::extent).sum::<f64>() / frame.scale
+        frame.length(groups.map(MovingGroup::extent).sum())
+    }
+
+    /// The same of the groups that have features of this body only.
+    pub(super) fn extent_of(&self, frame: &BoxFrame, body: u32) -> f64 {
+        let Some(lanes) = self.lanes_of(body) else {
+            return 0.0;
+        };
+        let (mut first, mut end) = (lanes.start, lanes.end);
+        let mut extent = 0.0;
+        for level in &self.levels[1..] {
+            (first, end) = (first.div_ceil(LANES), end / LANES);
+            for group in first..end {
+                extent += level[group / LANES].lane(group % LANES).extent();
+            }
+        }
+        frame.length(extent)
     }
 
     /// How many features the lanes from this one on have.
@@ -387,6 +197,22 @@ impl MovingTree {
         Some((&above[group as usize / LANES], group as usize % LANES))
     }
 
+    /// Visits the features whose boxes are not apart from `of`.
+    pub(super) fn visit_features(
+        &self,
+        of: &MovingBox,
+        stack: &mut Vec<(u8, u32)>,
+        visit: &mut impl FnMut(u32),
+    ) {
+        self.visit(0, of, 0, MIXED, stack, &mut |group| {
+            let mut mask = self.levels[0][group as usize].candidates(of);
+            while mask != 0 {
+                visit(self.order[group as usize * LANES + mask.trailing_zeros() as usize]);
+                mask &= mask - 1;
+            }
+        });
+    }
+
     /// Visits the groups of a level, from number `least` on, whose box is not apart from `of`, leaving out those of the
     /// rigid body `without`.
     pub(super) fn visit(
@@ -432,30 +258,8 @@ fn common(bodies: &[u32]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::super::step::{FeatureList, Step};
-    use super::*;
+    use crate::distance::Point;
     use crate::generate;
-
-    #[test]
-    fn a_margin_is_finite_however_long_delta_is() {
-        let points: [Point; 2] = [[0.0; 3], [1e-200, 0.0, 0.0]];
-        let frame = BoxFrame::around(&points, &points);
-        assert!(frame.margin(0.0) == 0.0 && frame.margin(1e-200) < 1.01);
-        for delta in [1e-160, 1.0, f64::MAX] {
-            let margin = frame.margin(delta);
-            assert_eq!(margin, EVERYWHERE);
-            let far = MovingBox {
-                min: [[0.5; 3]; 2],
-                max: [[0.5; 3]; 2],
-            };
-            let near = MovingBox {
-                min: [[-0.5; 3]; 2],
-                max: [[-0.5; 3]; 2],
-            };
-            assert!(near.meeting(&far).is_none());
-            assert!(near.meeting(&far.grown(margin)).is_some());
-            assert!(near.meeting(&MovingBox::EMPTY.grown(margin)).is_none());
-        }
-    }
 
     #[test]
     fn an_order_is_kept_while_it_fits() {
@@ -464,7 +268,7 @@ mod tests {
         let mut step = Step::new();
         step.add_deforming(&cloth, resting).expect("one topology");
         let lists = [FeatureList::Vertices, FeatureList::Edges, FeatureList::Triangles];
-        let orders = |step: &Step| lists.map(|list| step.tree(list).order.clone());
+        let orders = |step: &Step| lists.map(|list| step.tree(list, 0.0).order.clone());
         let first = orders(&step);
         // rolled up, far away and larger than before, but each neighbourhood as it was
         let rolled: Vec<Point> = resting

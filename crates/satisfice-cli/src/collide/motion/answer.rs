@@ -64,8 +64,12 @@ impl Search<'_> {
     pub(super) fn run(&self, frames: &Frames) -> anyhow::Result<Impacts> {
         let pool = super::super::threads(self.threads)?;
         let start = now();
-        let (step, kinds) = (Arc::clone(&frames.step), frames.kinds.clone());
-        let build = move || kinds.into_iter().try_for_each(|kind| step.build_trees(kind));
+        let (step, kinds, separation) = (Arc::clone(&frames.step), frames.kinds.clone(), frames.separation);
+        let build = move || {
+            kinds
+                .into_iter()
+                .try_for_each(|kind| step.build_trees(kind, separation))
+        };
         let built = building::within_limit(frames.vertices(), || self.is_over(start), build)?;
         let found = match built.transpose()? {
             None => self.nothing(frames),
