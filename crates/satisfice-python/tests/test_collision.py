@@ -431,12 +431,18 @@ def test_a_world_is_used_from_threads():
         assert all(count >= 0 for count in pool.map(frame, np.linspace(0, 1, 40)))
 
 
+def test_a_step_without_bodies_has_no_impacts():
+    found = collision.Step().impacts()
+    assert len(found) == 0 and found.complete and found.kind.shape == (0,)
+
+
 def test_impacts_of_a_falling_sheet():
     low, high = A, (B[0] + [0, 0, 1.0], B[1])
     step = collision.Step()
     step.add(*low[:1], low[0], low[1])
     step.add(high[0], high[0] - [0, 0, 2.0], high[1])
-    found = step.impacts(tolerance=1e-9)
+    both = step.impacts(tolerance=1e-9)
+    found = step.impacts(tolerance=1e-9, pairs="vertex-triangle")
     assert found.complete and len(found) > 50
     assert (found.time[:, 0] <= found.time[:, 1]).all() and (np.diff(found.time, axis=1) <= 1e-9).all()
     # Vertices of the upper sheet against triangles of the lower one, referee: where the line meets the plane.
@@ -447,6 +453,9 @@ def test_impacts_of_a_falling_sheet():
     height = np.einsum("ij,ij->i", start - corners[:, 0], normal) / normal[:, 2]
     np.testing.assert_allclose(found.time[upper].mean(axis=1), height / 2.0, atol=1e-8)
     edges = step.impacts(pairs="edge-edge", threads=2)
+    assert list(both.kind) == ["vertex-triangle"] * len(found) + ["edge-edge"] * len(edges) and len(edges) > 0 and both.complete
+    np.testing.assert_array_equal(both.a, np.concatenate([found.a, edges.a]))
+    np.testing.assert_array_equal(found.kind, ["vertex-triangle"] * len(found))
     first = min(found.time[:, 0].min(), edges.time[:, 0].min())
     assert step.free_step() == pytest.approx(first, abs=2e-6) and 0 < step.free_step() <= first + 1e-12
     (lower, upper_bound), pair, proved = step.earliest()

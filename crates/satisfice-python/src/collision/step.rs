@@ -4,81 +4,29 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
-use satisfice_collision::continuous::{self, FeatureOf, Impact, Moving, MovingContact, Separation};
-use satisfice_collision::distance::PairKind;
-use satisfice_collision::scene::SharedMesh;
-use satisfice_collision::{Error, FeatureKind};
+use satisfice_collision::Error;
+use satisfice_collision::continuous::{self, Impact, MovingContact, Separation};
+use satisfice_collision::scene::Completeness;
 
 use super::guard::{Guard, pool_of};
 use super::{Mesh, kind, points, rows};
 use crate::refused;
 
-/// The bodies of a step.
-#[derive(Default)]
-struct Bodies {
-    step: continuous::Step,
-    meshes: Vec<(SharedMesh, [Vec<[f64; 3]>; 2])>,
-}
-
 /// Meshes at both ends of a step.
 #[pyclass(frozen, module = "satisfice.collision")]
-pub(crate) struct Step(Mutex<Bodies>);
+pub(crate) struct Step(Mutex<continuous::Step>);
 
-/// Columns of impacts: bodies and features, bounds of the times, closest points, normals, whether these are all.
+/// Columns of impacts: bodies and features, bounds of the times, closest points, normals; how many are of each kind; whether these are all.
 type Columns = (
     [Py<PyArray1<u32>>; 4],
     [Py<PyArray1<f64>>; 2],
     [Py<PyArray2<f64>>; 3],
+    Vec<(&'static str, usize)>,
     bool,
 );
 
-impl Bodies {
-    fn corner(&self, body: u32, vertex: u32) -> ([f64; 3], [f64; 3]) {
-        let [from, to] = &self.meshes[body as usize].1;
-        (from[vertex as usize], to[vertex as usize])
-    }
-
-    fn vertex(&self, of: FeatureOf) -> Moving<[f64; 3]> {
-        let (from, to) = self.corner(of.body, of.index);
-        Moving::new(from, to)
-    }
-
-    fn edge(&self, of: FeatureOf) -> Moving<[[f64; 3]; 2]> {
-        let mesh = self.meshes[of.body as usize].0.mesh();
-        let [a, b, _] = mesh.features(FeatureKind::Edge).corners(of.index);
-        let ends = [a, b].map(|vertex| self.corner(of.body, vertex));
-        Moving::new(ends.map(|end| end.0), ends.map(|end| end.1))
-    }
-
-    fn triangle(&self, of: FeatureOf) -> Moving<[[f64; 3]; 3]> {
-        let mesh = self.meshes[of.body as usize].0.mesh();
-        let corners = mesh.features(FeatureKind::Triangle).corners(of.index);
-        let corners = corners.map(|vertex| self.corner(of.body, vertex));
-        Moving::new(corners.map(|corner| corner.0), corners.map(|corner| corner.1))
-    }
-
-    fn impact(
-        &self,
-        kind: PairKind,
-        contact: MovingContact,
-        separation: Separation,
-        tolerance: f64,
-    ) -> Result<Option<Impact>, Error> {
-        let MovingContact { a, b } = contact;
-        match kind {
-            PairKind::VertexVertex => {
-                continuous::impact(&self.vertex(a), &self.vertex(b), separation, tolerance)
-            }
-            PairKind::VertexEdge => continuous::impact(&self.vertex(a), &self.edge(b), separation, tolerance),
-            PairKind::EdgeEdge => continuous::impact(&self.edge(a), &self.edge(b), separation, tolerance),
-            // `Step::hits` has refused the others.
-            _ => continuous::impact(&self.vertex(a), &self.triangle(b), separation, tolerance),
-        }
-    }
-}
-
 impl Step {
-    fn lock(&self) -> MutexGuard<'_, Bodies> {
+    fn lock(&self) -> MutexGuard<'_, continuous::Step> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -99,15 +47,11 @@ impl Step {
     ) -> PyResult<usize> {
         let (mesh, to) = (mesh.get().0.clone(), points(&to)?);
         py.detach(|| {
-            let mut bodies = self.lock();
-            let number = if self_collision {
-                bodies.step.add_deforming(mesh.mesh(), &to)?
-            } else {
-                bodies.step.add_rigid(mesh.mesh(), &to)?
-            };
-            let from = mesh.mesh().vertices().to_vec();
-            bodies.meshes.push((mesh, [from, to]));
-            Ok(number)
+            let mut step = self.lock();
+            match self_collision {
+                true => step.add_deforming(mesh.mesh(), &to),
+                false => step.add_rigid(mesh.mesh(), &to),
+            }
         })
         .map_err(|error: Error| refused(error))
     }
@@ -120,45 +64,48 @@ impl Step {
         end: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
         let ends = [points(&start)?, points(&end)?];
-        py.detach(|| {
-            let mut bodies = self.lock();
-            bodies.step.set_motion(body, &ends[0], &ends[1])?;
-            bodies.meshes[body].1 = ends;
-            Ok(())
-        })
-        .map_err(|error: Error| refused(error))
+        py.detach(|| self.lock().set_motion(body, &ends[0], &ends[1]))
+            .map_err(refused)
     }
 
     fn impacts(
         &self,
         py: Python<'_>,
-        pairs: &str,
+        pairs: Option<&str>,
         delta: f64,
         tolerance: f64,
         time: Option<f64>,
         threads: usize,
     ) -> PyResult<Columns> {
-        let kind = kind(pairs)?;
+        let asked = pairs.map(kind).transpose()?;
         let separation = Separation::new(delta).map_err(refused)?;
         let guard = Guard::new(time, None)?;
         // A step works on all threads of the pool that it finds itself in.
         let pool = pool_of(threads)?;
-        let (found, complete) = guard.run(py, Some(&pool), || {
-            let bodies = self.lock();
-            let hits = bodies.step.hits_until(kind, separation, &mut || guard.stops(0))?;
-            let mut found = Vec::with_capacity(hits.pairs.len());
-            let mut complete = hits.undecided == 0;
-            let until = guard.measuring_until();
-            for pair in hits.pairs {
-                if guard.stops_at(until) {
-                    complete = false;
-                    break;
+        let (found, counts, complete) = guard.run(py, Some(&pool), || {
+            let step = self.lock();
+            let kinds = asked.map_or_else(|| step.kinds(), |kind| vec![kind]);
+            let (mut found, mut counts, mut complete) = (Vec::new(), Vec::new(), true);
+            for kind in kinds {
+                let before = found.len();
+                let hits = step.hits_until(kind, separation, &mut || guard.stops(0))?;
+                complete &= hits.undecided == 0;
+                let until = guard.measuring_until();
+                let stop = || guard.stops_at(until);
+                for pair in hits.pairs {
+                    let (impact, known) = match stop() {
+                        true => (None, Completeness::Unknown),
+                        false => step.impact_of_until(kind, &pair, separation, tolerance, &stop)?,
+                    };
+                    if known != Completeness::Proved {
+                        complete = false;
+                        break;
+                    }
+                    found.extend(impact.map(|impact| (pair, impact)));
                 }
-                if let Some(impact) = bodies.impact(kind, pair, separation, tolerance)? {
-                    found.push((pair, impact));
-                }
+                counts.push((kind.name(), found.len() - before));
             }
-            Ok((found, complete))
+            Ok((found, counts, complete))
         })?;
         let numbers: [fn(&MovingContact) -> u32; 4] = [
             |pair| pair.a.body,
@@ -180,7 +127,7 @@ impl Step {
             |impact| impact.normal,
         ];
         let [a, b, normal] = vectors.map(|of| rows(py, found.iter().map(|(_, impact)| of(impact)).collect()));
-        Ok((numbers, times, [a?, b?, normal?], complete))
+        Ok((numbers, times, [a?, b?, normal?], counts, complete))
     }
 
     /// Bounds of the time of the first impact, the pair and its kind, and whether that is proved.
@@ -194,9 +141,7 @@ impl Step {
         let separation = Separation::new(delta).map_err(refused)?;
         let guard = Guard::new(time, None)?;
         let earliest = guard.run(py, None, || {
-            let bodies = self.lock();
-            bodies
-                .step
+            self.lock()
                 .earliest_until(separation, tolerance, &mut || guard.stops(0))
         })?;
         let first = earliest
@@ -210,9 +155,7 @@ impl Step {
         let separation = Separation::new(delta).map_err(refused)?;
         let guard = Guard::new(time, None)?;
         guard.run(py, None, || {
-            self.lock()
-                .step
-                .free_step_until(separation, &mut || guard.stops(0))
+            self.lock().free_step_until(separation, &mut || guard.stops(0))
         })
     }
 }

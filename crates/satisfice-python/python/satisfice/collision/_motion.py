@@ -15,10 +15,13 @@ from ._mesh import mesh, vertices_of
 
 @dataclass(frozen=True, eq=False)
 class Impacts:
-    """Pairs of features that come near each other during a step, in ascending order.
+    """Pairs of features that come near each other during a step: those of vertices and triangles first, then those of edges, each in
+    ascending order.
 
     Attributes
     ----------
+    kind : ndarray of str, shape (m,)
+        The kind of each pair, as `Step.impacts` takes it.
     body_a, body_b, a, b : ndarray of uint32, shape (m,)
         Bodies in the order of adding, and features of their meshes.
     time : ndarray of float64, shape (m, 2)
@@ -38,6 +41,7 @@ class Impacts:
     point_a: NDArray[np.float64]
     point_b: NDArray[np.float64]
     normal: NDArray[np.float64]
+    kind: NDArray[np.str_]
     complete: bool
 
     def __len__(self) -> int:
@@ -99,7 +103,7 @@ class Step:
         self,
         *,
         threshold: float = 0.0,
-        pairs: str = "vertex-triangle",
+        pairs: str | None = None,
         tolerance: float = 1e-6,
         time: float | None = None,
         threads: int = 1,
@@ -110,9 +114,9 @@ class Step:
         ----------
         threshold : float, default 0
             In the unit of the vertices.
-        pairs : str, default "vertex-triangle"
-            ``"vertex-vertex"``, ``"vertex-edge"``, ``"vertex-triangle"`` or ``"edge-edge"``. Surfaces that meet do so in a pair
-            of one of the last two kinds: ask for both, or, for the first impact, `earliest`, which looks at both.
+        pairs : str, optional
+            ``"vertex-vertex"``, ``"vertex-edge"``, ``"vertex-triangle"`` or ``"edge-edge"``. By default the last two, in one of which
+            surfaces first meet, and the others, too, if a vertex belongs to no triangle.
         tolerance : float, default 1e-6
             The greatest distance of the two bounds of a time, at least 1e-12.
         time : float, optional
@@ -120,10 +124,12 @@ class Step:
         threads : int, default 1
             Threads, 0 for one per core, at most 1,024. They do not change the impacts.
         """
-        (body_a, body_b, a, b), times, (point_a, point_b, normal), complete = self._step.impacts(
+        (body_a, body_b, a, b), times, (point_a, point_b, normal), counts, complete = self._step.impacts(
             pairs, real("threshold", threshold), real("tolerance", tolerance), seconds(time), whole("threads", threads, least=0)
         )
-        return Impacts(body_a, body_b, a, b, np.column_stack(times), point_a, point_b, normal, complete)
+        names = np.array([name for name, _ in counts], dtype=np.str_)
+        kind = np.repeat(names, np.array([count for _, count in counts], dtype=np.intp))
+        return Impacts(body_a, body_b, a, b, np.column_stack(times), point_a, point_b, normal, kind, complete)
 
     def free_step(self, *, threshold: float = 0.0, time: float | None = None) -> float:
         """A time up to which the step is proved free of impacts; 1 if the whole step is. After `time` seconds it is what is
@@ -154,7 +160,7 @@ def impacts(
     faces: Any = None,
     *,
     threshold: float = 0.0,
-    pairs: str = "vertex-triangle",
+    pairs: str | None = None,
     tolerance: float = 1e-6,
     time: float | None = None,
     threads: int = 1,
