@@ -184,22 +184,13 @@ impl Step {
     /// with a vertex also if there are points or wires that belong to no triangle.
     #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
-        let is_covered = self.is_covered_by_triangles();
         let asks_for = |kind: &PairKind| match kind {
             PairKind::VertexTriangle => !self.triangles.is_empty(),
             PairKind::EdgeEdge => !self.edges.is_empty(),
             // Of closed features the nearest points of two surfaces are those of vertex and triangle or edge and edge.
-            _ => !is_covered,
+            _ => self.has_loose_vertices(),
         };
         KINDS.into_iter().filter(asks_for).collect()
-    }
-
-    fn is_covered_by_triangles(&self) -> bool {
-        let mut covered = vec![false; self.from.len()];
-        for &v in self.triangles.iter().flatten() {
-            covered[v as usize] = true;
-        }
-        covered.into_iter().all(|covered| covered)
     }
 }
 

@@ -36,6 +36,8 @@ pub struct Step {
     pub(super) to: Vec<Point>,
     pub(super) edges: Vec<[u32; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Whether any vertex belongs to no triangle.
+    has_loose_vertices: bool,
     frame: OnceLock<(BoxFrame, BodyBoxes)>,
     /// By list.
     trees: [Mutex<StepTree>; 3],
@@ -125,6 +127,11 @@ impl Step {
             .extend(mesh.edges().iter().map(|e| e.map(|v| v + offset)));
         self.triangles
             .extend(mesh.triangles().iter().map(|t| t.map(|v| v + offset)));
+        let mut is_covered = vec![false; to.len()];
+        for &v in mesh.triangles().iter().flatten() {
+            is_covered[v as usize] = true;
+        }
+        self.has_loose_vertices |= is_covered.contains(&false);
         self.frame = OnceLock::new();
         self.trees = Default::default();
         Ok(self.bodies.len() - 1)
@@ -269,6 +276,10 @@ impl Step {
             self.tree(list, margin);
         }
         Ok(())
+    }
+
+    pub(super) fn has_loose_vertices(&self) -> bool {
+        self.has_loose_vertices
     }
 
     /// Whether any body collides with others only.
