@@ -7,6 +7,7 @@ mod checkpoint;
 mod closures;
 mod conformance;
 mod equations;
+mod failing_points;
 mod isolated_hits;
 mod lanes;
 mod lanes_apart;

@@ -151,6 +151,11 @@ impl<S: Real> Climb<S> {
             return;
         }
         let fitness = outcome.fitness();
+        if fitness == S::infinity() && self.fitness == S::infinity() {
+            // The start failed, and there is nowhere to go from there.
+            self.running = false;
+            return;
+        }
         self.stalled = if fitness < self.fitness {
             0
         } else {
