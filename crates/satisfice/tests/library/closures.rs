@@ -106,3 +106,21 @@ fn too_few_radii_are_counted() {
     );
     assert!(text(vec![axis], &[0.1, 0.2]).starts_with("separations = 2 radii for 1 axis "));
 }
+
+#[test]
+fn bounds_that_are_known_of_small_regions_only_prove_all_the_same() {
+    let space = Space::lattice(2, 4096).unwrap();
+    let problem = from_fn(space, 4.0, |x: &[f64]| {
+        (x[0] - 2000.0).abs() + (x[1] - 1000.0).abs()
+    })
+    .bounds(|region| {
+        let is_small = (0..2).all(|k| region.upper[k] - region.lower[k] < 40.0);
+        let beyond = |k: usize, at: f64| (region.lower[k] - at).max(at - region.upper[k]).max(0.0);
+        is_small.then(|| beyond(0, 2000.0) + beyond(1, 1000.0))
+    })
+    .boxed();
+    let mut search = Search::named("branch-and-bound").unwrap();
+    let report = search.run(&problem, &Budget::evaluations(200_000)).unwrap();
+    assert_eq!(report.completeness, satisfice::Completeness::Proved);
+    assert_eq!(report.hit_count(), 25);
+}

@@ -91,8 +91,6 @@ impl BranchAndBound {
             proposed: Vec::new(),
             too_small: Vec::new(),
             next_index: 0,
-            unanswered: 0,
-            answered: false,
             enumerated: false,
             given_up: false,
         }
@@ -103,8 +101,6 @@ impl BranchAndBound {
     }
 }
 
-/// If the first calls, this many, are unanswered, the problem has no bounds.
-const SILENCE: u32 = 64;
 /// Regions that are kept until points of the next ones are evaluated, if none has been enumerated by then.
 const LONG_WAY: u64 = 256;
 /// Points tried in a region to find one that is not in C.
@@ -128,8 +124,6 @@ pub(in crate::engine) struct RegionSearch<S> {
     /// Regions at the limit of the resolution, examined again at the end.
     too_small: Vec<Node<S>>,
     next_index: u64,
-    unanswered: u32,
-    answered: bool,
     /// Whether a region has been closed by proposing all its points.
     enumerated: bool,
     given_up: bool,
@@ -142,21 +136,11 @@ impl<S: Real> RegionSearch<S> {
     }
 
     /// The bound of a region, at least its parent's; `None` if it excludes the region.
-    fn bound(&mut self, context: &dyn Context<S>, region: &Region<S>, parent: S) -> Option<S> {
-        if !self.answered && self.unanswered >= SILENCE {
-            return Some(parent);
-        }
-        let bound = match context.lower_bound(region) {
-            Some(bound) => {
-                self.answered = true;
-                // `max` ignores NaN.
-                parent.max(bound)
-            }
-            None => {
-                self.unanswered = self.unanswered.saturating_add(1);
-                parent
-            }
-        };
+    fn bound(context: &dyn Context<S>, region: &Region<S>, parent: S) -> Option<S> {
+        // `max` ignores NaN.
+        let bound = context
+            .lower_bound(region)
+            .map_or(parent, |bound| parent.max(bound));
         (bound < context.threshold()).then_some(bound)
     }
 
@@ -166,7 +150,7 @@ impl<S: Real> RegionSearch<S> {
         if space.has_permutations() && !space.order_inside(&region, &mut region.lower.clone()) {
             return;
         }
-        let Some(bound) = self.bound(context, &region, parent) else {
+        let Some(bound) = Self::bound(context, &region, parent) else {
             return;
         };
         let index = self.next_index;
@@ -243,7 +227,7 @@ impl<S: Real> RegionSearch<S> {
                 self.enter(context, lower, node.bound, out);
             }
             Split::TooSmall => {
-                if self.too_small.len() >= self.regions {
+                if self.too_small.len() >= self.regions && !self.given_up {
                     self.too_small.retain(|node| !context.covers(&node.region));
                 }
                 if self.too_small.len() < self.regions {
@@ -264,8 +248,6 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         self.proposed.clear();
         self.too_small.clear();
         self.next_index = 0;
-        self.unanswered = 0;
-        self.answered = false;
         self.enumerated = false;
         self.given_up = false;
     }
@@ -327,8 +309,6 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         self.proposed.save(state);
         self.too_small.save(state);
         self.next_index.save(state);
-        self.unanswered.save(state);
-        self.answered.save(state);
         self.enumerated.save(state);
         self.given_up.save(state);
     }
@@ -340,8 +320,6 @@ impl<S: Real> Engine<S> for RegionSearch<S> {
         self.proposed = from.read()?;
         self.too_small = from.read()?;
         self.next_index = from.read()?;
-        self.unanswered = from.read()?;
-        self.answered = from.read()?;
         self.enumerated = from.read()?;
         self.given_up = from.read()?;
         Ok(())
