@@ -136,7 +136,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> RunningLane<S, T> {
         let origin = match from {
             BatchSource::Probes => return slice.settle_probes(problem),
             BatchSource::WarmStart => {
-                slice.ledger.counts.verified += slice.candidates.outcomes.len() as u64;
+                let outcomes = slice.candidates.outcomes.iter();
+                let verified = outcomes.filter(|outcome| **outcome != Outcome::NotEvaluated);
+                slice.ledger.counts.verified += verified.count() as u64;
                 if slice.batch.is_empty() {
                     return; // a problem without an encoding: the engine has nothing to see
                 }

@@ -89,9 +89,11 @@ pub(super) fn share_of(budget: &Budget, lane: usize, count: usize, probes: f64) 
     });
     own.patience = None; // that of all lanes together
     own.horizon = budget.horizon.map(|all| all.div_ceil(count));
-    own.time = budget
-        .time
-        .map(|time| time.mul_f64(1.0 - probes).max(Duration::from_nanos(1)));
+    own.time = budget.time.map(|time| match probes == 0.0 {
+        true => time,
+        // a share above 0 leaves no more than can be told
+        false => time.mul_f64(1.0 - probes).max(Duration::from_nanos(1)),
+    });
     own
 }
 

@@ -153,6 +153,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         let mut running = running.ok_or_else(|| Error::State("no slice has begun".to_owned()))?;
         for lane in &mut running.lanes {
             lane.slice.ledger.at_once = self.threads_at_once(&lane.slice.ledger.budget);
+            lane.slice.ledger.islands = self.islands;
         }
         self.resumed = false;
         Ok(running)

@@ -200,3 +200,24 @@ fn islands_that_are_evaluated_by_hand_know_what_a_cheap_f_costs() {
         );
     }
 }
+
+#[test]
+fn a_time_limit_may_be_as_long_as_can_be_told() {
+    let budget = Budget::time(core::time::Duration::MAX).and_evaluations(1_000);
+    let mut search = Search::named("random").unwrap().islands(2).seed(1);
+    let report = search.run(&disc(40.0), &budget).unwrap();
+    assert_eq!(report.counts.evaluations, 1_000);
+}
+
+#[test]
+fn a_hit_that_is_not_evaluated_again_is_not_verified() {
+    let problem = disc(40.0);
+    for search in [Search::named("random").unwrap(), islands(2)] {
+        let mut search = search.seed(3).warm_start(WarmStart::Verify);
+        let first = search.run(&problem, &Budget::evaluations(40_000)).unwrap();
+        assert!(first.hit_count() > 70);
+        let one = Budget::evaluations(10_000).and_hits(1);
+        let second = search.run(&problem, &one).unwrap();
+        assert_eq!(second.counts.verified, second.counts.evaluations);
+    }
+}

@@ -320,9 +320,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Ordered<S, T> {
             let batch = crate::batch::Batch::of_one(&position);
             for lane in &mut self.running.lanes {
                 let view = lane.slice.view(problem, previous);
-                lane.lane
-                    .engine
-                    .tell(&view, &batch, &[outcome], Origin::WarmStart);
+                lane.lane.engine.tell(&view, &batch, &[outcome], Origin::Start);
             }
         }
     }
