@@ -67,6 +67,11 @@ pub trait Context<S: Real> {
         None
     }
 
+    /// The share of the planned evaluations that are [probes](crate::Search::probes), not the engine's.
+    fn probe_share(&self) -> f64 {
+        0.0
+    }
+
     /// How many [islands](crate::Search::islands) the search has, of which each has such a plan.
     fn islands(&self) -> usize {
         1

@@ -289,6 +289,9 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Context<S> for View<'_, S, T> {
         let spent = self.ledger.counts.evaluations + self.calls.bounds.get();
         horizon.or(*evaluations).map(|limit| limit.saturating_sub(spent))
     }
+    fn probe_share(&self) -> f64 {
+        self.ledger.probe_share
+    }
     fn islands(&self) -> usize {
         self.ledger.islands
     }

@@ -52,6 +52,8 @@ pub(crate) struct Ledger<T> {
     pub(crate) at_once: usize,
     /// How many islands share the evaluations that the search has planned.
     pub(crate) islands: usize,
+    /// The share of those evaluations that are probes.
+    pub(crate) probe_share: f64,
     /// Whether the engine is told one answer at a time, in any order.
     pub(crate) in_any_order: bool,
     /// When the next points of the trace are due, by evaluations and by time.
@@ -122,6 +124,7 @@ impl<T> Ledger<T> {
             hold: None,
             at_once: 1,
             islands: 1,
+            probe_share: 0.0,
             in_any_order: false,
             next_count: next,
             stale_at,

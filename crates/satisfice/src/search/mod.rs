@@ -231,7 +231,8 @@ impl<P: SatisficingProblem + ?Sized> Search<P> {
     /// which is 0 for every engine from the literature and 0.02 for the default, but none if that makes fewer than ten.
     ///
     /// From the probes the report [estimates the hits not seen](crate::Report::unseen), with an interval. Their hits are
-    /// listed, but the engine is not told of them: its own sequence of points is the same as without probes.
+    /// listed, but the engine is not told of them: its own sequence of points is the same as without probes, unless it plans with the
+    /// evaluations that are left, as the default does.
     ///
     /// ```
     /// use satisfice::{engine, from_fn, Budget, Search, Space};

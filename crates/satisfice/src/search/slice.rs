@@ -51,8 +51,10 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         let calls = Calls::default();
         calls.neighbours.set(reached.counts.neighbour_calls);
         calls.bounds.set(reached.counts.bound_calls);
+        let mut ledger = Ledger::open(budget, reached);
+        ledger.probe_share = probes.share();
         Self {
-            ledger: Ledger::open(budget, reached),
+            ledger,
             batch: Batch::new(dimension),
             candidates: Candidates::default(),
             probes,

@@ -30,8 +30,6 @@ pub(super) struct Scan {
     next: u64,
     passed: u64,
     started: bool,
-    /// Whether the search makes no probes, because the budget has no room for them beside the points.
-    unprobed: bool,
     /// Hits known, and the evaluation at which the last of them was new.
     hits: usize,
     latest: u64,
@@ -44,7 +42,7 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    pub(super) fn new<S: Real>(space: &Space<S>, unprobed: bool) -> Self {
+    pub(super) fn new<S: Real>(space: &Space<S>) -> Self {
         let count = space.cardinality();
         let count = count.filter(|&count| space.is_discrete() && count < 9e15);
         #[expect(
@@ -54,7 +52,6 @@ impl Scan {
         )]
         Self {
             points: count.map_or(0, |count| count as u64),
-            unprobed,
             ..Self::default()
         }
     }
@@ -65,7 +62,7 @@ impl Scan {
     }
 
     /// Whether points of the lattice are to be enumerated now: all of the rest, with nothing beside from now on, or a sample. The rest has to
-    /// fit into what the budget has left, of which `reserve` is the share that is not the engine's; under a limit of time alone, at the pace
+    /// fit into what the budget has left, of which probes are not the engine's; under a limit of time alone, at the pace
     /// so far, less what the thinking of the sources took, by what they all have cost. Of the budget, `awaited` points that were proposed and
     /// not answered take their part. And it has to be due: the lattice is small, or
     /// mostly visited, or the search finds no more than the enumeration would. Under a limit of evaluations it is also due as soon as it
@@ -74,7 +71,7 @@ impl Scan {
         &mut self,
         context: &dyn Context<S>,
         visited: &Visited,
-        (reserve, awaited): (f64, usize),
+        awaited: usize,
         batch: usize,
         all: &Credit,
     ) -> bool {
@@ -90,7 +87,7 @@ impl Scan {
         let (made, used) = (context.evaluations(), context.elapsed_share());
         let due = self.points <= SMALL || visited.is_dense() || self.search_is_stale(made, context.hits());
         self.alone = if let Some(planned) = context.evaluations_planned() {
-            let room = self.room(planned, reserve, awaited);
+            let room = room(planned, context.probe_share(), awaited);
             rest <= room && (due || rest + 2.0 * batch as f64 > room)
         } else if used > 0.0 {
             let (takes, left) = (rest * used / all.mean_cost(), (1.0 - used) * made as f64);
@@ -100,16 +97,6 @@ impl Scan {
         };
         self.samples &= !self.alone;
         self.alone || self.samples
-    }
-
-    /// How many more points the budget has room for.
-    fn room(&self, planned: u64, reserve: f64, awaited: usize) -> f64 {
-        let ours = if self.unprobed {
-            planned as f64
-        } else {
-            planned as f64 * (1.0 - reserve) - 1.0
-        };
-        ours - awaited as f64
     }
 
     /// Whether the samples have surely found more hits for their cost than the search lately; if not, it may be time for the next sample. The
@@ -166,6 +153,15 @@ impl Scan {
     }
 }
 
+/// For how many more points a budget has room, of which some are probes and some are awaited.
+fn room(planned: u64, probes: f64, awaited: usize) -> f64 {
+    let ours = match probes > 0.0 {
+        true => planned as f64 * (1.0 - probes) - 1.0,
+        false => planned as f64,
+    };
+    ours - awaited as f64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,7 +170,7 @@ mod tests {
     fn every_point_comes_once_but_those_visited_before() {
         let space = Space::<f64>::lattice(2, 30).unwrap();
         for seed in 0..5 {
-            let (mut scan, mut rng) = (Scan::new(&space, false), SearchRng::new(seed));
+            let (mut scan, mut rng) = (Scan::new(&space), SearchRng::new(seed));
             let (mut visited, mut position) = (Visited::new(&space), [0.0; 2]);
             for _ in 0..300 {
                 rng.position(&space, &mut position);
@@ -192,9 +188,8 @@ mod tests {
 
     #[test]
     fn probes_and_points_that_are_out_leave_less_room() {
-        let space = Space::<f64>::lattice(2, 30).unwrap();
-        assert_eq!(Scan::new(&space, false).room(1000, 0.25, 32), 717.0);
-        assert_eq!(Scan::new(&space, true).room(1000, 0.25, 32), 968.0);
+        assert_eq!(room(1000, 0.25, 32), 717.0);
+        assert_eq!(room(1000, 0.0, 32), 968.0);
     }
 
     #[test]
@@ -209,7 +204,7 @@ mod tests {
         };
         // The search hits every `price` evaluations, the enumeration every 100.
         for (price, expected) in [(10, false), (1000, true)] {
-            let (mut scan, mut all) = (Scan::new(&space, false), Credit::default());
+            let (mut scan, mut all) = (Scan::new(&space), Credit::default());
             let mut alone = false;
             for n in 0..100_000 {
                 all.count(n % price == 0, 1.0);
@@ -232,7 +227,7 @@ mod tests {
             Space::<f64>::cube(2, 0.0, 1.0).unwrap(),
             Space::lattice(12, 10_000).unwrap(),
         ] {
-            assert!(Scan::new(&space, false).points == 0 && !Scan::new(&space, false).is_over());
+            assert!(Scan::new(&space).points == 0 && !Scan::new(&space).is_over());
         }
     }
 }

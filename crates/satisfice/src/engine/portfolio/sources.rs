@@ -28,7 +28,6 @@ use crate::engine::local::descent::RestartedDescent;
 use crate::engine::low_discrepancy::EvenPoints;
 use crate::engine::{Answers, Ask, Engine, Origin};
 use crate::error::Error;
-use crate::probes::Probes;
 use crate::report::SourceCount;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
@@ -170,8 +169,7 @@ impl<S: Real> Engine<S> for Sources<S> {
         self.hits.clear();
         self.tally = Tally::default();
         self.visited = space.is_discrete().then(|| Visited::new(space));
-        let unprobed = Probes::leave_no_room(space, PROBES, context.evaluations_planned());
-        self.scan = Scan::new(space, unprobed);
+        self.scan = Scan::new(space);
         self.swarms.begin(dimension);
         self.descents.clear();
         self.waiting.clear();
@@ -368,13 +366,24 @@ impl<S: Real> Engine<S> for Sources<S> {
             self.descents.push(descent);
         }
         self.guests.restore(self.position.len(), from)?;
-        let descents_fit = |(source, index): Tag| source != Source::Descent || index < descents;
+        let dimension = self.position.len();
+        let own_fit = |(source, index): Tag| match source {
+            Source::Descent => index < descents,
+            Source::Swarm => index < self.swarms.len(),
+            Source::Step => self.steps.as_ref().is_none_or(|steps| index < steps.len()),
+            _ => true,
+        };
+        let trials = self.trials.len() / dimension.max(1);
+        let trial_fits = |&(source, index): &Tag| source != Source::Trial || index < trials;
+        let steps_fit = self.steps.as_ref().is_none_or(|steps| steps.is_whole(dimension));
         let chosen = self.chosen.map(|(tag, _)| tag);
         let out = || self.tags.iter().copied().chain(self.awaited.tags());
         let trials_fit = self.awaited.fit(self.position.len());
         if !trials_fit
             || self.waiting.len() != descents
-            || !out().all(descents_fit)
+            || !out().chain(chosen).all(own_fit)
+            || !self.tags.iter().all(trial_fits)
+            || !steps_fit
             || !self.guests.fit(self.tags.len(), out(), chosen)
         {
             return Err(Error::State("its batches do not fit its sources".to_owned()));

@@ -124,6 +124,11 @@ impl<S: Real> Swarms<S> {
     }
 
     /// Tells swarm `index` the outcome of its particle.
+    /// The number of swarms.
+    pub(super) fn len(&self) -> usize {
+        self.swarms.len()
+    }
+
     pub(super) fn tell(&mut self, index: usize, position: &[S], outcome: Outcome<S>) {
         let swarm = &mut self.swarms[index];
         swarm.waits = false;

@@ -134,6 +134,18 @@ impl<S: Real> Translations<S> {
 
     /// Counts a trial of step `index`.
     #[inline]
+    /// The number of steps.
+    pub(super) fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether restored parts fit each other and a space of so many axes.
+    pub(super) fn is_whole(&self, dimension: usize) -> bool {
+        let learned = self.steps.len().checked_sub(2 * self.units.len());
+        self.units.iter().all(|&axis| axis < dimension)
+            && learned.is_some_and(|learned| Some(self.vectors.len()) == learned.checked_mul(dimension))
+    }
+
     pub(super) fn count(&mut self, index: usize, hit: bool) {
         let step = &mut self.steps[index];
         step.trials += 1.0;

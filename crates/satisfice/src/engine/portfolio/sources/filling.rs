@@ -1,6 +1,5 @@
 //! How a batch is filled.
 
-use super::PROBES;
 use super::Sources;
 use super::proposals::SCANNED;
 use crate::batch::Batch;
@@ -64,11 +63,11 @@ impl<S: Real> Sources<S> {
         self.grow_descents(self.block);
         self.guests.look_at_price(context);
         self.guests.grow(context);
-        let taken = (PROBES, self.awaited.len());
+        let awaited = self.awaited.len();
         if let Some(visited) = &self.visited
             && self
                 .scan
-                .goes_on(context, visited, taken, SCANNED, &self.credits.whole)
+                .goes_on(context, visited, awaited, SCANNED, &self.credits.whole)
         {
             return self.enumerate(context, rng, out);
         }
