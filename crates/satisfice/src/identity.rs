@@ -23,7 +23,7 @@ const KEYS: FixedState = FixedState::with_seed(0x5a71_5f1c_e000_2012);
 /// It is implemented for every type that is `Eq + Hash` (a pair of indices, a vector of integers): there, *same* is *equal*.
 /// For real coordinates use [`Located`], which is the same as another one within a radius.
 ///
-/// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and vice versa; likewise the fine keys.
+/// Law: if `a.same(&b)`, then `a.key()` is among the keys that `b.visit_keys` visits, and vice versa.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not define when two solutions are the same answer",
     label = "`Identity` is not implemented for `{Self}`",
@@ -217,9 +217,9 @@ impl<S: Real> Located<S> {
             }
             Separation::Axes(axes) => {
                 let all = self.coordinates.iter().zip(axes.iter());
-                let blurred = all.filter(|(_, axis)| axis.is_hashed_by_cells());
+                let blurred = all.filter_map(|(&x, axis)| axis.in_cells(x));
                 let first = blurred.take(most).enumerate();
-                first.for_each(|(j, (&x, axis))| visit(j, axis.measured(x), axis.radius()));
+                first.for_each(|(j, (x, radius))| visit(j, x, radius));
             }
         }
     }
@@ -316,9 +316,11 @@ impl<S: Real> Identity for Located<S> {
             }
             Separation::Axes(axes) => {
                 for (&x, axis) in self.coordinates.iter().zip(axes.iter()) {
-                    if axis.is_hashed_by_cells() || axis.is_hashed_exactly() {
-                        by_cells += usize::from(axis.is_hashed_by_cells());
+                    if axis.is_hashed_exactly() {
                         visit(axis.measured(x).f64(), axis.radius().f64());
+                    } else if let Some((x, radius)) = axis.in_cells(x) {
+                        by_cells += 1;
+                        visit(x.f64(), radius.f64());
                     } else if let Some(ends) = axis.on_circle(x) {
                         around += 1;
                         for end in ends {

@@ -189,21 +189,21 @@ fn angles_agree_with_all_pairs() {
     }));
 }
 
-/// Beyond what a leaf holds.
+/// Coordinates as far from the seam on either side have one place.
 #[test]
 fn points_in_one_place_are_told_apart_by_the_rest() {
     use crate::{AxisSeparation, Separation};
     let apart = Separation::axes([
+        AxisSeparation::within(0.1),
+        AxisSeparation::within(0.1),
+        AxisSeparation::within(0.1),
+        AxisSeparation::within(0.1),
         AxisSeparation::within(1e-10).periodic(1000.0),
-        AxisSeparation::within(0.1),
-        AxisSeparation::within(0.1),
-        AxisSeparation::within(0.1),
-        AxisSeparation::within(0.1),
     ]);
     let mut rng = crate::SearchRng::new(8);
     let archive = agrees_with_all_pairs((0..2000).map(|_| {
-        let around = rng.below(600) as f64;
-        Located::new(&[around, 1.0, 1.0, 1.0, 1.0], apart.clone())
+        let around = rng.below(600) as f64 + 200.0;
+        Located::new(&[1.0, 1.0, 1.0, 1.0, around], apart.clone())
     }));
     assert!(archive.len() > 500);
 }

@@ -95,17 +95,34 @@ impl<S: Real> AxisSeparation<S> {
         self.radius == S::zero() && self.period == S::zero()
     }
 
-    /// Whether solutions that are the same are in neighbouring cells.
+    /// A number by whose cells a coordinate is hashed, and how far apart it is at most for solutions that are the same. Where a radius is
+    /// small beside the period, that is how far the coordinate is from a multiple of the period, which differs by no more than the
+    /// distance. `None` on exact axes, and for other periodic ones, which are [`on_circle`](Self::on_circle).
     #[inline]
-    pub(super) fn is_hashed_by_cells(&self) -> bool {
-        self.radius > S::zero() && self.period == S::zero()
+    pub(super) fn in_cells(&self, x: S) -> Option<(S, S)> {
+        let x = self.measured(x);
+        if self.period == S::zero() {
+            return (self.radius > S::zero()).then_some((x, self.radius));
+        }
+        if !self.is_small_beside_period() {
+            return None;
+        }
+        let beyond = (x % self.period).abs();
+        // far more than rounding
+        let apart = self.radius.max(S::epsilon().sqrt() * self.period);
+        Some((beyond.min(self.period - beyond), apart))
+    }
+
+    /// Whether rounding of a place on the circle would not be small beside the radius.
+    fn is_small_beside_period(&self) -> bool {
+        self.radius.f64() <= 1e4 * S::epsilon().f64() * self.period.f64()
     }
 
     /// Where a periodic coordinate is on a circle of its period: a chord is no longer than the arc. `None` on other axes, and where
     /// rounding is not small beside the radius.
     pub(super) fn on_circle(&self, x: S) -> Option<[f64; 2]> {
-        let (period, radius) = (self.period.f64(), self.radius.f64());
-        if period <= 0.0 || radius <= 1e4 * S::epsilon().f64() * period {
+        let period = self.period.f64();
+        if period <= 0.0 || self.is_small_beside_period() {
             return None;
         }
         let turn = core::f64::consts::TAU / period;

@@ -1,13 +1,13 @@
 //! Problems whose F has no value at many points.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use satisfice::{Budget, Search, Space, from_fn};
 
 #[test]
 fn a_local_search_leaves_a_start_that_fails() {
-    let calls: Mutex<HashMap<Vec<u64>, u32>> = Mutex::default();
+    let calls: Mutex<BTreeMap<Vec<u64>, u32>> = Mutex::default();
     let problem = from_fn(Space::cube(6, 0.0, 1.0).unwrap(), 1e-3, |x: &[f64]| {
         match x[0] < 0.5 {
             true => {

@@ -15,6 +15,7 @@ mod many_axes;
 mod model_at_work;
 mod panics;
 mod patience;
+mod periodic;
 mod portfolio;
 mod problem_suite;
 mod problem_suite_rare;
