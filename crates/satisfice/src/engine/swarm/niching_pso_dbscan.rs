@@ -3,7 +3,7 @@
 use super::dbscan::{ClusterMemory, OUTLIER, dbscan};
 use super::particles::{Attractor, Swarm, SwarmRules, set_room_aside};
 use super::pso::constriction;
-use super::velocity::Coefficients;
+use super::velocity::{Coefficients, turn};
 use crate::batch::{Batch, Outcome};
 use crate::context::Context;
 use crate::engine::compiled::both_scalars;
@@ -12,7 +12,7 @@ use crate::engine_settings;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
-use crate::space::{Axis, Boundary};
+use crate::space::Axis;
 
 engine_settings! {
     /// PSO with constriction and niches, after the rival that the paper names (Wang et al. 2006). **A reconstruction**: of the original
@@ -275,17 +275,13 @@ impl<S: Real> Engine<S> for NichingSwarm<S> {
     fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin == Origin::Engine && self.swarm.has_started() {
             // A particle that the bound reflects flies back.
-            let factor = match context.space().boundary() {
-                Boundary::Reflect => -S::one(),
-                Boundary::Clamp => S::zero(),
-                Boundary::Wrap => S::one(),
-            };
+            let space = context.space();
             for (place, i) in self.swarm.due().enumerate() {
                 let velocity = &mut self.velocities[self.swarm.row(i)];
                 let moves = self.swarm.position(i).iter().zip(batch.point(place));
-                for (v, (&from, &to)) in velocity.iter_mut().zip(moves) {
+                for ((v, (&from, &to)), axis) in velocity.iter_mut().zip(moves).zip(space.axes()) {
                     if from + *v != to && !self.scattered.get(i).copied().unwrap_or(false) {
-                        *v = *v * factor;
+                        *v = *v * turn(space.boundary(), axis);
                     }
                 }
             }

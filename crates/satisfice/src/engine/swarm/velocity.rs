@@ -8,7 +8,7 @@ use crate::engine::{Ask, Engine, Origin, Steps, WarmStart};
 use crate::error::Error;
 use crate::scalar::{Real, copy_row};
 use crate::seed::SearchRng;
-use crate::space::Boundary;
+use crate::space::{Axis, Boundary};
 
 /// The coefficients of the velocity update.
 #[derive(Debug)]
@@ -39,7 +39,8 @@ pub(super) struct VelocitySwarm<S> {
     velocities: Vec<S>,
     /// Vmax in units of each axis.
     limits: Vec<S>,
-    boundary: Boundary,
+    /// What a velocity on each axis is multiplied by where the boundary rule moves its particle.
+    turns: Vec<S>,
     /// Memory: where its velocity took the particle in turn.
     wanted: Vec<S>,
 }
@@ -51,7 +52,7 @@ impl<S: Real> VelocitySwarm<S> {
             coefficients,
             velocities: Vec::new(),
             limits: Vec::new(),
-            boundary: Boundary::default(),
+            turns: Vec::new(),
             wanted: Vec::new(),
         }
     }
@@ -64,7 +65,10 @@ impl<S: Real> VelocitySwarm<S> {
             .extend(context.space().axes().iter().map(|axis| v_max * axis.width()));
         self.wanted.clear();
         self.wanted.resize(self.limits.len(), S::zero());
-        self.boundary = context.space().boundary();
+        let space = context.space();
+        self.turns.clear();
+        self.turns
+            .extend(space.axes().iter().map(|axis| turn(space.boundary(), axis)));
     }
 
     fn start(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) {
@@ -138,19 +142,22 @@ impl<S: Real> Engine<S> for VelocitySwarm<S> {
                 coefficients.displace(rng, inertia, x, velocity, (best, attractor, limits));
                 copy_row(wanted, x);
             });
-            bounce(self.boundary, velocity, self.swarm.position(i), |j, _| wanted[j]);
+            bounce(&self.turns, velocity, self.swarm.position(i), |j, _| wanted[j]);
             if !more {
                 return true;
             }
         }
     }
 
-    fn tell(&mut self, _: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
+    fn tell(&mut self, context: &dyn Context<S>, batch: &Batch<S>, outcomes: &[Outcome<S>], origin: Origin) {
         if origin == Origin::Engine && self.swarm.has_started() {
+            if self.turns.is_empty() {
+                self.measure(context);
+            }
             for (place, i) in self.swarm.due().enumerate() {
                 let velocity = &mut self.velocities[self.swarm.row(i)];
                 let from = self.swarm.position(i);
-                bounce(self.boundary, velocity, batch.point(place), |j, v| from[j] + v);
+                bounce(&self.turns, velocity, batch.point(place), |j, v| from[j] + v);
             }
         }
         self.swarm.tell(batch, outcomes, origin);
@@ -199,16 +206,21 @@ impl<S: Real> Coefficients<S> {
 /// Mends the velocity of a particle that is at `at`, where on axis `j` its velocity `v` took it to `wanted(j, v)`: the two
 /// differ where the rule at the boundary has moved it.
 #[inline]
-fn bounce<S: Real>(boundary: Boundary, velocity: &mut [S], at: &[S], wanted: impl Fn(usize, S) -> S) {
-    let factor = match boundary {
+fn bounce<S: Real>(turns: &[S], velocity: &mut [S], at: &[S], wanted: impl Fn(usize, S) -> S) {
+    for (j, ((v, &at), &turn)) in velocity.iter_mut().zip(at).zip(turns).enumerate() {
+        if turn != S::one() && wanted(j, *v) != at {
+            *v = *v * turn;
+        }
+    }
+}
+
+/// What a velocity is multiplied by where the boundary rule has moved its particle on this axis.
+pub(super) fn turn<S: Real>(boundary: Boundary, axis: &Axis<S>) -> S {
+    match boundary {
+        _ if axis.is_periodic() => S::one(),
         Boundary::Reflect => -S::one(),
         Boundary::Clamp => S::zero(),
-        Boundary::Wrap => return,
-    };
-    for (j, (v, &at)) in velocity.iter_mut().zip(at).enumerate() {
-        if wanted(j, *v) != at {
-            *v = *v * factor;
-        }
+        Boundary::Wrap => S::one(),
     }
 }
 
@@ -281,8 +293,12 @@ mod tests {
         ] {
             let mut velocity = [2.0, 3.0];
             // On the first axis, the particle is not where its velocity took it.
-            bounce(boundary, &mut velocity, &[9.0, 4.0], |j, _| [11.0, 4.0][j]);
+            let axis = Axis::continuous(0.0, 10.0);
+            bounce(&[turn(boundary, &axis); 2], &mut velocity, &[9.0, 4.0], |j, _| {
+                [11.0, 4.0][j]
+            });
             assert_eq!(velocity, expected, "{boundary:?}");
+            assert_eq!(turn(boundary, &axis.periodic()), 1.0);
         }
     }
 }
