@@ -12,6 +12,8 @@ const TARGET: f64 = 2.0 / 11.0;
 /// Success rates above this stall the evolution path.
 const STALL: f64 = 0.44;
 const SMOOTHING: f64 = 1.0 / 12.0;
+/// Longest step: one of many more widths would be reflected to where rounding puts it.
+const LONGEST: f64 = 1024.0;
 
 /// In more dimensions than this, A is diagonal: two full matrices would take 16 D^2 bytes and every step 2 D^2 operations.
 const FULL: usize = 200;
@@ -101,6 +103,8 @@ impl Mutation {
         let n = self.dimension as f64;
         self.success += SMOOTHING * (f64::from(u8::from(succeeded)) - self.success);
         self.sigma *= ((self.success - TARGET) / ((1.0 - TARGET) * (1.0 + n / 2.0))).exp();
+        // On a plateau every step succeeds.
+        self.sigma = self.sigma.min(LONGEST);
         if !succeeded {
             return;
         }
