@@ -217,6 +217,7 @@ impl<S: Real> Guests<S> {
         self.part = Batch::new(space.dimension());
         self.sizes = Sizes::new(context);
         self.guests.clear();
+        let has_room = context.evaluations_left() > LAST_BOUNDS;
         for kind in [
             GuestKind::Cma,
             GuestKind::Flood,
@@ -225,12 +226,15 @@ impl<S: Real> Guests<S> {
             GuestKind::Quadratic,
             GuestKind::Niching,
         ] {
+            if kind.is_left_out(self.without) {
+                continue;
+            }
             let is_of_use = match kind {
                 GuestKind::Cma => has_keys && space.dimension() <= CMA_AXES,
                 GuestKind::Niching => self.continuous && space.dimension() <= CMA_AXES,
                 GuestKind::Flood => has_keys,
                 GuestKind::Quadratic => is_smooth(context),
-                GuestKind::Regions => context.lower_bound(&space.region()).is_some(),
+                GuestKind::Regions => has_room && context.lower_bound(&space.region()).is_some(),
                 GuestKind::Model => self.sizes.proposals > 0 && space.dimension() <= MODEL_AXES,
             };
             let readiness = match kind {
@@ -238,7 +242,7 @@ impl<S: Real> Guests<S> {
                 GuestKind::Quadratic if context.is_timed() && !self.components => Readiness::Asleep,
                 _ => Readiness::Open,
             };
-            if is_of_use && !kind.is_left_out(self.without) {
+            if is_of_use {
                 self.add(kind, readiness, context);
             }
         }
