@@ -56,6 +56,8 @@ pub struct Contents<T> {
     pub warm_start: Option<WarmStart>,
     /// The share of probes, if one was set.
     pub probes: Option<f64>,
+    /// Points that the next slice evaluates first.
+    pub starts: Vec<Vec<f64>>,
     /// How many slices have ended.
     pub slices: u64,
     /// Number of axes, once a slice has begun.
@@ -221,6 +223,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
                 islands: self.islands,
                 warm_start: self.warm_start,
                 probes: self.probes,
+                starts: self
+                    .starts
+                    .iter()
+                    .map(|at| at.iter().map(|x| x.f64()).collect())
+                    .collect(),
                 slices: self.slices,
                 dimension: self.dimension,
                 previous: Arc::clone(&self.previous),

@@ -207,7 +207,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
             slice.ledger.at_once = at_once;
             slice.ledger.islands = count;
             slice.ledger.unlisted = running.exchange.is_some().then(Unlisted::nothing);
-            slice.starts = starts[lanes::verified_by(number, count, starts.len())].concat();
+            slice.set_starts(&starts[lanes::verified_by(number, count, starts.len())]);
             if own_budget.evaluations == Some(0) {
                 slice.ledger.stop = Some(StopReason::Evaluations); // fewer evaluations than lanes
             } else {

@@ -124,6 +124,11 @@ impl<S: Real, T: Identity + Clone + Send + Sync> KeptSearch<S, T> {
         fits("engine", &named(&saved.engine), &named(&search.description()))?;
         search.warm_start = saved.warm_start;
         search.probes = saved.probes;
+        search.starts = saved
+            .starts
+            .iter()
+            .map(|at| at.iter().map(|&x| S::of(x)).collect())
+            .collect();
         search.slices = saved.slices;
         search.dimension = saved.dimension;
         search.previous = saved.previous.clone();

@@ -142,15 +142,25 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Slice<S, T> {
         self.stage = Stage::Settle(BatchSource::WarmStart);
     }
 
+    /// Takes the points that the user has given. They are kept in the reverse order, so that the next ones are at the end.
+    pub(super) fn set_starts(&mut self, starts: &[Vec<S>]) {
+        self.starts = starts.iter().rev().flatten().copied().collect();
+    }
+
+    /// The next of these points, at most so many.
+    pub(super) fn next_starts(&mut self, most: usize, dimension: usize) -> Vec<S> {
+        let rest = self.starts.len().saturating_sub(most * dimension);
+        let last = self.starts.split_off(rest);
+        last.rchunks_exact(dimension).flatten().copied().collect()
+    }
+
     /// Proposes the next points that the user has given.
     pub(super) fn propose_starts(&mut self, problem: &AnyProblem<'_, S, T>, deletes: bool) {
         let dimension = self.batch.dimension();
-        let numbers = self.starts.len().min(VERIFY_BATCH * dimension);
         self.batch.clear();
-        for position in self.starts[..numbers].chunks_exact(dimension) {
+        for position in self.next_starts(VERIFY_BATCH, dimension).chunks_exact(dimension) {
             self.batch.push(position);
         }
-        self.starts.drain(..numbers);
         self.prepare(problem, BatchSource::Starts, deletes);
     }
 

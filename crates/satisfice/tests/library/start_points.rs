@@ -164,3 +164,14 @@ fn a_saved_slice_still_has_them() {
         assert_eq!(report.counts, whole.counts);
     }
 }
+
+#[test]
+fn a_checkpoint_before_the_slice_has_them() {
+    let (problem, seen) = problem();
+    let search: Search<Problem> = Search::with(engine::Walk::default()).start_from(STARTS);
+    let saved = serde_json::to_string(&search.checkpoint()).unwrap();
+    let saved: Checkpoint<Located<f64>> = serde_json::from_str(&saved).unwrap();
+    let mut resumed: Search<Problem> = Search::resume(saved, engine::Walk::default()).unwrap();
+    resumed.run(&*problem, &Budget::evaluations(10)).unwrap();
+    assert_eq!(seen.lock().unwrap()[..3], STARTS.map(|point| point.to_vec()));
+}

@@ -62,7 +62,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
             WarmStart::Cold | WarmStart::Engine => hits..hits,
         };
         let mut slice = Slice::begin(budget, dimension, probes, to_verify, Reached::default());
-        slice.starts = kept.take_starts(problem).concat();
+        slice.set_starts(&kept.take_starts(problem));
         let mut eager = Self {
             slice,
             lanes: Vec::new(),
@@ -185,7 +185,7 @@ impl<S: Real, T: Identity + Clone + Send + Sync> Eager<S, T> {
                 None => self.point(problem, kept)?,
             }
         } else {
-            (self.slice.starts.drain(..dimension).collect(), Of::Start)
+            (self.slice.next_starts(1, dimension), Of::Start)
         };
         let mut values = vec![S::zero(); position.len()];
         problem
