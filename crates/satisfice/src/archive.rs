@@ -17,7 +17,7 @@ use crate::identity::Identity;
 const FILTERED: usize = 1 << 16;
 /// Bits of the filter per hit it has room for: about one look-up in 16 is not saved.
 const BITS: usize = 16;
-/// One new hit in so many looks at how many share its key; more than `CROWDED` are too many to compare with.
+/// Every so many new hits, those that share the key of the latest are counted. With more than `CROWDED`, hits are filed by their places, too.
 const LOOK_EVERY: usize = 64;
 const CROWDED: usize = 24;
 

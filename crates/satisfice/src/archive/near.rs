@@ -21,8 +21,8 @@ const LEAF: usize = 32;
 const SIDE: usize = 8;
 /// Squared distances, in radii, of what may be the same are at most this, by what distances are rounded.
 const FARTHEST: f64 = 1.001;
-/// Where a path is longer than in a tree whose parts have at most `LOPSIDED` of their points on one side, a part is built again that has more
-/// there and `MORE` times the share that it had when it was built: so it has grown by a third at least, and helps.
+/// When an insertion goes too deep, the part of the tree is built again in which one side holds more than this share of the points, and more
+/// than `MORE` times the share that it held when it was built. Such a part has grown by a third at least, so that this helps.
 const LOPSIDED: f64 = 0.7;
 const MORE: f64 = 1.2;
 /// The hits of an archive: a tree, and another one for each further list of radii, of which there should be none.

@@ -6,7 +6,7 @@ const FEWEST: usize = 16;
 const MOST: usize = 1024;
 /// How much slower radii shrink, all together, than one grows.
 const SLOWER: f64 = 0.5;
-/// The radius of the first hit; that of a later one is the smallest but a tenth of them.
+/// The radius of the first hit. A later one begins with the radius below which a tenth of all radii are.
 const FIRST: f64 = 1.0;
 const TENTH: usize = 10;
 /// The smallest and the largest radius: a larger one would refuse nearly all samples of any search.

@@ -70,7 +70,8 @@ impl Niching {
 const AT_ONCE: usize = 64;
 /// Spreads within which a known end has to be to be looked at: a hit, and another end. Around those, F is often rugged.
 const SCOPE: (f64, f64) = (1.0, 0.2);
-/// Once the spread is this share of the first one, a hit has to be within so many: the samples that it refuses keep the mean out of one.
+/// A search whose spread has shrunk to this share of the first one looks for hits up to so many spreads away: samples near them are refused,
+/// so its mean comes no nearer than that.
 const SETTLED: (f64, f64) = (0.2, 3.0);
 /// Points between a search and a known end that tell whether there is a hill.
 const PROBES: usize = 3;

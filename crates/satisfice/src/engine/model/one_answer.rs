@@ -16,7 +16,7 @@ use crate::state::{Part, Reader, State};
 const MOVED: f64 = 0.05;
 /// Points within so many reaches of a middle are beside the region.
 const BESIDE: f64 = 2.0;
-/// Promised hits beside regions that are as good as one that came: what the first ones are taken for.
+/// The share of promised hits that came starts as if so many had been promised, and had come.
 const PRIOR: f64 = 0.3;
 /// A model of whose promised hits at least this share came is believed.
 const ENOUGH: f64 = 0.5;

@@ -6,8 +6,8 @@ use crate::seed::SearchRng;
 
 /// After this many further hits at the arm's rate, a past hit counts for 1/e: yields change as a search goes on.
 const MEMORY: f64 = 12.0;
-/// So many evaluations are remembered at least, eight of the longest turns: where many points hit, the memory above is a single turn, and
-/// sources change at random. More of a quick F, whose turns are longer.
+/// At least so many evaluations are remembered, which are eight of the longest turns: where most points hit, twelve hits fit into a single turn,
+/// and the choice would be chance. More of a quick F, whose turns are longer.
 const LEAST_MEMORY: f64 = 64.0;
 const LEAST_MEMORY_WHERE_QUICK: f64 = 256.0;
 
@@ -61,8 +61,8 @@ impl Trial {
         }
     }
 
-    /// For a source with a share of its own beside a model of the components of F: it begins when the model had the first evaluations. The
-    /// share is in proportion to what it could gain at most: `missed` of the evaluations.
+    /// For a source with a share of its own beside a model of the components of F. It begins after the model's first evaluations, and may use
+    /// a part of the evaluations that miss, whose share is `missed`: no source can gain more than those.
     pub(super) fn beside_components(missed: f64) -> Self {
         let share = missed * SHARE_BESIDE_COMPONENTS;
         Self {

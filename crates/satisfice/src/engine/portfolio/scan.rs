@@ -61,12 +61,12 @@ impl Scan {
         self.points > 0 && self.passed == self.points
     }
 
-    /// Whether points of the lattice are to be enumerated now: all of the rest, with nothing beside from now on, or a sample. The rest has to
-    /// fit into what the budget has left, of which probes are not the engine's; under a limit of time alone, at the pace
-    /// so far, less what the thinking of the sources took, by what they all have cost. Of the budget, `awaited` points that were proposed and
-    /// not answered take their part. And it has to be due: the lattice is small, or
-    /// mostly visited, or the search finds no more than the enumeration would. Under a limit of evaluations it is also due as soon as it
-    /// would no longer fit later. Where time is limited that is not known well enough to leave a search that finds more.
+    /// Whether points of the lattice are to be enumerated now: all of the rest, with nothing beside from now on, or a sample.
+    ///
+    /// An enumeration has to fit into the budget that is left, less its probes and the `awaited` points that are proposed and not answered; under
+    /// a limit of time alone, at the pace of bare evaluations so far. And it has to be due. It is where the lattice is small, half visited, or
+    /// the search has gone stale; under a limit of evaluations, also when it would not fit any more later; under one of time, where samples of
+    /// it have found more hits for their cost than the search lately.
     pub(super) fn goes_on<S: Real>(
         &mut self,
         context: &dyn Context<S>,

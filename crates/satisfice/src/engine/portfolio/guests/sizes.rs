@@ -3,7 +3,8 @@
 use crate::context::Context;
 use crate::scalar::Real;
 
-/// Candidates that compete for a proposal of the model: as many as take the time of the least number at so many points.
+/// Candidates that compete for a proposal of the model, at least and at most. While fewer points than this are known there are more of them, so
+/// that a proposal takes as long as with the least number at so many points.
 const CANDIDATES: (usize, usize) = (256, 1024);
 const POINTS_OF_LEAST: f64 = 300.0;
 /// Proposals of the model, at most; none where more than `MOST_PLANNED` evaluations are planned, unless the problem tells the components of F.

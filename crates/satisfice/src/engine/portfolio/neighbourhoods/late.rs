@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::scalar::{Real, ordered};
 use crate::state::{Reader, Saved, State, read_rows, write_rows};
 
-/// So many points that miss wait at least, the best ones, and up to twice as many, or as all hits that wait if these are more; hits all wait. With
-/// more, neighbours of ever worse points come before anything else is tried.
+/// All hits wait. Of the points that miss the best ones do: so many, and up to as many again (or as there are hits that wait, if these are
+/// more) before the list is cut. With more, neighbours of ever worse points come before anything else is tried.
 const MOST: usize = 1 << 4;
 
 /// Outside lattices, so many points are known not to be expanded twice; then only hits are expanded.

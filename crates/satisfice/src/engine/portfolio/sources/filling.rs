@@ -11,8 +11,8 @@ use crate::engine::portfolio::visited::Visited;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// A batch ends after this many choices of a source that gave no candidate: half as many after a batch without any, so that a search which knows
-/// nearly all hits does not try in vain, and twice as many after another.
+/// A batch ends after this many choices of a source that gave no candidate. Each empty batch halves the number, down to `LEAST_REJECTED`, so that
+/// a search which knows nearly all hits does not try in vain; each other batch doubles it.
 pub(super) const REJECTED: usize = 100;
 const LEAST_REJECTED: usize = 10;
 /// Fewest points of the first batch, in which no point can learn from another. With a model of F it is a single point.
