@@ -42,6 +42,7 @@ def test_a_folder_that_vanishes_is_a_warning(tmp_path):
 def test_later_writes_are_tried_again(tmp_path, monkeypatch, comes_again):
     monkeypatch.setattr(_files, "_FIRST", 0.0)
     monkeypatch.setattr(_files, "_EVERY", 0.0)
+    monkeypatch.setattr(_files, "_TIMES", 0)
     file = tmp_path / "runs" / "run.json"
     search = satisfice.Search(SQUARE, **RING)
     with pytest.warns(RuntimeWarning) as told:

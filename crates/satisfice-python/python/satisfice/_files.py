@@ -14,8 +14,10 @@ from pathlib import Path
 
 #: The second checkpoint comes so soon, in seconds, so that a path that cannot be written is noticed.
 _FIRST = 1.0
-#: Seconds between the others; more where a checkpoint takes more than a tenth of that.
+#: Seconds between the others.
 _EVERY = 5.0
+#: Between two checkpoints is at least so many times the time that the first of them took.
+_TIMES = 9
 
 
 def read(path: str | os.PathLike[str] | None) -> bytes | None:
@@ -148,5 +150,5 @@ class Keeper:
         begun = clock.monotonic()
         writer(self._state())
         end = clock.monotonic()
-        self._next = end + max(self._every, 9 * (end - begun))
+        self._next = end + max(self._every, _TIMES * (end - begun))
         self._every = _EVERY
