@@ -104,7 +104,8 @@ engine_settings! {
     ///   neighbours and exchanges lead. The model comes first whenever it takes a hit to be more probable than not.
     /// - **After it** a source without a hit takes at most 4 % of the evaluations. Excepted are descents on a lattice, and on continuous axes
     ///   swarms, which may take a fifth: they have to converge first. Beside a model, the sources without a hit together take at most 6 % of the
-    ///   evaluations that miss.
+    ///   evaluations that miss. Uniform points have no bound: they are evaluated whenever no other source may have or has a candidate, which can be
+    ///   half of a search.
     /// - **The model** leads for 1,000 evaluations and then competes as the others do. On continuous axes, and where nothing else leads down, it
     ///   competes by the probability of a hit that it gives its next proposal, as far as its word was true so far. Once it is known to predict
     ///   less than a quarter of the variance of F, it has the bound of a source without a hit.

@@ -120,7 +120,7 @@ impl<S: Real> Sources<S> {
             let made = (out.len() - before) as u64;
             self.pace.proposed(place, watch, made + self.rejections);
             // A source that takes turns with itself goes on in the next batch where choosing costs more than F, and so do descents outside
-            // lattices: a point that leads down needs many more.
+            // lattices, whose turn a batch of several points would cut after one or two.
             let takes_turns = self.is_quick || tag.0 == Source::Descent && self.visited.is_none();
             if takes_turns && !has_more && made > 0 && left > made && out.len() >= wanted {
                 self.chosen = Some((tag, left - made));
