@@ -122,58 +122,75 @@ impl<S: Real> Flood<S> {
 
     /// Proposes neighbours of the next hit that has any left, none once time is out; `false` when all is flooded.
     pub(in crate::engine) fn ask(&mut self, context: &dyn Context<S>, out: &mut Batch<S>) -> bool {
-        let dimension = out.dimension();
         while out.is_empty() {
-            if self.centre.len() != dimension {
-                // A restored row may be of another space.
-                let Some(Reverse((_, row))) = self.queue.pop() else {
-                    self.clear();
-                    return false;
-                };
-                self.centre.clear();
-                let place = row.saturating_mul(dimension);
-                let Some(position) = self.positions.get(place..place.saturating_add(dimension)) else {
-                    continue;
-                };
-                self.centre.extend_from_slice(position);
-                self.next = 0;
-                self.forget_old(dimension);
+            if !self.look_on(context, out) {
+                return false;
             }
             if context.is_out_of_time() {
                 break;
             }
-            let seen = &mut self.seen;
-            let mut propose = |position: &[S]| {
-                if is_new(seen, position) {
-                    out.push(position);
-                }
-            };
-            let count = context.neighbour_count(&self.centre);
-            let end = (count + dimension).min(self.next.saturating_add(points_at_once(dimension)));
-            let neighbours = self.next..end.min(count);
-            if !neighbours.is_empty() {
-                context.neighbours(&self.centre, neighbours, &mut |_, position| {
-                    if !context.is_deleted(position) {
-                        propose(position);
-                    }
-                });
-            }
-            let axes = self.next.max(count) - count..end.max(count) - count;
-            self.doublings.resize(dimension, 0);
-            let left = frontier(
-                context,
-                &mut self.centre,
-                axes,
-                self.first_step,
-                &mut self.doublings,
-                &mut propose,
-            );
-            self.next = end - left;
-            if self.next == count + dimension {
-                self.centre.clear();
-            }
         }
         true
+    }
+
+    /// Proposes those of the next few neighbours of one hit that are new, which may be none; `false` when all is flooded. Each look costs time
+    /// even where it proposes nothing.
+    pub(in crate::engine) fn look_on(&mut self, context: &dyn Context<S>, out: &mut Batch<S>) -> bool {
+        let dimension = out.dimension();
+        if self.centre.len() != dimension && !self.next_centre(dimension) {
+            return false;
+        }
+        if context.is_out_of_time() {
+            return true;
+        }
+        let seen = &mut self.seen;
+        let mut propose = |position: &[S]| {
+            if is_new(seen, position) {
+                out.push(position);
+            }
+        };
+        let count = context.neighbour_count(&self.centre);
+        let end = (count + dimension).min(self.next.saturating_add(points_at_once(dimension)));
+        let neighbours = self.next..end.min(count);
+        if !neighbours.is_empty() {
+            context.neighbours(&self.centre, neighbours, &mut |_, position| {
+                if !context.is_deleted(position) {
+                    propose(position);
+                }
+            });
+        }
+        let axes = self.next.max(count) - count..end.max(count) - count;
+        self.doublings.resize(dimension, 0);
+        let left = frontier(
+            context,
+            &mut self.centre,
+            axes,
+            self.first_step,
+            &mut self.doublings,
+            &mut propose,
+        );
+        self.next = end - left;
+        if self.next == count + dimension {
+            self.centre.clear();
+        }
+        true
+    }
+
+    /// Takes the next hit from the queue; `false` when there is none.
+    fn next_centre(&mut self, dimension: usize) -> bool {
+        self.centre.clear();
+        self.next = 0;
+        while let Some(Reverse((_, row))) = self.queue.pop() {
+            let place = row.saturating_mul(dimension);
+            // A restored row may be of another space.
+            if let Some(position) = self.positions.get(place..place.saturating_add(dimension)) {
+                self.centre.extend_from_slice(position);
+                self.forget_old(dimension);
+                return true;
+            }
+        }
+        self.clear();
+        false
     }
 }
 

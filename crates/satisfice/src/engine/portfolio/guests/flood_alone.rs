@@ -26,7 +26,8 @@ impl<S: Real> Engine<S> for FloodAlone<S> {
     }
 
     fn ask(&mut self, context: &dyn Context<S>, _: &mut SearchRng, out: &mut Batch<S>) -> Ask {
-        self.0.ask(context, out);
+        // One look at a time: where most neighbours are known, it would go over all hits, and others wait.
+        self.0.look_on(context, out);
         Ask::More
     }
 
