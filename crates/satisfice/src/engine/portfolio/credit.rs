@@ -61,6 +61,14 @@ impl Trial {
         }
     }
 
+    /// Without a bound, where all sources have reached theirs.
+    pub(super) fn free() -> Self {
+        Self {
+            start: f64::INFINITY,
+            ..Self::alone()
+        }
+    }
+
     /// For a source with a share of its own beside a model of the components of F. It begins after the model's first evaluations, and may use
     /// a part of the evaluations that miss, whose share is `missed`: no source can gain more than those.
     pub(super) fn beside_components(missed: f64) -> Self {
@@ -339,6 +347,7 @@ mod tests {
         };
         assert!(evaluations(8).is_within(&evaluations(10), alone));
         assert!(!evaluations(9).is_within(&evaluations(10), alone));
+        assert!(evaluations(9).is_within(&evaluations(10), Trial::free()));
         // One of six beside a model: the first evaluation after a hundred, even where nothing hits.
         let beside = Trial::beside_model(6, 1.0);
         assert!(!evaluations(0).is_worth_trying(&evaluations(99), beside));

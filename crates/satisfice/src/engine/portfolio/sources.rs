@@ -2,10 +2,12 @@
 
 mod awaited;
 mod choice;
+mod dry;
 mod filling;
 mod proposals;
 
 use awaited::PointsAwaited;
+use dry::Dry;
 
 use super::credit::{Credits, Patches};
 use super::drought::Drought;
@@ -52,6 +54,8 @@ pub(super) struct Sources<S> {
     has_neighbours: bool,
     /// The source chosen last, and how many more candidates are to come from it.
     chosen: Option<(Tag, u64)>,
+    /// Which sources had nothing new for this batch.
+    dry: Dry,
     without: Omitted,
     credits: Credits,
     /// What each costs in time, and how many points were worked out since the turn began that are known already.
@@ -98,6 +102,7 @@ impl<S: Real> Sources<S> {
             is_quick: false,
             has_neighbours: false,
             chosen: None,
+            dry: Dry::default(),
             without: settings.without,
             credits: Credits::default(),
             pace: Pace::new(false),

@@ -63,15 +63,9 @@ impl<S: Real> Sources<S> {
         !self.levels.are_few()
     }
 
-    /// Draws a source, with the index of the step for [`Source::Step`].
+    /// Chooses a source, with the index of the step for [`Source::Step`].
     fn choose(&self, seekers: Option<Seekers>, expectation: Option<Expectation>, rng: &mut SearchRng) -> Tag {
-        let uses = |source: Omitted| self.without != source;
         let all = &self.credits.whole;
-        let price = all.price();
-        let modelled = self.guests.model_leads(all);
-        let steps = !self.has_slopes();
-        let is_lattice = self.visited.is_some();
-        let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
         if let Some(seekers) = seekers {
             let seeker = seekers.draw(all.evaluations(), expectation, rng);
             return match seekers.guest(seeker) {
@@ -85,17 +79,32 @@ impl<S: Real> Sources<S> {
         {
             return (Source::Guest, niching);
         }
-        let mut best = (f64::NEG_INFINITY, (Source::Uniform, 0));
-        let mut offer = |yields: f64, tag: Tag| {
-            let worth = self.patches.worth(self.role(tag), yields);
-            if worth > best.0 {
-                best = (worth, tag);
-            }
-        };
-        let trial = if modelled || steps {
+        let trial = if self.guests.model_leads(all) || !self.has_slopes() {
             Trial::beside_model(self.barren(), all.missed())
         } else {
             Trial::alone()
+        };
+        let drawn = self.draw(trial, expectation, rng);
+        drawn
+            .or_else(|| self.draw(Trial::free(), expectation, rng))
+            .unwrap_or((Source::Uniform, 0))
+    }
+
+    /// Draws a source by its yield, among those which `trial` allows and which are not left out of this batch.
+    fn draw(&self, trial: Trial, expectation: Option<Expectation>, rng: &mut SearchRng) -> Option<Tag> {
+        let uses = |source: Omitted| self.without != source;
+        let all = &self.credits.whole;
+        let price = all.price();
+        let modelled = self.guests.model_leads(all);
+        let steps = !self.has_slopes();
+        let is_lattice = self.visited.is_some();
+        let [uniform, swarm] = if steps { [BLIND, BLIND_SWARMS] } else { [0.3, 0.5] };
+        let mut best = None;
+        let mut offer = |yields: f64, tag: Tag| {
+            let worth = self.patches.worth(self.role(tag), yields);
+            if !self.dry.has(self.place(tag)) && best.is_none_or(|(most, _)| worth > most) {
+                best = Some((worth, tag));
+            }
         };
         let credit = |source: Source| &self.credits[source as usize];
         let is_worth = |source: Source| credit(source).is_worth_trying(&self.credits.whole, trial);
@@ -140,7 +149,7 @@ impl<S: Real> Sources<S> {
             };
             offer(yields, (Source::Guest, index));
         }
-        best.1
+        best.map(|(_, tag)| tag)
     }
 
     /// Number of sources without a hit, of those that are drawn by their yield.

@@ -1,6 +1,7 @@
 //! How a batch is filled.
 
 use super::Sources;
+use super::dry::Dry;
 use super::proposals::SCANNED;
 use crate::batch::Batch;
 use crate::context::Context;
@@ -11,8 +12,9 @@ use crate::engine::portfolio::visited::Visited;
 use crate::scalar::Real;
 use crate::seed::SearchRng;
 
-/// A batch ends after this many choices of a source that gave no candidate. Each empty batch halves the number, down to `LEAST_REJECTED`, so that
-/// a search which knows nearly all hits does not try in vain; each other batch doubles it.
+/// After this many choices of a source that gave no candidate a batch ends; while it is empty, the sources of those choices are left out of it, and
+/// others go on. A batch for which sources were left out halves the number, down to `LEAST_REJECTED`, so that a search which knows nearly all hits
+/// does not try in vain; each other batch doubles it.
 pub(super) const REJECTED: usize = 100;
 const LEAST_REJECTED: usize = 10;
 /// Fewest points of the first batch, in which no point can learn from another. With a model of F it is a single point.
@@ -35,6 +37,7 @@ impl<S: Real> Sources<S> {
 
     /// Fills a batch.
     pub(super) fn fill(&mut self, context: &dyn Context<S>, rng: &mut SearchRng, out: &mut Batch<S>) -> Ask {
+        self.dry = Dry::default();
         self.swarms.begin_batch();
         self.descended = 0;
         let in_any_order = context.is_in_any_order();
@@ -72,7 +75,14 @@ impl<S: Real> Sources<S> {
             return self.enumerate(context, rng, out);
         }
         let mut rejected = 0;
-        while out.len() < self.batch && rejected < self.patience && !context.is_out_of_time() {
+        while out.len() < self.batch && !context.is_out_of_time() {
+            if rejected >= self.patience {
+                if !out.is_empty() || !self.dry.leave_out() {
+                    break;
+                }
+                self.chosen = None;
+                rejected = 0;
+            }
             let (tag, left) = self.next_source(context, rng);
             let before = out.len();
             let room = (self.batch - before).min(usize::try_from(left).unwrap_or(usize::MAX));
@@ -104,6 +114,7 @@ impl<S: Real> Sources<S> {
                     GuestAnswer::Worked(_) => self.chosen = None,
                     GuestAnswer::Nothing => {
                         self.chosen = None;
+                        self.dry.note(place);
                         rejected += 1;
                     }
                 }
@@ -134,18 +145,19 @@ impl<S: Real> Sources<S> {
                 if !out.is_empty() && out.len() >= wanted {
                     break;
                 }
+                self.dry.note(place);
                 rejected += 1;
             }
         }
         if out.is_empty() && self.visited.as_ref().is_some_and(Visited::is_all) {
             return Ask::Covered;
         }
-        self.patience = if out.is_empty() {
+        self.patience = if self.dry.has_any() {
             (self.patience / 2).max(LEAST_REJECTED)
         } else {
             (self.patience * 2).min(REJECTED)
         };
-        // Every draw was known. Propose uniform points, known or not.
+        // No source has anything new. Propose uniform points, known or not.
         let least = if self.visited.is_some() { 1 } else { wanted };
         while out.len() < least {
             rng.position(context.space(), &mut self.position);
