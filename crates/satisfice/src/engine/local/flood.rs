@@ -318,11 +318,12 @@ mod tests {
     use crate::space::Region;
     use crate::testing::BareContext;
 
-    /// Everything within a distance of the middle is deleted, and time is out after some looks into C.
+    /// Everything whose squared distance from the middle is less than a number is deleted, and time is out after some looks into C.
     struct Timed {
         bare: BareContext<f64>,
         looks: Cell<usize>,
         most: usize,
+        squared: f64,
     }
 
     impl Context<f64> for Timed {
@@ -343,7 +344,7 @@ mod tests {
         }
         fn is_deleted(&self, position: &[f64]) -> bool {
             self.looks.set(self.looks.get() + 1);
-            position.iter().map(|x| x * x).sum::<f64>() < 0.01
+            position.iter().map(|x| x * x).sum::<f64>() < self.squared
         }
         fn is_out_of_time(&self) -> bool {
             self.looks.get() >= self.most
@@ -374,6 +375,7 @@ mod tests {
                 bare: BareContext::new(Space::cube(axes, -1.0, 1.0).unwrap()),
                 looks: Cell::new(0),
                 most,
+                squared: 0.01,
             };
             let (mut flood, mut batch) = (Flood::new(1e-3, Order::First), Batch::new(axes));
             batch.push(&vec![0.0; axes]);
@@ -399,5 +401,28 @@ mod tests {
         assert_eq!(all.len(), 2 * axes);
         let (same, more) = proposals(100);
         assert!(all == same && more > 10 * asks, "{more} asks in place of {asks}");
+    }
+
+    /// Two hits without a neighbour that is new: each takes a look, and a whole flood goes over both.
+    #[test]
+    fn a_look_ends_with_its_hit_even_if_it_proposes_nothing() {
+        let context = Timed {
+            bare: BareContext::new(Space::cube(2, -1.0, 1.0).unwrap()),
+            looks: Cell::new(0),
+            most: usize::MAX,
+            squared: f64::INFINITY,
+        };
+        let (mut hits, mut batch) = (Batch::new(2), Batch::new(2));
+        hits.push(&[0.0, 0.0]);
+        hits.push(&[0.5, 0.0]);
+        let mut flood = Flood::new(1e-3, Order::First);
+        let outcomes = [Outcome::Hit(0.0); 2];
+        flood.add_hits(context.space(), &hits, &outcomes);
+        assert_eq!(
+            [(); 3].map(|()| flood.look_on(&context, &mut batch)),
+            [true, true, false]
+        );
+        flood.add_hits(context.space(), &hits, &outcomes);
+        assert!(!flood.ask(&context, &mut batch) && batch.is_empty());
     }
 }
